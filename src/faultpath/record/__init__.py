@@ -1,0 +1,1 @@
+"""The decision: effects, break-even frequency, verdict."""
