@@ -1,0 +1,55 @@
+"""Arms over identical scenes, and the contrasts between them."""
+
+import hashlib
+import json
+
+from pydantic import BaseModel, ConfigDict
+
+from faultpath.faults import AnyFault
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class SystemSpec(_Frozen):
+    """How a worker process builds the system: a registered name or `module:attribute`."""
+
+    name: str
+    options: dict[str, str] = {}
+
+
+class Arm(_Frozen):
+    """One variant of the system under one set of faults, with one seed."""
+
+    variant: str
+    faults: tuple[AnyFault, ...] = ()
+    seed: int = 0
+
+    def key(self) -> str:
+        """Content hash: arms that would run the same trials have the same key."""
+        content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+
+class Row(_Frozen):
+    """Where an arm stands in the outcome table. Two rows may share an arm, which runs once."""
+
+    variant: str
+    path: str
+    seed: int
+    arm: Arm
+
+
+class Study(_Frozen):
+    """Which arms run over which scenes."""
+
+    name: str
+    system: SystemSpec
+    library: str
+    scenes: tuple[str, ...]
+    rows: tuple[Row, ...]
+
+    def arms(self) -> tuple[Arm, ...]:
+        """Return each distinct arm once, in the order of the rows."""
+        return tuple({row.arm.key(): row.arm for row in self.rows}.values())

@@ -1,0 +1,88 @@
+"""The closed loop that an audit runs, as the rest of faultpath sees it."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from faultpath.faults import FaultPreset
+from faultpath.interface import Interface
+from faultpath.taps import Taps
+from faultpath.trials.floorplan import FloorPlan
+from faultpath.trials.outcome import Outcome
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to wire the system: which source feeds each channel, and which consumers exist."""
+
+    name: str
+    description: str
+    consumers: frozenset[str]
+    """The taps that this variant reads; a fault cannot reach any other."""
+    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Channel to source, where it is not the channel's first source."""
+    privileged: frozenset[str] = frozenset()
+    """Privileged sources that this variant may read, because it says so here."""
+
+
+@dataclass(frozen=True)
+class SceneRef:
+    """A scene as the core knows it: its name, its place in the library and its kind."""
+
+    id: str
+    index: int
+    topology: str = ""
+
+
+@dataclass(frozen=True)
+class Library:
+    """A frozen set of scenes."""
+
+    name: str
+    scenes: tuple[SceneRef, ...]
+    content_hash: str
+
+
+class System(ABC):
+    """A closed loop with its information interface.
+
+    `run` must give each scene a result that does not depend on which other scenes are in the call:
+    randomness comes from `faultpath.streams`, keyed by scene.
+    """
+
+    name: str
+    control_dt_s: float
+    block_size: int = 20
+    """Scenes handed to one call of `run`: the unit of work, of storage and of resuming."""
+
+    @property
+    @abstractmethod
+    def interface(self) -> Interface:
+        """What the modules read, and from where."""
+
+    @property
+    @abstractmethod
+    def variants(self) -> Mapping[str, Variant]:
+        """The ways to wire the system, by name."""
+
+    @property
+    def fault_presets(self) -> Mapping[str, FaultPreset]:
+        """Named faults of the command line, such as `calibration`."""
+        return {}
+
+    @abstractmethod
+    def library(self, name: str) -> Library:
+        """Return a library of scenes; `UserError` for an unknown name."""
+
+    @abstractmethod
+    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Sequence[Outcome]:
+        """Run one trial in each scene, in order; every reading goes through `taps`."""
+
+    @abstractmethod
+    def fingerprint(self) -> str:
+        """Hash of everything that decides a result beside variant, scene, faults and seed."""
+
+    def floor_plan(self, scene: str) -> FloorPlan | None:
+        """Return the shapes that a report draws for a scene, if the system has any."""
+        del scene
+        return None
