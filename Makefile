@@ -1,0 +1,91 @@
+# Everything that is installed goes into .venv; `make clean` leaves it alone, `make distclean` does not.
+
+PYTHON ?= python3
+JOBS ?= 2
+ARGS ?=
+
+VENV := .venv
+BIN := $(VENV)/bin
+STAMPS := $(VENV)/stamps
+INPUTS := pyproject.toml constraints.txt
+SOURCES := src tests examples benchmarks
+
+# --no-compile leaves byte code to the first import: most of what is installed is never imported.
+PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --quiet -c constraints.txt
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help setup setup-runtime prerequisites audit test lint format clean distclean
+
+help: ## Show this list
+	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup: $(STAMPS)/dev ## Create .venv with everything needed to develop
+
+setup-runtime: $(STAMPS)/runtime ## Create .venv with what an audit needs
+
+audit: $(STAMPS)/runtime ## Audit the quadrotor's observer; more options in ARGS="..."
+	$(BIN)/faultpath audit quadrotor --baseline zero-wind --repair observer \
+	  --fault calibration=+0.1 --library held-out --wind L3 $(ARGS)
+
+test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
+
+lint: $(STAMPS)/dev ## Check format, style, types and layers
+	$(BIN)/ruff format --check
+	$(BIN)/ruff check
+	$(BIN)/pyright
+	PYTHONPATH=src $(BIN)/lint-imports
+
+format: $(STAMPS)/dev ## Put the code into the project's format
+	$(BIN)/ruff format
+	$(BIN)/ruff check --fix
+
+clean: ## Remove caches and build outputs; keep .venv and results
+	rm -rf .pytest_cache .ruff_cache .import_linter_cache .hypothesis build dist
+	find $(wildcard $(SOURCES)) -name __pycache__ -type d -prune -exec rm -rf {} +
+
+distclean: clean ## Remove .venv as well
+	rm -rf $(VENV)
+
+# The browser tests need a Chromium. Root on a machine with apt gets it; anyone else is told how.
+prerequisites:
+	@for name in chromium chromium-browser google-chrome; do \
+	  if command -v $$name >/dev/null 2>&1; then exit 0; fi; \
+	done; \
+	if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then \
+	  echo "No Chromium here: installing it for the browser tests with apt-get install chromium."; \
+	  if apt-get -qq update && \
+	    DEBIAN_FRONTEND=noninteractive apt-get -qq -y install --no-install-recommends chromium >/dev/null; \
+	  then exit 0; fi; \
+	fi; \
+	echo "The browser tests need Chromium; on Debian install it with: apt-get install chromium"
+
+# A stamp is written only after everything before it has worked. `.venv/incomplete` lies there while
+# pip writes, so an environment in which an install was cut short is built again from nothing.
+# Order-only prerequisite: the directory's own time does not matter.
+$(STAMPS)/runtime: EXTRA := quadrotor
+$(STAMPS)/dev: EXTRA := dev
+$(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS) | check-python
+	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
+	  echo "Creating $(VENV)"; \
+	  rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); \
+	fi
+	@touch $(VENV)/incomplete
+	@echo "Installing faultpath[$(EXTRA)] into $(VENV); this takes a minute or two the first time"
+	@$(PIP_INSTALL) -e '.[$(EXTRA)]'
+	@rm $(VENV)/incomplete
+	@mkdir -p $(STAMPS)
+	@touch $(STAMPS)/runtime $@
+
+.PHONY: check-python
+check-python:
+	@command -v $(PYTHON) >/dev/null 2>&1 || { \
+	  echo "faultpath needs Python 3.11 or newer, and there is no '$(PYTHON)' here: install it, or name one with make PYTHON=/path/to/python3.11"; \
+	  exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "faultpath needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V): name a newer one with make PYTHON=/path/to/python3.11"; \
+	  exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  echo "'$(PYTHON)' cannot create virtual environments: on Debian install that part with apt-get install python3-venv"; \
+	  exit 1; }
