@@ -1,0 +1,37 @@
+"""The planner: MPPI with its samplers and costs as objects."""
+
+from faultpath.quadrotor.planner.costs import (
+    CostWeights,
+    GoalCost,
+    NavigationCost,
+    RunningGoal,
+    Scored,
+    TerminalGoal,
+)
+from faultpath.quadrotor.planner.mppi import (
+    MPPI,
+    FixedTemperature,
+    Proposal,
+    ScaledTemperature,
+    Temperature,
+    shift,
+)
+from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, SamplerSettings
+
+__all__ = [
+    "MPPI",
+    "AutoregressiveSampler",
+    "CostWeights",
+    "FixedTemperature",
+    "GoalCost",
+    "NavigationCost",
+    "Proposal",
+    "RunningGoal",
+    "Sampler",
+    "SamplerSettings",
+    "ScaledTemperature",
+    "Scored",
+    "Temperature",
+    "TerminalGoal",
+    "shift",
+]

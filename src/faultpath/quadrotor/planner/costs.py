@@ -1,0 +1,106 @@
+"""What the planner minimises: goal, clearance risk, speed, heading and effort."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import torch
+from pydantic import BaseModel, ConfigDict
+from torch import Tensor
+
+from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+
+
+class CostWeights(BaseModel):
+    """Weights of the terms, per replan. Goal, risk and speed are the paper's terms."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    goal: float = 10.0
+    risk: float = 40.0
+    hit: float = 400.0
+    margin_m: float = 0.20
+    """Clearance beyond the collision radius below which risk starts."""
+    speed: float = 20.0
+    v_max_mps: float = 3.4  # paper, Table I
+    heading: float = 0.5
+    rate_effort: float = 0.05
+
+
+@dataclass(frozen=True)
+class Scored:
+    """What a cost may look at, batch `[S, K]`."""
+
+    rollout: Rollout
+    commands: Tensor
+    """`[H, 4, S, K]`."""
+    clearance: Tensor
+    """Clearance of the vehicle's centre along the rollout, `[H, S, K]`, metres."""
+    goal: Tensor
+    """`[3, S]`, metres, world frame."""
+
+
+class GoalCost(ABC):
+    """How the distance to the goal enters the cost: the two planner variants differ here."""
+
+    @abstractmethod
+    def distance(self, scored: Scored) -> Tensor:
+        """Return the distance that counts, `[S, K]`, metres."""
+
+
+def _norm(vector: Tensor) -> Tensor:
+    return vector.square().sum(0).sqrt_()
+
+
+class TerminalGoal(GoalCost):
+    """Distance at the end of the horizon.
+
+    Soft in height: a candidate that climbs back by the end of the horizon pays nothing for the
+    way, so a thrust error settles into an altitude offset. This is where calibration hurts.
+    """
+
+    def distance(self, scored: Scored) -> Tensor:
+        """See `GoalCost.distance`."""
+        return _norm(scored.rollout.final.position - scored.goal[..., None])
+
+
+class RunningGoal(GoalCost):
+    """Mean distance along the horizon: stiff in height, so it hides a thrust error."""
+
+    def distance(self, scored: Scored) -> Tensor:
+        """See `GoalCost.distance`."""
+        return _norm(scored.rollout.positions - scored.goal[:, None, :, None]).mean(0)
+
+
+class NavigationCost:
+    """The weighted sum of all terms."""
+
+    def __init__(self, goal: GoalCost, weights: CostWeights | None = None) -> None:
+        self.goal = goal
+        self.weights = weights or CostWeights()
+
+    def __call__(self, scored: Scored) -> Tensor:
+        """Return the cost `[S, K]`."""
+        w = self.weights
+        cost = self.goal.distance(scored).mul_(w.goal)
+        cost += self._risk(scored.clearance)
+        speed = _norm(scored.rollout.velocities)
+        cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(0).mul_(w.speed)
+        cost += self._heading(scored).mul_(w.heading)
+        cost += scored.commands[:, 1:].square().sum(1).mean(0).mul_(w.rate_effort)
+        return cost
+
+    def _risk(self, clearance: Tensor) -> Tensor:
+        w = self.weights
+        free = clearance - COLLISION_RADIUS_M
+        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(0).mul_(w.risk)
+        return risk.add_((free < 0).to(free.dtype).mean(0), alpha=w.hit)
+
+    def _heading(self, scored: Scored) -> Tensor:
+        """One minus the cosine between the body's x axis and the direction of travel, seen from
+        above, at the end of the horizon: yaw follows the direction of travel."""
+        final = scored.rollout.final
+        forward, travel = final.rotation[:2, 0], final.velocity[:2]
+        along = (forward * travel).sum(0)
+        scale = (forward.square().sum(0) * travel.square().sum(0)).add_(1e-4).rsqrt_()
+        return torch.addcmul(torch.ones_like(along), along, scale, value=-1)

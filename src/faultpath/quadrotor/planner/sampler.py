@@ -1,0 +1,75 @@
+"""Candidate commands around a plan."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+import numpy as np
+import torch
+from pydantic import BaseModel, ConfigDict
+from torch import Tensor
+
+from faultpath.quadrotor.vehicle import RATE_LIMITS_RADPS
+from faultpath.streams import generator
+
+
+class SamplerSettings(BaseModel):
+    """Spread of the candidates. Sources: DATT, PA-MPPI and Minarik et al. for rho and sigma."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    candidates: int = 512  # paper, Section IV-A
+    horizon: int = 20  # paper, Section IV-A
+    correlation: float = 0.7
+    thrust_sigma: float = 0.22
+    """Standard deviation of the thrust noise as a fraction of the hover thrust."""
+    rate_sigma_radps: tuple[float, float, float] = (1.0, 1.0, 0.4)
+
+
+class Sampler(ABC):
+    """Draws standardised noise for a replan and turns it into candidates."""
+
+    settings: SamplerSettings
+
+    @abstractmethod
+    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
+        """Return standardised noise `[H, 4, S, K]`, keyed by scene, seed and step."""
+
+    def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
+        """Return commands `[H, 4, S, K]` around `plan` `[H, 4, S]`; `noise` is overwritten.
+
+        `hover` `[S]` is the thrust that the predictor believes holds the vehicle. The thrust
+        bounds lie evenly around it: bounds that cut one side lift the mean plan and would hide
+        one sign of a calibration fault.
+        """
+        scale = noise.new_empty(4, hover.shape[0], 1)
+        scale[0, :, 0] = self.settings.thrust_sigma * hover
+        for axis, sigma in enumerate(self.settings.rate_sigma_radps):
+            scale[axis + 1] = sigma
+        commands = noise.mul_(scale).add_(plan[..., None])
+        thrust = commands[:, 0]
+        torch.minimum(thrust.clamp_(min=0), 2 * hover[:, None], out=thrust)
+        for axis, limit in enumerate(RATE_LIMITS_RADPS):
+            commands[:, axis + 1].clamp_(-limit, limit)
+        return commands
+
+
+class AutoregressiveSampler(Sampler):
+    """First-order autoregressive noise over the horizon; candidate 0 is the plan itself."""
+
+    def __init__(self, settings: SamplerSettings | None = None) -> None:
+        self.settings = settings or SamplerSettings()
+
+    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
+        """See `Sampler.noise`."""
+        shape = (self.settings.horizon, 4, self.settings.candidates)
+        out = np.empty((shape[0], 4, len(scenes), shape[2]), dtype=np.float32)
+        for i, scene in enumerate(scenes):
+            draws = generator("planner", scene, seed, step)
+            out[:, :, i] = draws.standard_normal(shape, dtype=np.float32)
+        noise = torch.from_numpy(out)
+        rho = self.settings.correlation
+        noise[1:] *= (1 - rho**2) ** 0.5
+        for h in range(1, shape[0]):
+            noise[h].add_(noise[h - 1], alpha=rho)
+        noise[..., 0] = 0
+        return noise

@@ -1,0 +1,85 @@
+"""The true-parameter predictor: the vehicle's own inner loop and aerodynamics, stepped coarsely."""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.predictors.base import Memory, Physics, Predictor, PredictorInputs
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN
+
+SUBSTEPS = 4
+
+
+@dataclass(frozen=True)
+class _Memory:
+    physics: Physics
+    thrust_gain: Tensor
+    inverse_mass: Tensor
+    wind: Tensor
+    keep: Tensor  # exp(-h / motor time constant)
+    thrust: Tensor  # lagged collective thrust, N
+    torque: Tensor  # lagged body torque, N m
+
+
+class TrueParameter(Predictor):
+    """Rigid body, rate loop, motor lag and linear drag with the vehicle's true parameters.
+
+    Mass and thrust scale still come from the calibration taps. It is not the plant: it has no
+    mixer, no motor limits, and steps of 12.5 ms in a semi-implicit scheme (paper, Section IV-A:
+    "integration is separate").
+    """
+
+    def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
+        self._h = dt_s / SUBSTEPS
+
+    def begin(self, inputs: PredictorInputs) -> Memory:
+        """Return constants, and motors as they are now; `ValueError` without true parameters."""
+        physics = inputs.physics
+        if physics is None:
+            raise ValueError("the true-parameter predictor was given no physical parameters")
+        inverse_mass = 1 / inputs.wind_map_mass_kg
+        return _Memory(
+            physics=physics,
+            thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
+            inverse_mass=inverse_mass,
+            wind=inputs.wind_mps,
+            keep=torch.exp(-self._h / physics.motor_time_constant_s),
+            thrust=physics.collective_thrust_n,
+            torque=torch.zeros_like(inputs.state.rate),
+        )
+
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        """Advance one interval; see `Predictor.step`."""
+        now: _Memory = memory
+        thrust, torque = now.thrust, now.torque
+        for _ in range(SUBSTEPS):
+            thrust = torch.lerp(command[0], thrust, now.keep)
+            state, torque = self._substep(state, command[1:], thrust, torque, now)
+        return state, _Memory(
+            now.physics, now.thrust_gain, now.inverse_mass, now.wind, now.keep, thrust, torque
+        )
+
+    def _substep(
+        self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, now: _Memory
+    ) -> tuple[State, Tensor]:
+        h = self._h
+        physics = now.physics
+        inertia = physics.inertia_kgm2
+        gyroscopic = torch.linalg.cross(state.rate, inertia * state.rate, dim=0)
+        gain = state.rate.new_tensor(RATE_GAIN).reshape(3, *([1] * (state.rate.ndim - 1)))
+        wanted = inertia * gain * (target - state.rate) + gyroscopic
+        torque = torch.lerp(wanted, torque, now.keep)
+        rate = state.rate + h * (physics.torque_scale * torque - gyroscopic) / inertia
+        rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))
+
+        acceleration = rotation[:, 2] * (now.thrust_gain * thrust)
+        body = so3.rotate_back(rotation, now.wind - state.velocity)
+        air = so3.rotate(rotation, physics.drag_kgps * body)
+        acceleration = torch.addcmul(acceleration, air, now.inverse_mass)
+        acceleration[2] -= GRAVITY_MPS2
+        velocity = torch.add(state.velocity, acceleration, alpha=h)
+        position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * h)
+        return State(position, velocity, rotation, rate), torque
