@@ -12,11 +12,13 @@ SCENES = "new scenes like these, for these trained models and recorded execution
 SCENES_AND_SEEDS = "new scenes like these and models newly trained with other seeds"
 
 
-class _Result(BaseModel):
+class FrozenResult(BaseModel):
+    """Base of all results: frozen, no unknown fields, no NaN and no infinity."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-class Discordant(_Result):
+class Discordant(FrozenResult):
     """Pairs in which exactly one arm succeeded; printed as the paper prints them, ``2:15``."""
 
     first_only: int = Field(ge=0)
@@ -56,7 +58,7 @@ class Discordant(_Result):
         return f"{self.first_only}:{self.second_only}"
 
 
-class SeedCounts(_Result):
+class SeedCounts(FrozenResult):
     """Discordant counts of each seed, in seed order; printed ``2:15/2:11/2:9``."""
 
     per_seed: tuple[Discordant, ...] = Field(min_length=1)
@@ -69,7 +71,7 @@ class SeedCounts(_Result):
         return "/".join(str(c) for c in self.per_seed)
 
 
-class Estimate(_Result):
+class Estimate(FrozenResult):
     """A value, its interval, and what that interval generalises to.
 
     ``low`` and ``high`` are both None when no interval was asked for or none exists. ``per_seed``
@@ -133,7 +135,7 @@ class Estimate(_Result):
         return f"{head} [{_shown(self.low, digits)}, {_shown(self.high, digits)}]"
 
 
-class TestResult(_Result):
+class TestResult(FrozenResult):
     """A two-sided test of no difference, with the counts that decide it."""
 
     __test__ = False  # pytest would otherwise try to collect the class
@@ -150,7 +152,7 @@ class TestResult(_Result):
         return self.p_value <= alpha
 
 
-class Reversal(_Result):
+class Reversal(FrozenResult):
     """Whether an effect changes sign between condition A and condition B.
 
     Detected when the interval of B minus A excludes 0 and the two effects differ in sign.
@@ -167,7 +169,7 @@ class Reversal(_Result):
 Direction = Literal["above", "below", "always", "never"]
 
 
-class DirectionShares(_Result):
+class DirectionShares(FrozenResult):
     """Share of the bootstrap resamples in each direction; the four add up to 1."""
 
     above: float = Field(ge=0.0, le=1.0)
@@ -176,7 +178,7 @@ class DirectionShares(_Result):
     never: float = Field(ge=0.0, le=1.0)
 
 
-class BreakEven(_Result):
+class BreakEven(FrozenResult):
     """Fault frequency at which a repair's gain under faults offsets its cost without (Table V).
 
     ``direction`` says on which side of ``p_star`` the repair is favoured. ``never`` has no
@@ -202,6 +204,40 @@ class BreakEven(_Result):
         if (self.low is None) != (self.high is None):
             raise ValueError("an interval needs both ends or neither")
         return self
+
+
+class Detectable(FrozenResult):
+    """The smallest absolute difference that a paired comparison would detect with a stated power.
+
+    ``value`` is None exactly when ``reason`` says why there is none. ``discordant_rate`` is the
+    share of scenes that was taken to differ; ``note`` states what had to be assumed for it.
+    """
+
+    value: float | None = Field(default=None, ge=0.0)
+    reason: str | None = None
+    unit: str = "pp"
+    alpha: float = Field(gt=0.0, lt=1.0)
+    power: float = Field(gt=0.0, lt=1.0)
+    method: str
+    n_scenes: int = Field(ge=1)
+    n_seeds: int = Field(default=1, ge=1)
+    discordant_rate: float | None = Field(default=None, ge=0.0, le=1.0)
+    note: str | None = None
+
+    @model_validator(mode="after")
+    def _says_why(self) -> Self:
+        if (self.value is None) == (self.reason is None):
+            raise ValueError("a detectable difference needs either a value or a reason")
+        return self
+
+
+class Correlation(FrozenResult):
+    """A rank correlation; None when one side is constant. ``note`` warns of a small n."""
+
+    value: float | None = Field(ge=-1.0, le=1.0)
+    n: int = Field(ge=2)
+    method: str = "Spearman"
+    note: str | None = None
 
 
 def _negated(value: float) -> float:

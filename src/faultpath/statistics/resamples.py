@@ -1,0 +1,63 @@
+"""Scene resamples, drawn once and shared by every effect that is to be bootstrapped jointly."""
+
+from dataclasses import dataclass, field
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.inputs import Floats
+from faultpath.streams import generator
+
+
+@dataclass(frozen=True, eq=False)
+class Resamples:
+    """How often each scene occurs in each bootstrap resample.
+
+    ``counts`` is [resamples, scenes]; each row adds up to the number of scenes. One product with a
+    [scenes] or [scenes, k] array gives the resampled sums of any number of effects. Two effects
+    may be compared draw by draw only when they share the object.
+    """
+
+    label: str
+    seed: int
+    counts: Floats = field(repr=False)
+
+    @classmethod
+    def draw(cls, label: str, n_scenes: int, *, seed: int = 0, n_resamples: int = 10_000) -> Self:
+        """Draw from the stream ("bootstrap", label, seed); ``label`` names the scene library."""
+        if n_scenes < 1 or n_resamples < 1:
+            raise ValueError(f"cannot draw {n_resamples} resamples of {n_scenes} scenes")
+        drawn = _counts(generator("bootstrap", label, seed), n_resamples, n_scenes)
+        drawn.setflags(write=False)  # shared by many effects
+        return cls(label=label, seed=seed, counts=drawn)
+
+    @property
+    def n_resamples(self) -> int:
+        """Return the number of resamples."""
+        return self.counts.shape[0]
+
+    @property
+    def n_scenes(self) -> int:
+        """Return the number of scenes in the library and in each resample."""
+        return self.counts.shape[1]
+
+    def seed_counts(self, n_seeds: int) -> Floats:
+        """Return [resamples, seeds]: how often each seed occurs; the same array at every call."""
+        return _counts(
+            generator("bootstrap-seeds", self.label, self.seed), self.n_resamples, n_seeds
+        )
+
+    def reordered(self, order: NDArray[np.intp]) -> "Resamples":
+        """Return the same resamples for outcomes whose scenes were reordered as ``x[order]``."""
+        return Resamples(label=self.label, seed=self.seed, counts=self.counts[:, order])
+
+    def same_as(self, other: "Resamples") -> bool:
+        """Return whether both hold the same draws, so that effects on them are joint."""
+        return self is other or np.array_equal(self.counts, other.counts)
+
+
+def _counts(stream: np.random.Generator, rows: int, items: int) -> Floats:
+    chosen = stream.integers(0, items, size=(rows, items))
+    flat = (chosen + items * np.arange(rows)[:, np.newaxis]).ravel()
+    return np.bincount(flat, minlength=rows * items).reshape(rows, items).astype(np.float64)
