@@ -205,6 +205,11 @@ class BreakEven(FrozenResult):
             raise ValueError("an interval needs both ends or neither")
         return self
 
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """Return (low, high), or None without an interval."""
+        return None if self.low is None or self.high is None else (self.low, self.high)
+
 
 class Detectable(FrozenResult):
     """The smallest absolute difference that a paired comparison would detect with a stated power.
