@@ -35,7 +35,7 @@ lint: $(STAMPS)/dev ## Check format, style, types and layers
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
 	$(BIN)/pyright
-	PYTHONPATH=src $(BIN)/lint-imports
+	$(BIN)/lint-imports
 
 format: $(STAMPS)/dev ## Put the code into the project's format
 	$(BIN)/ruff format
@@ -61,31 +61,31 @@ prerequisites:
 	fi; \
 	echo "The browser tests need Chromium; on Debian install it with: apt-get install chromium"
 
-# A stamp is written only after everything before it has worked. `.venv/incomplete` lies there while
+define CHECK_PYTHON
+command -v $(PYTHON) >/dev/null 2>&1 || { \
+  echo "There is no '$(PYTHON)' here: install Python 3.11 or newer, or name one with make PYTHON=python3.11"; \
+  exit 1; }; \
+$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+  echo "faultpath needs Python 3.11 or newer and '$(PYTHON)' is $$($(PYTHON) -V): name a newer one with make PYTHON=python3.11"; \
+  exit 1; }; \
+$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+  echo "'$(PYTHON)' cannot create virtual environments: on Debian install that part with apt-get install python3-venv"; \
+  exit 1; }
+endef
+
+# A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
-# Order-only prerequisite: the directory's own time does not matter.
 $(STAMPS)/runtime: EXTRA := quadrotor
 $(STAMPS)/dev: EXTRA := dev
-$(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS) | check-python
+$(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
+	  $(CHECK_PYTHON); \
 	  echo "Creating $(VENV)"; \
 	  rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); \
 	fi
 	@touch $(VENV)/incomplete
-	@echo "Installing faultpath[$(EXTRA)] into $(VENV); this takes a minute or two the first time"
+	@echo "Installing faultpath[$(EXTRA)] into $(VENV); the first time this takes a minute or two"
 	@$(PIP_INSTALL) -e '.[$(EXTRA)]'
-	@rm $(VENV)/incomplete
 	@mkdir -p $(STAMPS)
 	@touch $(STAMPS)/runtime $@
-
-.PHONY: check-python
-check-python:
-	@command -v $(PYTHON) >/dev/null 2>&1 || { \
-	  echo "faultpath needs Python 3.11 or newer, and there is no '$(PYTHON)' here: install it, or name one with make PYTHON=/path/to/python3.11"; \
-	  exit 1; }
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
-	  echo "faultpath needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V): name a newer one with make PYTHON=/path/to/python3.11"; \
-	  exit 1; }
-	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
-	  echo "'$(PYTHON)' cannot create virtual environments: on Debian install that part with apt-get install python3-venv"; \
-	  exit 1; }
+	@rm $(VENV)/incomplete

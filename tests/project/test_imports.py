@@ -1,0 +1,57 @@
+"""What gets loaded: the core works without torch, and help comes at once."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+from textwrap import dedent
+
+Run = Callable[..., CompletedProcess[str]]
+
+HEAVY = ["matplotlib", "mujoco", "pyarrow", "scipy", "torch"]
+
+
+def _core_modules(root: Path) -> list[str]:
+    """Every module outside the quadrotor, by its dotted name."""
+    source = root / "src"
+    names = (path.relative_to(source).with_suffix("").parts for path in source.rglob("*.py"))
+    modules = (".".join(parts).removesuffix(".__init__") for parts in names)
+    return sorted(
+        name
+        for name in modules
+        if not name.startswith("faultpath.quadrotor") and not name.endswith("__main__")
+    )
+
+
+def test_nothing_outside_the_quadrotor_loads_torch(root: Path, run: Run) -> None:
+    code = """
+    import importlib, json, sys
+    for name in json.loads(sys.argv[1]):
+        importlib.import_module(name)
+        assert "torch" not in sys.modules, f"{name} loads torch"
+    """
+    done = run("-c", dedent(code), json.dumps(_core_modules(root)))
+    assert done.returncode == 0, done.stderr
+
+
+def test_help_loads_nothing_heavy(run: Run) -> None:
+    code = """
+    import json, sys
+    from faultpath.cli.main import main
+    heavy = set(json.loads(sys.argv[1]))
+    sys.argv = ["faultpath", "--help"]
+    try:
+        main()
+    except SystemExit as stop:
+        assert not stop.code, stop.code
+    loaded = sorted(heavy & set(sys.modules))
+    assert not loaded, f"--help loads {loaded}"
+    """
+    done = run("-c", dedent(code), json.dumps(HEAVY))
+    assert done.returncode == 0, done.stderr
+    assert "Usage" in done.stdout
+
+
+def test_the_command_is_installed(run: Run) -> None:
+    done = run("faultpath --help", shell=True)
+    assert done.returncode == 0, done.stderr

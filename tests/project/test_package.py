@@ -1,0 +1,73 @@
+"""The package's declarations agree with each other."""
+
+import importlib.metadata
+import tomllib
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+import faultpath
+
+
+@pytest.fixture(scope="module")
+def declared(root: Path) -> dict[str, Any]:
+    return tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def pins(root: Path) -> list[Requirement]:
+    lines = (root / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    return [Requirement(line) for line in lines if line and not line.startswith("#")]
+
+
+def test_version_is_the_same_everywhere(declared: dict[str, Any], root: Path) -> None:
+    version = declared["project"]["version"]
+    assert faultpath.__version__ == version
+    assert importlib.metadata.version("faultpath") == version
+
+
+def test_changelog_has_a_place_for_what_comes_next(root: Path) -> None:
+    assert "## [Unreleased]" in (root / "CHANGELOG.md").read_text(encoding="utf-8")
+
+
+def test_constraints_pin_one_public_version_each(pins: list[Requirement]) -> None:
+    names = [canonicalize_name(pin.name) for pin in pins]
+    assert names == sorted(set(names))
+    for pin in pins:
+        (specifier,) = pin.specifier
+        assert specifier.operator == "=="
+        assert "+" not in specifier.version
+
+
+def test_constraints_satisfy_every_declared_range(
+    declared: dict[str, Any], pins: list[Requirement]
+) -> None:
+    versions = {canonicalize_name(pin.name): next(iter(pin.specifier)).version for pin in pins}
+    project = declared["project"]
+    extras = project["optional-dependencies"].values()
+    lines = [*project["dependencies"], *chain.from_iterable(extras)]
+    for requirement in map(Requirement, lines):
+        name = canonicalize_name(requirement.name)
+        if name != "faultpath":
+            assert requirement.specifier.contains(versions[name]), requirement
+
+
+def test_core_dependencies_leave_torch_to_the_quadrotor(declared: dict[str, Any]) -> None:
+    names = {Requirement(line).name for line in declared["project"]["dependencies"]}
+    assert names.isdisjoint({"torch", "mujoco"})
+
+
+def test_every_package_but_the_quadrotor_is_checked_strictly(
+    declared: dict[str, Any], root: Path
+) -> None:
+    packages = {
+        path.parent.relative_to(root).as_posix()
+        for path in (root / "src" / "faultpath").glob("*/__init__.py")
+    }
+    strict = set(declared["tool"]["pyright"]["strict"])
+    assert packages - strict == {"src/faultpath/quadrotor"} & packages
+    assert "src/faultpath/*.py" in strict

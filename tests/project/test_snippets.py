@@ -1,0 +1,152 @@
+"""Everything that README and docs show as code runs, and prints what they say it prints.
+
+Two kinds of fenced block count. The ``python`` blocks of a document run one after another, as one
+program. A ``console`` block is a session: lines that start with ``$ `` are commands, the lines
+below each are its output, in which ``...`` stands for anything; a command without output below
+only has to succeed. Commands of ``faultpath`` and ``python`` are run; the rest (git, make, pip) are
+set-up and are not. All commands of a document share one directory, which holds ``examples/``. The
+word ``not-run`` after the language (```` ```console not-run ````) keeps a block out, for what takes
+minutes. Design notes are about the past and are left alone.
+"""
+
+import doctest
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+Run = Callable[..., CompletedProcess[str]]
+
+ROOT = Path(__file__).resolve().parents[2]
+DOCUMENTS = [
+    path
+    for path in [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+    if path.is_file() and "design" not in path.relative_to(ROOT).parts
+]
+FENCE = re.compile(r"^```(?P<info>[^\n`]+)\n(?P<body>.*?)^```\s*$", flags=re.MULTILINE | re.DOTALL)
+RUNNABLE = re.compile(r"(?:\w+=\S* )*(?:faultpath|python)\b")
+LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block: its text and the number of its first line in the document."""
+
+    body: str
+    line: int
+
+
+@dataclass(frozen=True)
+class Command:
+    """One command of a console session and the output that the document shows for it."""
+
+    line: str
+    output: str
+
+
+def blocks(text: str, language: str) -> Iterator[Block]:
+    for match in FENCE.finditer(text):
+        if match["info"].split() == [language]:
+            yield Block(match["body"], text.count("\n", 0, match.start("body")) + 1)
+
+
+def program(text: str) -> str:
+    """The Python blocks as one program, each line where it stands in the document."""
+    lines = [""] * (text.count("\n") + 1)
+    for block in blocks(text, "python"):
+        body = block.body.splitlines()
+        lines[block.line - 1 : block.line - 1 + len(body)] = body
+    return "\n".join(lines).rstrip()
+
+
+def session(text: str) -> Iterator[Command]:
+    """The console blocks as commands; a backslash at a line's end joins it with the next."""
+    for block in blocks(text, "console"):
+        body = block.body.replace("\\\n", "")
+        for part in re.split(r"^\$ ", body, flags=re.MULTILINE)[1:]:
+            line, _, output = part.partition("\n")
+            yield Command(line.strip(), output)
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
+    source = program(document.read_text(encoding="utf-8"))
+    script = workspace / f"{document.stem}_snippets.py"
+    script.write_text(source, encoding="utf-8")
+    done = run(str(script))
+    assert done.returncode == 0, f"{document.name}, at the line of the same number:\n{done.stderr}"
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_console_of_a_document_runs(document: Path, run: Run) -> None:
+    checker = doctest.OutputChecker()
+    for command in session(document.read_text(encoding="utf-8")):
+        if not RUNNABLE.match(command.line):
+            continue
+        done = run(command.line, shell=True)
+        assert done.returncode == 0, f"$ {command.line}\n{done.stdout}{done.stderr}"
+        if command.output.strip():
+            shown = checker.check_output(command.output, done.stdout, LOOSELY)
+            assert shown, f"$ {command.line}\n{done.stdout}\nis not\n{command.output}"
+
+
+DOCUMENT = """Text.
+
+```python
+x = 1
+```
+```python not-run
+raise SystemExit("kept out")
+```
+```toml
+y = 2
+```
+```python
+assert x == 1
+```
+
+```console
+$ git clone somewhere
+$ faultpath audit toy \\
+    --fault calibration=+0.1
+Verdict ... harm
+$ faultpath --help
+```
+"""
+
+
+def test_program_keeps_the_lines_of_the_document() -> None:
+    source = program(DOCUMENT).splitlines()
+    document = DOCUMENT.splitlines()
+    kept = {number: line for number, line in enumerate(source) if line}
+    assert kept == {number: document[number] for number in kept}
+    assert list(kept.values()) == ["x = 1", "assert x == 1"]
+
+
+def test_a_document_without_code_is_an_empty_program() -> None:
+    assert program("# Nothing here\n\n```console\n$ ls\n```\n") == ""
+    assert list(session("# Nothing here\n")) == []
+
+
+def test_session_splits_commands_from_their_output() -> None:
+    clone, audit, usage = session(DOCUMENT)
+    assert clone == Command("git clone somewhere", "")
+    assert audit.line.split() == ["faultpath", "audit", "toy", "--fault", "calibration=+0.1"]
+    assert audit.output == "Verdict ... harm\n"
+    assert usage == Command("faultpath --help", "")
+
+
+@pytest.mark.parametrize(
+    ("line", "runnable"),
+    [
+        ("faultpath audit toy", True),
+        ("SEED=3 python examples/toy.py", True),
+        ("make setup", False),
+        ("pythonic", False),
+    ],
+)
+def test_only_our_commands_are_run(line: str, runnable: bool) -> None:
+    assert bool(RUNNABLE.match(line)) is runnable
