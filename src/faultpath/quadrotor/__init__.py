@@ -1,0 +1,1 @@
+"""The reference application: a quadrotor that plans with a world model (extra `[quadrotor]`)."""
