@@ -1,9 +1,11 @@
 """What the planner, training and probes need of a predictor."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, TypeVar
 
+import torch
 from torch import Tensor
 
 from faultpath.quadrotor.state import State
@@ -49,6 +51,29 @@ class PredictorInputs:
     wind_map_mass_kg: Tensor
     wind_mps: Tensor
     physics: Physics | None = None
+
+    def take(self, scenes: Sequence[int]) -> "PredictorInputs":
+        """Return the inputs of some scenes, in the order given."""
+        index = torch.as_tensor(scenes)
+
+        def pick(value: Tensor) -> Tensor:
+            return value.index_select(-2, index)
+
+        return PredictorInputs(
+            state=_each(self.state, pick),
+            dynamics=_each(self.dynamics, pick),
+            trim=_each(self.trim, pick),
+            wind_map_mass_kg=pick(self.wind_map_mass_kg),
+            wind_mps=pick(self.wind_mps),
+            physics=None if self.physics is None else _each(self.physics, pick),
+        )
+
+
+_Parts = TypeVar("_Parts", State, Calibration, Physics)
+
+
+def _each(parts: _Parts, change: Callable[[Tensor], Tensor]) -> _Parts:
+    return type(parts)(**{f.name: change(getattr(parts, f.name)) for f in fields(parts)})
 
 
 class Predictor(ABC):

@@ -5,9 +5,7 @@ from collections.abc import Sequence
 from torch import Tensor
 
 from faultpath.quadrotor import so3
-
-NOMINAL_DRAG_KGPS = (0.30, 0.30, 0.30)
-"""Drag coefficients that predictors and reconstructions assume (QUADROTOR design, [D])."""
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 
 class LinearDrag:

@@ -8,7 +8,7 @@ from torch import Tensor
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.base import Memory, Physics, Predictor, PredictorInputs
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN_PER_S
 
 SUBSTEPS = 4
 
@@ -69,7 +69,7 @@ class TrueParameter(Predictor):
         physics = now.physics
         inertia = physics.inertia_kgm2
         gyroscopic = torch.linalg.cross(state.rate, inertia * state.rate, dim=0)
-        gain = state.rate.new_tensor(RATE_GAIN).reshape(3, *([1] * (state.rate.ndim - 1)))
+        gain = state.rate.new_tensor(RATE_GAIN_PER_S).reshape(3, *([1] * (state.rate.ndim - 1)))
         wanted = inertia * gain * (target - state.rate) + gyroscopic
         torque = torch.lerp(wanted, torque, now.keep)
         rate = state.rate + h * (physics.torque_scale * torque - gyroscopic) / inertia

@@ -1,0 +1,150 @@
+"""Plan an audit: which arms a question about a repair needs, on which paths of the fault."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from faultpath.errors import UserError
+from faultpath.faults import AnyFault, Fault
+from faultpath.interface import Interface, module_of
+from faultpath.interface.words import unknown
+from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
+from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
+
+
+@dataclass(frozen=True)
+class Audit:
+    """A question and the study that answers it."""
+
+    question: Question
+    paths: tuple[Path, ...]
+    study: Study
+
+    def conclude(self, table: OutcomeTable) -> DecisionRecord:
+        """Return the decision record; see `faultpath.record.decide`."""
+        return decide(self.question, self.paths, table)
+
+
+def plan_audit(
+    system: System,
+    spec: SystemSpec,
+    *,
+    baseline: str,
+    repair: str,
+    fault: AnyFault,
+    fault_text: str,
+    library: Library,
+    scenes: int | None = None,
+    seeds: Sequence[int] = (0,),
+) -> Audit:
+    """Lay out the arms: both variants under correct inputs, under the fault at each module that
+    reads it alone, and under the fault shared by all of them.
+
+    `scenes` takes the first so many of the library. Raises `UserError` for an unknown variant, a
+    repair that is its own baseline, a number of scenes that the library does not have, no seed, or
+    a fault that reaches neither variant.
+    """
+    variants = [_variant(system, name) for name in (baseline, repair)]
+    if baseline == repair:
+        raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
+    chosen = _scenes(library, scenes)
+    if not seeds or len(set(seeds)) < len(seeds):
+        raise UserError("give at least one seed, each of them once.")
+    strikes = _strikes(system.interface, fault, variants)
+    paths = [
+        _path(name, system.interface, struck, variants) for name, struck in strikes.items()
+    ]
+    rows = [
+        Row(variant=variant.name, path=path, seed=seed, arm=_arm(system, variant, struck, seed))
+        for path, struck in strikes.items()
+        for variant in variants
+        for seed in seeds
+    ]
+    question = Question(
+        system=spec.name,
+        options=spec.options,
+        baseline=baseline,
+        repair=repair,
+        fault=fault_text,
+        library=library.name,
+        library_hash=library.content_hash,
+        n_scenes=len(chosen),
+        seeds=tuple(seeds),
+    )
+    study = Study(
+        name=f"{spec.name}-{repair}-vs-{baseline}",
+        system=spec,
+        library=library.name,
+        scenes=chosen,
+        rows=tuple(rows),
+    )
+    return Audit(question, tuple(paths), study)
+
+
+def _variant(system: System, name: str) -> Variant:
+    if name not in system.variants:
+        raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
+    return system.variants[name]
+
+
+def _scenes(library: Library, count: int | None) -> tuple[str, ...]:
+    available = len(library.scenes)
+    if count is not None and not 1 <= count <= available:
+        raise UserError(
+            f"cannot run {count} scenes of library '{library.name}': choose 1 to {available}."
+        )
+    return tuple(scene.id for scene in library.scenes[:count])
+
+
+def _strikes(
+    interface: Interface, fault: AnyFault, variants: Sequence[Variant]
+) -> dict[str, AnyFault | None]:
+    """Return the fault of each path; `None` under correct inputs."""
+    reached = [c for variant in variants for c in _struck(interface, fault, variant)]
+    if not reached:
+        names = " nor ".join(f"'{variant.name}'" for variant in variants)
+        raise UserError(
+            f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
+        )
+    by_module: dict[str, list[str]] = {}
+    for consumer in reached:
+        places = by_module.setdefault(module_of(consumer), [])
+        if consumer not in places:
+            places.append(consumer)
+    strikes: dict[str, AnyFault | None] = {CORRECT: None}
+    for module in sorted(by_module):
+        strikes[module] = fault.striking(*by_module[module])
+    # With a single module there is nothing to share: the isolated fault is all of it.
+    if len(by_module) > 1:
+        strikes[SHARED] = fault.striking(*(c for places in by_module.values() for c in places))
+    return strikes
+
+
+def _struck(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:
+    consumers = (c for f in _resolved(interface, fault, variant) for c in f.consumers)
+    return tuple(dict.fromkeys(consumers))
+
+
+def _resolved(
+    interface: Interface, fault: AnyFault | None, variant: Variant
+) -> tuple[Fault, ...]:
+    return () if fault is None else fault.resolved(interface, variant.consumers)
+
+
+def _path(
+    name: str, interface: Interface, fault: AnyFault | None, variants: Sequence[Variant]
+) -> Path:
+    baseline, repair = variants
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
+    return Path(
+        name=name,
+        title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
+        consumers=_struck(interface, fault, repair),
+        baseline_consumers=_struck(interface, fault, baseline),
+    )
+
+
+def _arm(system: System, variant: Variant, fault: AnyFault | None, seed: int) -> Arm:
+    """Return the arm with its fault spelled out: where the fault cannot reach the variant, that
+    is the arm under correct inputs, which runs once."""
+    faults = _resolved(system.interface, fault, variant)
+    return Arm(variant=variant.name, faults=faults, seed=seed)

@@ -1,0 +1,195 @@
+"""The modules under test, wired through taps: one control step from readings to command."""
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.planner import MPPI, Proposal, shift
+from faultpath.quadrotor.predictors import Calibration, Physics, PredictorInputs
+from faultpath.quadrotor.reconstruction import Reconstruction, Sensed
+from faultpath.quadrotor.scenes import DistanceField
+from faultpath.quadrotor.sensors import STATE_CHANNELS, Sensors, initial_state, lanes_last
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.taps import ModuleTaps, Reading, Taps
+
+CHUNK = 4
+"""Scenes planned at once. Four times 512 candidates stay in cache, and a fixed shape keeps a
+scene's result free of its neighbours."""
+
+
+class WindObserver:
+    """The reconstruction module behind its taps."""
+
+    def __init__(self, reconstruction: Reconstruction, taps: ModuleTaps, lanes: Tensor) -> None:
+        self._reconstruction = reconstruction
+        self._taps = taps
+        self._lanes = lanes
+        self._memory = None
+
+    def observe(self, sensors: Sensors, executed: Reading, step: int) -> Reading:
+        """Take the step's readings in and return the reconstructed wind."""
+        sensed = self._sense(sensors, executed, step)
+        if self._memory is None:
+            self._memory = self._reconstruction.begin(sensed)
+        else:
+            self._memory = self._reconstruction.update(self._memory, sensed)
+        wind = self._reconstruction.wind(self._memory)
+        count = executed.value.shape[0]
+        return Reading(wind[..., :count].movedim(-1, 0), "observed_wind", step)
+
+    def _sense(self, sensors: Sensors, executed: Reading, step: int) -> Sensed:
+        def take(channel: str, place: str) -> Tensor:
+            reading = executed if channel == "action" else sensors.readings[channel]
+            return lanes_last(self._taps.deliver(channel, place, reading, step), self._lanes)
+
+        return Sensed(
+            velocity_mps=take("velocity", "velocity_difference"),
+            rotation=take("attitude", "nominal_model"),
+            executed=take("action", "nominal_model"),
+            nominal=Calibration(take("mass", "nominal_model"), take("thrust_scale", "nominal_model")),
+            wind_map_mass_kg=take("mass", "wind_map"),
+        )
+
+
+class Navigator:
+    """Reads the sensors through taps, plans, and returns the command for the actuators."""
+
+    def __init__(
+        self,
+        planner: MPPI,
+        observer: WindObserver | None,
+        field: DistanceField,
+        taps: Taps,
+        scenes: Sequence[str],
+        seed: int,
+        lanes: Tensor,
+        privileged_physics: bool,
+    ) -> None:
+        self._planner = planner
+        self._observer = observer
+        self._field = field
+        self._predictor_taps = taps.for_module("predictor")
+        self._planner_taps = taps.for_module("planner")
+        self._vehicle_taps = taps.for_module("vehicle")
+        self._scenes = tuple(scenes)
+        self._seed = seed
+        self._lanes = lanes
+        self._reads_physics = privileged_physics
+        self._wind_source = taps.bindings["wind"]
+        self._plan: Tensor | None = None
+        self._executed: Reading | None = None
+
+    def act(self, sensors: Sensors, step: int, running: Sequence[int]) -> Tensor:
+        """Return the command `[4, L]` that reaches the actuators; only `running` scenes plan."""
+        inputs = self._inputs(sensors, step)
+        hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+        if self._plan is None:
+            self._plan = self._planner.initial_plan(hover)
+        goal = self._planner_taps.deliver("goal", "goal_cost", sensors.readings["goal"], step)
+        goal = lanes_last(goal, self._lanes).float()
+
+        chunks = _chunks(running)
+        proposals = [self._propose(inputs, chunk, step) for chunk in chunks]
+        clearance = self._clearance(chunks, proposals, step)
+        command = self._planner.initial_plan(hover)[0]
+        for chunk, proposal in zip(chunks, proposals, strict=True):
+            plan = self._planner.decide(proposal, clearance[chunk], goal[:, chunk])
+            command[:, chunk] = plan[0]
+            self._plan[..., chunk] = shift(plan)
+        return self._actuate(command, step)
+
+    def _inputs(self, sensors: Sensors, step: int) -> PredictorInputs:
+        def take(channel: str, place: str) -> Tensor:
+            return self._predictor_taps.deliver(channel, place, sensors.readings[channel], step)
+
+        def lane(channel: str, place: str) -> Tensor:
+            return lanes_last(take(channel, place), self._lanes).float()[..., None]
+
+        state = initial_state(
+            {name: take(name, "initial_state") for name in STATE_CHANNELS}, self._lanes
+        )
+        wind = self._predictor_taps.deliver("wind", "wind_map", self._wind(sensors, step), step)
+        return PredictorInputs(
+            state=_float_column(state),
+            dynamics=Calibration(lane("mass", "dynamics"), lane("thrust_scale", "dynamics")),
+            trim=Calibration(lane("mass", "trim"), lane("thrust_scale", "trim")),
+            wind_map_mass_kg=lane("mass", "wind_map"),
+            wind_mps=lanes_last(wind, self._lanes).float()[..., None],
+            physics=_physics(lane("physics", "physics")) if self._reads_physics else None,
+        )
+
+    def _wind(self, sensors: Sensors, step: int) -> Reading:
+        if self._observer is None:
+            return {"true_wind": sensors.true_wind, "zero_wind": sensors.zero_wind}[
+                self._wind_source
+            ]
+        if self._executed is None:  # nothing has been commanded yet: the motors hover
+            blank = sensors.readings["mass"].value
+            self._executed = Reading(blank.new_zeros(len(blank), 4), "commanded_action", step)
+        return self._observer.observe(sensors, self._executed, step)
+
+    def _propose(self, inputs: PredictorInputs, chunk: list[int], step: int) -> Proposal:
+        assert self._plan is not None
+        noise = self._planner.sampler.noise([self._id(i) for i in chunk], self._seed, step)
+        return self._planner.propose(inputs.take(chunk), self._plan[..., chunk], noise)
+
+    def _id(self, lane: int) -> str:
+        return self._scenes[lane]
+
+    def _clearance(
+        self, chunks: list[list[int]], proposals: list[Proposal], step: int
+    ) -> Tensor:
+        """Query the clearance along all rollouts and deliver it for the whole block at once."""
+        first = proposals[0].rollout.positions
+        clearance = first.new_zeros(len(self._scenes), *first.shape[2:])
+        for chunk, proposal in zip(chunks, proposals, strict=True):
+            points = proposal.rollout.positions
+            values = self._field.select(chunk).query(points.flatten(2))
+            clearance[chunk] = values.view(points.shape[1:])
+        reading = Reading(clearance, "true_clearance", step)
+        return self._planner_taps.deliver("clearance", "risk_cost", reading, step)
+
+    def _actuate(self, command: Tensor, step: int) -> Tensor:
+        scenes = command[:, : len(self._scenes)].T.double()
+        self._executed = Reading(scenes, "commanded_action", step)
+        delivered = self._vehicle_taps.deliver("action", "actuators", self._executed, step)
+        return lanes_last(delivered, self._lanes)
+
+
+def _chunks(running: Sequence[int]) -> list[list[int]]:
+    """Split scenes into fours; the last four is filled up with its own first scene."""
+    groups = [list(running[i : i + CHUNK]) for i in range(0, len(running), CHUNK)]
+    return [group + group[:1] * (CHUNK - len(group)) for group in groups]
+
+
+def _float_column(state: State) -> State:
+    """Single precision, a candidate axis at the end, and attitudes that are rotations again.
+
+    A fault may have added noise to the attitude; a reading that is a rotation already comes out
+    of the projection changed by rounding only, so it is left alone.
+    """
+    narrow = state.to(torch.float32)
+    off = so3.compose(narrow.rotation.transpose(0, 1), narrow.rotation)
+    off = (off - torch.eye(3)[..., None]).abs().amax((0, 1)) > 1e-4
+    rotation = narrow.rotation
+    if off.any():
+        rotation = torch.where(off, so3.project(rotation), rotation)
+    return State(
+        narrow.position[..., None],
+        narrow.velocity[..., None],
+        rotation[..., None],
+        narrow.rate[..., None],
+    )
+
+
+def _physics(values: Tensor) -> Physics:
+    return Physics(
+        inertia_kgm2=values[0:3],
+        torque_scale=values[3],
+        motor_time_constant_s=values[4],
+        drag_kgps=values[5:8],
+        collective_thrust_n=values[8],
+    )

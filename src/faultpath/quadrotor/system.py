@@ -1,0 +1,177 @@
+"""The quadrotor as a system that can be audited."""
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from functools import cache, cached_property
+from importlib.resources import files
+
+import numpy as np
+import torch
+
+from faultpath.errors import UserError
+from faultpath.faults import FaultPreset
+from faultpath.interface import Interface, read_interface
+from faultpath.quadrotor.calibration import calibration
+from faultpath.quadrotor.navigator import Navigator, WindObserver
+from faultpath.quadrotor.options import Environment, PredictorName, QuadrotorOptions
+from faultpath.quadrotor.reconstruction import DisturbanceObserver
+from faultpath.quadrotor.scenes import DistanceField, Scene, SceneLibrary, floor_plan, load_library
+from faultpath.quadrotor.sensors import Sensors
+from faultpath.quadrotor.vehicle import CONTROL_DT_S
+from faultpath.quadrotor.wind import WIND_LEVELS
+from faultpath.quadrotor.world import CONTROL_STEPS, World
+from faultpath.taps import Taps
+from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, System, Variant
+
+PHYSICS_VERSION = 1
+"""Counted up when the plant, the planner or a module changes what a trial gives."""
+
+
+def create(**options: str) -> System:
+    """Build the quadrotor from options of the command line; `UserError` for a wrong one."""
+    torch.set_num_threads(1)  # a block is small: a second thread costs more than it brings
+    return Quadrotor(QuadrotorOptions.parse(**options))
+
+
+class Quadrotor(System):
+    """Flies a block of scenes with the modules under test behind taps."""
+
+    name = "quadrotor"
+    control_dt_s = CONTROL_DT_S
+    block_size = 20
+
+    def __init__(self, options: QuadrotorOptions) -> None:
+        self.options = options
+
+    @cached_property
+    def interface(self) -> Interface:
+        """See `System.interface`."""
+        return _interface()
+
+    @cached_property
+    def variants(self) -> Mapping[str, Variant]:
+        """Zero wind, observed wind and true wind, all with ground-truth clearance."""
+        return {variant.name: variant for variant in _variants(self.interface, self.options)}
+
+    @property
+    def fault_presets(self) -> Mapping[str, FaultPreset]:
+        """See `System.fault_presets`."""
+        return {"calibration": calibration}
+
+    def library(self, name: str) -> Library:
+        """See `System.library`."""
+        library = load_library(name)
+        self._scenes.update({scene.id: scene for scene in library.scenes})
+        refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
+        return Library(library.name, refs, library.content_hash)
+
+    def floor_plan(self, scene: str) -> FloorPlan:
+        """See `System.floor_plan`."""
+        return floor_plan(self._scene(scene), free_space=self._free_space)
+
+    def fingerprint(self) -> str:
+        """See `System.fingerprint`."""
+        content = {
+            "physics": PHYSICS_VERSION,
+            "options": self.options.model_dump(mode="json"),
+            "wind": repr(WIND_LEVELS[self.options.wind]),
+        }
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+
+    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+        """See `System.run`; at most 32 scenes."""
+        records = [self._scene(scene) for scene in scenes]
+        world = World(records, self.options.wind, self._free_space)
+        navigator = self._navigator(variant, records, taps, seed, world)
+        trace = [world.state.position]
+        for step in range(CONTROL_STEPS):
+            running = world.progress.running[: world.count]
+            taps.set_active(running.numpy())
+            command = navigator.act(Sensors.read(world), step, running.nonzero()[:, 0].tolist())
+            world.advance(command)
+            trace.append(world.state.position)
+            if not world.progress.running[: world.count].any():
+                break
+        noise = navigator.noise_hashes()
+        return _outcomes(scenes, world, torch.stack(trace), taps, noise)
+
+    def _navigator(
+        self, variant: str, scenes: list[Scene], taps: Taps, seed: int, world: World
+    ) -> Navigator:
+        consumers = self.variants[variant].consumers
+        observer = None
+        if any(name.startswith("observer.") for name in consumers):
+            observer = WindObserver(
+                DisturbanceObserver(), taps.for_module("observer"), world.lanes
+            )
+        return Navigator(
+            planner=self.options.build_planner(),
+            observer=observer,
+            field=_field(tuple(scenes), self._free_space),
+            taps=taps,
+            scenes=[scene.id for scene in scenes],
+            seed=seed,
+            lanes=world.lanes,
+            privileged_physics="predictor.physics" in consumers,
+        )
+
+    @property
+    def _free_space(self) -> bool:
+        return self.options.environment is Environment.FREE_SPACE
+
+    @cached_property
+    def _scenes(self) -> dict[str, Scene]:
+        return {}
+
+    def _scene(self, scene: str) -> Scene:
+        if scene not in self._scenes:
+            self.library(scene.rpartition("/")[0])
+        if scene not in self._scenes:
+            raise UserError(f"there is no scene '{scene}' in its library; list them with "
+                            "`faultpath scenes list`.")
+        return self._scenes[scene]
+
+
+@cache
+def _interface() -> Interface:
+    return read_interface(files("faultpath.quadrotor").joinpath("interface.yaml").read_text())
+
+
+@cache
+def _field(scenes: tuple[Scene, ...], free_space: bool) -> DistanceField:
+    return DistanceField.bake(scenes, free_space)
+
+
+def _variants(interface: Interface, options: QuadrotorOptions) -> list[Variant]:
+    """A variant reads everything but the observer's taps, unless the observer feeds it."""
+    every = {consumer for channel in interface.channels for consumer in channel.consumers}
+    privileged = {"true_clearance"}
+    if options.predictor is PredictorName.TRUE_PARAMETER:
+        privileged.add("true_physics")
+    else:
+        every.discard("predictor.physics")
+    plain = frozenset(name for name in every if not name.startswith("observer."))
+    return [
+        Variant(
+            "zero-wind",
+            "The predictor's wind input is held at zero.",
+            plain,
+            {"wind": "zero_wind"},
+            frozenset(privileged),
+        ),
+        Variant(
+            "observer",
+            "The disturbance observer supplies the wind.",
+            frozenset(every),
+            {"wind": "observed_wind"},
+            frozenset(privileged),
+        ),
+        Variant(
+            "true-wind",
+            "The simulator's wind at this moment is supplied: a privileged reference.",
+            plain,
+            {"wind": "true_wind"},
+            frozenset(privileged | {"true_wind"}),
+        ),
+    ]

@@ -1,0 +1,148 @@
+"""The simulated world of a block of scenes: vehicles, wind, contact and the ends of trials."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor import wind as wind_model
+from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.scenes import Geometry, Scene
+from faultpath.quadrotor.state import State, padded_lanes
+from faultpath.quadrotor.vehicle import (
+    COLLISION_RADIUS_M,
+    CONTROL_DT_S,
+    CONTROL_RATE_HZ,
+    PLANT_RATE_HZ,
+    STEPS_PER_CONTROL,
+    Vehicle,
+)
+
+GOAL_RADIUS_M = 0.5  # paper, Section IV-B
+TIME_LIMIT_S = 12.0  # paper, Section IV-B
+CONTROL_STEPS = round(TIME_LIMIT_S * CONTROL_RATE_HZ)
+CONTACT_EVERY = 5
+"""Plant steps between contact checks: 10 ms, 3.4 cm at the planner's top speed."""
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where each lane's trial stands, `[L]`; a lane that is no longer running stays as it ended."""
+
+    running: Tensor
+    crashed: Tensor
+    succeeded: Tensor
+    time_s: Tensor
+    terminal_distance_m: Tensor
+    min_clearance_m: Tensor
+
+
+class World:
+    """Plant, wind and geometry of up to 32 scenes, padded to whole lanes.
+
+    Evaluation code: it knows the truth and passes through no tap. What modules get of it are the
+    readings that the navigator takes from `state`, `wind_mps` and `vehicle`.
+    """
+
+    def __init__(self, scenes: Sequence[Scene], level: str, free_space: bool) -> None:
+        self.lanes = padded_lanes(len(scenes))
+        self.count = len(scenes)
+        lanes = [scenes[i] for i in self.lanes.tolist()]
+        self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes])
+        self._geometry = Geometry.stack(lanes, free_space)
+        self._winds = _wind_series(scenes, level)[..., self.lanes]
+        self.goal = _points([scene.goal_m for scene in lanes])
+        self._plant = Plant(self.vehicle)
+        start = State.hover(
+            _points([scene.start_m for scene in lanes]),
+            torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
+        )
+        self.plant_state = self._plant.start(start)
+        self.step = 0
+        self.progress = self._begin()
+        self.initial_hashes = tuple(
+            _hash(_row(start, i), scene.content_hash) for i, scene in enumerate(scenes)
+        )
+        self.wind_hashes = tuple(_hash(self._winds[..., i].numpy()) for i in range(self.count))
+
+    @property
+    def state(self) -> State:
+        """True state of every lane."""
+        return self.plant_state.state
+
+    @property
+    def wind_mps(self) -> Tensor:
+        """Wind at this moment, `[3, L]`, m/s, world frame."""
+        return self._winds[self.step * STEPS_PER_CONTROL]
+
+    def advance(self, command: Tensor) -> None:
+        """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
+        first = self.step * STEPS_PER_CONTROL
+        state = self.plant_state
+        progress = self.progress
+        for block in range(0, STEPS_PER_CONTROL, CONTACT_EVERY):
+            at = first + block
+            state = self._plant.advance(state, command, self._winds[at : at + CONTACT_EVERY])
+            progress = self._contact(progress, state, (at + CONTACT_EVERY) / PLANT_RATE_HZ)
+        self.plant_state = state
+        self.step += 1
+        self.progress = _arrival(progress)
+
+    def _begin(self) -> Progress:
+        none = torch.zeros_like(self.lanes, dtype=torch.bool)
+        zero = torch.zeros(len(self.lanes), dtype=torch.float64)
+        return Progress(
+            running=~none,
+            crashed=none,
+            succeeded=none,
+            time_s=zero,
+            terminal_distance_m=(self.state.position - self.goal).norm(dim=0),
+            min_clearance_m=self._clearance(self.state),
+        )
+
+    def _clearance(self, state: State) -> Tensor:
+        return self._geometry.distance(state.position) - COLLISION_RADIUS_M
+
+    def _contact(self, now: Progress, state: PlantState, time_s: float) -> Progress:
+        clearance = self._clearance(state.state)
+        hit = now.running & (clearance <= 0)
+        distance = (state.state.position - self.goal).norm(dim=0)
+        return replace(
+            now,
+            running=now.running & ~hit,
+            crashed=now.crashed | hit,
+            time_s=torch.where(now.running, time_s, now.time_s),
+            terminal_distance_m=torch.where(now.running, distance, now.terminal_distance_m),
+            min_clearance_m=torch.where(
+                now.running, torch.minimum(now.min_clearance_m, clearance), now.min_clearance_m
+            ),
+        )
+
+
+def _arrival(now: Progress) -> Progress:
+    """Arrival is looked for once a control step, at the rate at which the planner acts."""
+    there = now.running & (now.terminal_distance_m <= GOAL_RADIUS_M)
+    return replace(now, running=now.running & ~there, succeeded=now.succeeded | there)
+
+
+def _wind_series(scenes: Sequence[Scene], level: str) -> Tensor:
+    duration = TIME_LIMIT_S + CONTROL_DT_S
+    series = [wind_model.series(level, scene.id, duration, PLANT_RATE_HZ) for scene in scenes]
+    return torch.from_numpy(np.stack(series, axis=-1))
+
+
+def _points(points: Sequence[Sequence[float]]) -> Tensor:
+    return torch.tensor(points, dtype=torch.float64).T.contiguous()
+
+
+def _row(state: State, lane: int) -> np.ndarray:
+    parts = (state.position, state.velocity, state.rotation, state.rate)
+    return torch.cat([part[..., lane].reshape(-1) for part in parts]).numpy()
+
+
+def _hash(array: np.ndarray, salt: str = "") -> str:
+    content = np.ascontiguousarray(array).tobytes() + salt.encode()
+    return hashlib.sha256(content).hexdigest()[:16]

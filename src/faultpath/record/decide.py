@@ -1,0 +1,170 @@
+"""From the outcome table to the decision record."""
+
+from collections.abc import Sequence
+from statistics import median
+
+import numpy as np
+
+from faultpath.record.model import (
+    Cell,
+    DecisionRecord,
+    Effect,
+    Path,
+    PathBreakEven,
+    Question,
+    Reversal,
+)
+from faultpath.record.words import CORRECT, SHARED, effect_words, reversal_words, verdict
+from faultpath.statistics import (
+    Estimate,
+    Resamples,
+    break_even,
+    detectable,
+    discordant_by_seed,
+    mcnemar_mid_p,
+    mean_effect,
+    median_effect,
+    reversal,
+    success_effect,
+    success_test,
+)
+from faultpath.statistics import Effect as Draws
+from faultpath.trials.outcome import Status
+from faultpath.trials.pairing import Floats, Pairs, Side, pair
+from faultpath.trials.table import OutcomeTable
+
+CURVE_POINTS = 41
+
+
+def decide(
+    question: Question, paths: Sequence[Path], table: OutcomeTable, resamples_seed: int = 0
+) -> DecisionRecord:
+    """Return the decision record of an audit.
+
+    Scenes in which a pair is void on any path are left out of all of them, so that every effect
+    speaks of the same scenes and shares one set of bootstrap resamples. `PairingRefused` when arms
+    did not meet the same conditions; `ValueError` when no scene is left.
+    """
+    pairs = _common({path.name: _pair(question, path.name, table) for path in paths})
+    n_scenes = len(next(iter(pairs.values())).scenes)
+    if n_scenes == 0:
+        raise ValueError("every pair is void: no scene is left to compare")
+    resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
+    draws = {
+        name: success_effect(each.first.success, each.second.success, resamples)
+        for name, each in pairs.items()
+    }
+    effects = {
+        name: _effect(question, name, each, draws[name], resamples) for name, each in pairs.items()
+    }
+    breaks = [_break_even(name, draws) for name in draws if name != CORRECT]
+    turns = [
+        _reversal(question, effects[name], effects[SHARED], draws[name], draws[SHARED])
+        for name in effects
+        if name not in (CORRECT, SHARED) and SHARED in effects
+    ]
+    ordered = tuple(effects.values())
+    return DecisionRecord(
+        question=question,
+        paths=tuple(paths),
+        cells=tuple(
+            _cell(table, variant, path.name)
+            for path in paths
+            for variant in (question.baseline, question.repair)
+        ),
+        effects=ordered,
+        break_even=tuple(breaks),
+        reversals=tuple(turns),
+        verdict=verdict(question, paths, ordered, breaks, turns),
+    )
+
+
+def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
+    return pair(table, Side(question.repair, path), Side(question.baseline, path))
+
+
+def _common(pairs: dict[str, Pairs]) -> dict[str, Pairs]:
+    kept = set.intersection(*(set(each.scenes) for each in pairs.values()))
+    return {name: each.only(tuple(kept)) for name, each in pairs.items()}
+
+
+def _effect(
+    question: Question, path: str, pairs: Pairs, draws: Draws, resamples: Resamples
+) -> Effect:
+    first, second = pairs.first, pairs.second
+    counts = discordant_by_seed(first.success, second.success).per_seed
+    test = success_test(first.success, second.success)
+    estimate = draws.estimate()
+    joint = first.success & second.success
+    # Both the paper's test and the interval have to agree before a difference counts as found.
+    detected = estimate.detected_sign != 0 and test.rejects()
+    effect = Effect(
+        path=path,
+        success=estimate,
+        pairs=first.success.size,
+        void_pairs=pairs.void,
+        wins=tuple(count.first_only for count in counts),
+        losses=tuple(count.second_only for count in counts),
+        test=test.name,
+        p_value=test.p_value,
+        mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
+        minimum_detectable_pp=detectable(first.success, second.success).value,
+        detected=detected,
+        time_s=median_effect(first.time_s, second.time_s, joint, resamples).estimate()
+        if joint.any()
+        else None,
+        joint_successes=int(joint.sum()),
+        terminal_distance_m=_mean(first.terminal_distance_m, second.terminal_distance_m, resamples),
+        min_clearance_m=_mean(first.min_clearance_m, second.min_clearance_m, resamples),
+        words="",
+    )
+    return effect.model_copy(update={"words": effect_words(question, effect)})
+
+
+def _mean(first: Floats | None, second: Floats | None, resamples: Resamples) -> Estimate | None:
+    if first is None or second is None:
+        return None
+    return mean_effect(first, second, resamples, "m").estimate()
+
+
+def _break_even(path: str, draws: dict[str, Draws]) -> PathBreakEven:
+    correct, faulty = draws[CORRECT], draws[path]
+    curve: list[tuple[float, float, float, float]] = []
+    for p in np.linspace(0, 1, CURVE_POINTS).tolist():
+        low, high = np.quantile((1 - p) * correct.draws + p * faulty.draws, [0.025, 0.975])
+        curve.append((p, (1 - p) * correct.value + p * faulty.value, float(low), float(high)))
+    return PathBreakEven(path=path, result=break_even(correct, faulty), curve=tuple(curve))
+
+
+def _reversal(
+    question: Question, isolated: Effect, shared: Effect, a: Draws, b: Draws
+) -> Reversal:
+    result = reversal(a, b)
+    return Reversal(
+        isolated=isolated.path,
+        shared=shared.path,
+        change=result.change,
+        reversed=result.detected,
+        words=reversal_words(question, isolated, shared, result.detected),
+    )
+
+
+def _cell(table: OutcomeTable, variant: str, path: str) -> Cell:
+    rows = [row for seed in table.seeds(variant, path) for row in table.arm(variant, path, seed)]
+    outcomes = [row.outcome for row in rows]
+    count = {status: sum(o.status is status for o in outcomes) for status in Status}
+    ran = len(outcomes) - count[Status.FAILED]
+    times = [o.time_s for o in outcomes if o.status is Status.SUCCESS]
+    return Cell(
+        variant=variant,
+        path=path,
+        trials=len(outcomes),
+        success=count[Status.SUCCESS],
+        crash=count[Status.CRASH],
+        timeout=count[Status.TIMEOUT],
+        failed=count[Status.FAILED],
+        success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
+        median_time_s=median(times) if times else None,
+        struck_trials=sum(o.struck_steps > 0 for o in outcomes),
+        altered_trials=sum(o.altered_steps > 0 for o in outcomes),
+    )

@@ -1,0 +1,131 @@
+"""The record's sentences, made from its numbers alone."""
+
+from collections.abc import Sequence
+
+from faultpath.record.model import Effect, Path, PathBreakEven, Question, Reversal, Verdict
+
+CORRECT = "correct"
+SHARED = "shared"
+
+
+def effect_words(question: Question, effect: Effect) -> str:
+    """Say what one effect shows, with what could have been detected where nothing was."""
+    where = path_words(effect.path)
+    shown = effect.success.text()
+    if effect.detected:
+        better = question.repair if effect.success.value > 0 else question.baseline
+        return f"{where}, {better} succeeds more often ({shown})."
+    if effect.minimum_detectable_pp is None:
+        return f"{where}, no difference is detected ({shown})."
+    return (
+        f"{where}, no difference is detected ({shown}); one of "
+        f"{effect.minimum_detectable_pp:.0f} pp would have been, four times in five."
+    )
+
+
+def path_words(path: str) -> str:
+    """Return a path as the beginning of a sentence."""
+    if path == CORRECT:
+        return "Under correct inputs"
+    return "Under the shared fault" if path == SHARED else f"Under the fault at the {path} only"
+
+
+def reversal_words(question: Question, isolated: Effect, shared: Effect, turned: bool) -> str:
+    """Say whether sharing the fault turns the verdict round."""
+    change = f"{isolated.success.value:+.1f} pp to {shared.success.value:+.1f} pp"
+    if turned:
+        first, second = (question.repair, question.baseline)
+        if isolated.success.value < 0:
+            first, second = second, first
+        return (
+            f"Sharing the fault turns the verdict round: {first} is ahead when only the "
+            f"{isolated.path} is struck, {second} when the fault is shared ({change})."
+        )
+    return (
+        f"Sharing the fault does not turn the verdict on the {isolated.path}-only fault round "
+        f"({change})."
+    )
+
+
+def verdict(
+    question: Question,
+    paths: Sequence[Path],
+    effects: Sequence[Effect],
+    break_even: Sequence[PathBreakEven],
+    reversals: Sequence[Reversal],
+) -> Verdict:
+    """Put the answer into words."""
+    del paths
+    sentences = [effect.words for effect in effects]
+    if break_even:
+        clauses = [f"{item.result.words} {_under(item.path)}" for item in break_even]
+        sentences.append(f"{question.repair} is {'; '.join(clauses)}.")
+    sentences += [item.words for item in reversals]
+    return Verdict(
+        headline=_headline(question, effects, reversals),
+        sentences=tuple(sentences),
+        would_change=tuple(_would_change(question, effects, break_even)),
+    )
+
+
+def _headline(
+    question: Question, effects: Sequence[Effect], reversals: Sequence[Reversal]
+) -> str:
+    repair, baseline = question.repair, question.baseline
+    turned = [item.isolated for item in reversals if item.reversed]
+    if turned:
+        return (
+            f"Do not choose by the isolated fault: at the {' and the '.join(turned)} alone and "
+            f"shared, it favours opposite sides of {repair} against {baseline}."
+        )
+    better = [e for e in effects if e.detected and e.success.value > 0]
+    worse = [e for e in effects if e.detected and e.success.value < 0]
+    if better and not worse:
+        rest = len(effects) - len(better)
+        everywhere = "on every path" if not rest else f"on {len(better)} of {len(effects)} paths"
+        tail = "" if not rest else ", and on no path is a loss detected"
+        return f"{repair} is favoured over {baseline} {everywhere}{tail}."
+    if worse and not better:
+        return f"{repair} is not favoured: it loses to {baseline} {_list_paths(worse)}."
+    if better and worse:
+        return (
+            f"It depends on the fault's path: {repair} beats {baseline} {_list_paths(better)} "
+            f"and loses {_list_paths(worse)}."
+        )
+    return f"No difference between {repair} and {baseline} is detected on any path."
+
+
+def _list_paths(effects: Sequence[Effect]) -> str:
+    return ", ".join(_under(effect.path) for effect in effects)
+
+
+def _under(path: str) -> str:
+    if path == CORRECT:
+        return "under correct inputs"
+    return "under the shared fault" if path == SHARED else f"under {path}-only corruption"
+
+
+def _would_change(
+    question: Question, effects: Sequence[Effect], break_even: Sequence[PathBreakEven]
+) -> list[str]:
+    lines = [
+        f"A true difference below {effect.minimum_detectable_pp:.0f} pp {_under(effect.path)}: "
+        f"{question.n_scenes} scenes cannot tell it from none."
+        for effect in effects
+        if not effect.detected and effect.minimum_detectable_pp is not None
+    ]
+    for item in break_even:
+        shares = item.result.shares
+        if shares is None:
+            continue
+        firm = getattr(shares, item.result.direction)
+        if firm < 0.975:
+            lines.append(
+                f"Other scenes: in {100 * (1 - firm):.0f} % of the resampled libraries the "
+                f"repair is not '{item.result.direction}' favoured {_under(item.path)}."
+            )
+    lines.append(
+        "Another size or sign of the fault, another library or another wiring of the system: the "
+        "record speaks of the one that was run."
+    )
+    return lines
