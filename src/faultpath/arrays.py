@@ -1,0 +1,143 @@
+"""What the core asks of an array, NumPy and torch alike, without importing torch.
+
+Readings carry the scene batch on their first axis, `[B, ...]`. Nothing here reads a value back
+from an accelerator except `to_numpy`, which is meant for the end of a run.
+"""
+
+from functools import lru_cache
+from typing import Any, TypeAlias, cast
+
+import array_api_compat
+import numpy as np
+from numpy.typing import NDArray
+
+Array: TypeAlias = Any
+"""A NumPy array, or an array of any other namespace that `array_api_compat` knows."""
+
+HostArray: TypeAlias = NDArray[Any]
+"""A NumPy array."""
+
+Constant: TypeAlias = float | tuple[float, ...] | tuple[tuple[float, ...], ...]
+"""A number, or numbers laid along the last axes of a reading."""
+
+_COMPAT = cast(Any, array_api_compat)
+"""Its annotations name array libraries that are not installed."""
+
+_is_torch: Any = _COMPAT.is_torch_array
+_NAMESPACES: dict[type, Any] = {}
+
+
+def namespace(array: Array) -> Any:
+    """Return the array-API namespace of `array`, remembered by type (a look-up costs 2 us)."""
+    kind = cast("type[Any]", type(array))
+    found = _NAMESPACES.get(kind)
+    if found is None:
+        found = _NAMESPACES[kind] = _COMPAT.array_namespace(array)
+    return found
+
+
+def copy(array: Array) -> Array:
+    """Return a copy that no later write to `array` can reach."""
+    return namespace(array).asarray(array, copy=True)
+
+
+def place(host: HostArray, reading: Array, dtype: Any = None) -> Array:
+    """Return `host` in the namespace and on the device of `reading`, as `dtype` where one is given.
+
+    On an accelerator the copy is queued, so the host does not wait for the device.
+    """
+    if isinstance(reading, np.ndarray):
+        return host if dtype is None else host.astype(dtype, copy=False)
+    xp = namespace(reading)
+    array = xp.asarray(host, dtype=dtype)
+    if _is_torch(reading):
+        return array.to(reading.device, non_blocking=True)
+    return _COMPAT.to_device(array, _COMPAT.device(reading))
+
+
+def like(host: HostArray, reading: Array) -> Array:
+    """Return `host` in the namespace, on the device and with the dtype of `reading`."""
+    return place(host, reading, reading.dtype)
+
+
+@lru_cache(maxsize=1024)
+def _laid(value: Any, xp: Any, dtype: Any, device: Any) -> Array:
+    return xp.asarray(value, dtype=dtype, device=device)
+
+
+def constant(value: Constant, reading: Array) -> Any:
+    """Return `value` ready to combine with `reading`; numbers in a tuple cross over only once."""
+    if not isinstance(value, tuple):
+        return value
+    return _laid(value, namespace(reading), reading.dtype, _COMPAT.device(reading))
+
+
+def filled(value: Constant, reading: Array) -> Array:
+    """Return a new array like `reading` that holds `value` for every scene."""
+    xp = namespace(reading)
+    if not isinstance(value, tuple):
+        return xp.full_like(reading, value)
+    return copy(xp.broadcast_to(constant(value, reading), reading.shape))
+
+
+def rows(per_scene: Array, reading: Array) -> Array:
+    """Return `per_scene` `[B]` with trailing axes of length one, to combine with `reading`."""
+    if reading.ndim == 1:
+        return per_scene
+    return namespace(per_scene).reshape(per_scene, (-1,) + (1,) * (reading.ndim - 1))
+
+
+def pick(condition: Any, yes: Array, no: Array) -> Array:
+    """Return, scene by scene, `yes` where `condition` holds and `no` elsewhere.
+
+    `condition` is a bool for all scenes, and one of the two arrays comes back as it is, or a
+    boolean array `[B]`.
+    """
+    if isinstance(condition, bool):
+        return yes if condition else no
+    return namespace(yes).where(rows(condition, yes), yes, no)
+
+
+def differs(value: Array, reading: Array) -> Array:
+    """Return `[B]`: whether any number of a scene differs. A NaN equals a NaN."""
+    unequal = value != reading
+    if namespace(reading).isdtype(reading.dtype, "real floating"):
+        unequal = unequal & ((value == value) | (reading == reading))
+    if unequal.ndim == 1:
+        return unequal
+    xp = namespace(unequal)
+    return xp.any(xp.reshape(unequal, (unequal.shape[0], -1)), axis=1)
+
+
+def is_zero(value: Constant) -> bool:
+    """Return whether every number of `value` is zero."""
+    return not np.any(np.asarray(value))
+
+
+def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
+    """Return what is wrong with laying `value` on one scene's reading of `shape`, or `None`."""
+    given = np.shape(np.asarray(value, dtype=np.float64))
+    if not given or (len(given) <= len(shape) and shape[len(shape) - len(given) :] == given):
+        return None
+    return f"{name} has shape {list(given)} and the reading of one scene has {list(shape)}"
+
+
+def to_numpy(array: Any) -> HostArray:
+    """Return `array` as NumPy; this waits for the device that holds it."""
+    if _is_torch(array):
+        return np.asarray(array.detach().cpu())
+    return np.asarray(array)
+
+
+def together(one: Any, other: Any) -> tuple[Any, Any]:
+    """Return two masks or counts on one device: off the host where either is off it.
+
+    A bool or an int combines with anything and is left alone.
+    """
+    if isinstance(one, int) or isinstance(other, int):
+        return one, other
+    if namespace(one) is namespace(other) and one.device == other.device:
+        return one, other
+    if isinstance(one, np.ndarray) or (str(one.device) == "cpu" and _is_torch(other)):
+        return place(to_numpy(one), other), other
+    return one, place(to_numpy(other), one)

@@ -1,0 +1,40 @@
+"""What can be done to a reading: interventions, and faults that say where and when."""
+
+from faultpath.faults.base import Intervention, Moment
+from faultpath.faults.draws import Draws
+from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault, fault_from_json
+from faultpath.faults.noise import Drift, Noise
+from faultpath.faults.probes import Replace, Shuffle
+from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
+from faultpath.faults.sequence import Sequence
+from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
+from faultpath.faults.values import Erase, Offset, Quantise, Scale, UniformScale
+from faultpath.faults.window import Window
+
+__all__ = [
+    "ALL",
+    "INTERVENTIONS",
+    "AnyFault",
+    "AnyIntervention",
+    "Coupled",
+    "Delay",
+    "Draws",
+    "Drift",
+    "Dropout",
+    "Erase",
+    "Fault",
+    "Freeze",
+    "Hold",
+    "Intervention",
+    "Moment",
+    "Noise",
+    "Offset",
+    "Quantise",
+    "Replace",
+    "Scale",
+    "Sequence",
+    "Shuffle",
+    "UniformScale",
+    "Window",
+    "fault_from_json",
+]

@@ -1,0 +1,80 @@
+"""What is done to a reading: the shape that every intervention has."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self, TypeAlias
+
+from pydantic import BaseModel, ConfigDict
+
+from faultpath.arrays import Array, Constant
+from faultpath.faults.draws import Draws
+from faultpath.interface import Channel
+
+Memory: TypeAlias = Any
+"""What an intervention carries from step to step: an array, a tuple or `None`; never written to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """When an intervention is asked for its value."""
+
+    step: int
+    """Control step, from 0."""
+    elapsed: Any
+    """Steps since the onset, negative before it: an int for all scenes, or an int array `[B]`."""
+    dt_s: float
+    """Length of a control step, s."""
+    draws: Draws
+
+    def part(self, index: int) -> "Moment":
+        """Return the same moment with the independent draws of one part."""
+        return replace(self, draws=self.draws.part(index))
+
+    @property
+    def before(self) -> bool:
+        """Whether the onset lies ahead in every scene, so far as the host can tell."""
+        return isinstance(self.elapsed, int) and self.elapsed < 0
+
+
+class Intervention(BaseModel, ABC):
+    """One behaviour, pure and batched over scenes.
+
+    A reading is an array `[B, ...]` of NumPy, torch or any array-API namespace; the value has its
+    shape, dtype and device. A step costs no host wait on an accelerator. Neither the reading nor
+    the memory is written to. `apply` is called at every delivery from the first on, also before
+    the onset, so that a delay has a past to draw on; the tap takes the value within the window.
+
+    A subclass has a literal `kind`, states its fields, and is named once in `registry.py`.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    value_field: ClassVar[str | None] = None
+    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`; `None`: KIND stands alone."""
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the memory before the first `apply`, at the first delivery."""
+        return None
+
+    @abstractmethod
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `(value, memory)`: what the consumer would get, and what to carry on."""
+
+    @abstractmethod
+    def words(self) -> str:
+        """Return what is done, in a few words."""
+
+    def resolved(self, channel: Channel) -> Self:
+        """Return the intervention with what it takes from the channel's declaration filled in."""
+        return self
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Return why it cannot act on one scene's reading of `shape`, or `None`."""
+        return None
+
+
+def number(value: Constant) -> str:
+    """Return a number or nested tuple of numbers in short form."""
+    if isinstance(value, tuple):
+        return "(" + ", ".join(number(part) for part in value) + ")"
+    return f"{value:g}"

@@ -1,0 +1,214 @@
+"""A fault: a channel, the consumers that it strikes, what is done to them, and when."""
+
+from collections.abc import Collection, Mapping
+from typing import Annotated, Literal, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
+
+from faultpath.errors import UserError
+from faultpath.faults.registry import AnyIntervention
+from faultpath.faults.window import Window
+from faultpath.interface import Interface, module_of, modules
+from faultpath.interface.words import listed, unknown
+
+ALL = "*"
+"""Every consumer of the channel: the fault is shared."""
+
+
+def _sorted(steps: Mapping[str, int]) -> Mapping[str, int]:
+    return dict(sorted(steps.items()))
+
+
+Onset: TypeAlias = Annotated[int, Field(ge=0)]
+Duration: TypeAlias = Annotated[int, Field(ge=1)]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Fault(_Frozen):
+    """One intervention on one channel, at some or all of its consumers, for some time.
+
+    `isolated` and `shared` are the same fault with two values of `consumers`. During recovery the
+    value returns linearly to the reading, number by number.
+    """
+
+    kind: Literal["fault"] = "fault"
+    channel: str
+    intervention: AnyIntervention
+    consumers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
+    """Consumers (`module.place`), whole modules, or `*` for everyone who reads the channel."""
+    onset_step: Onset | Annotated[Mapping[str, Onset], AfterValidator(_sorted)] = 0
+    """First step in force; a mapping gives each scene id its own."""
+    duration_steps: Duration | Annotated[Mapping[str, Duration], AfterValidator(_sorted)] | None = (
+        None
+    )
+    """Steps in force; `None`: until the end."""
+    recovery_steps: int = Field(default=0, ge=0)
+    """Steps of linear return to the clean reading after `duration_steps`."""
+    cause: str | None = None
+    """Faults of one cause draw the same random numbers; `None`: the channel and the kind."""
+
+    def __hash__(self) -> int:
+        """Hash as JSON, since a mapping of scenes has no hash."""
+        return hash(self.model_dump_json())
+
+    @property
+    def drawn_from(self) -> str:
+        """The cause that addresses the random numbers."""
+        return self.cause or f"{self.channel}:{self.intervention.kind}"
+
+    def striking(self, *names: str) -> Self:
+        """Return the same fault at other consumers: `module.place`, modules, or `*`."""
+        return self.model_copy(update={"consumers": names or (ALL,)})
+
+    def validate_against(self, interface: Interface) -> None:
+        """Raise `UserError` unless the fault can act on `interface`."""
+        channel = interface.channel(self.channel)
+        for name in self.consumers:
+            if not _matching(name, channel.consumers):
+                raise UserError(_no_reader(interface, (self.channel,), name))
+        shape = interface.source(channel.sources[0]).shape
+        wrong = self.intervention.misfit(shape)
+        if wrong:
+            raise UserError(
+                f"channel '{self.channel}': {self.intervention.kind} does not fit: {wrong}"
+            )
+
+    def resolved(
+        self, interface: Interface, present: Collection[str] | None = None
+    ) -> tuple["Fault", ...]:
+        """Return the fault with every consumer spelled out and defaults filled in.
+
+        Consumers that are not `present` in a variant are left out; the result is empty when none is
+        left, that is, when the fault cannot reach the variant. Raises `UserError` as
+        `validate_against`.
+        """
+        self.validate_against(interface)
+        return self._resolved(interface, present)
+
+    def _resolved(
+        self, interface: Interface, present: Collection[str] | None
+    ) -> tuple["Fault", ...]:
+        channel = interface.channel(self.channel)
+        struck = tuple(
+            consumer
+            for consumer in channel.consumers
+            if any(_matching(name, (consumer,)) for name in self.consumers)
+            and (present is None or consumer in present)
+        )
+        intervention = self.intervention.resolved(channel)
+        update = {"consumers": struck, "intervention": intervention, "cause": self.drawn_from}
+        return (self.model_copy(update=update),) if struck else ()
+
+    def window(self, scenes: tuple[str, ...]) -> Window:
+        """Return when the fault is in force in `scenes`; `UserError` for one without an onset."""
+        onset, duration = self.onset_step, self.duration_steps
+        if isinstance(onset, int) and (duration is None or isinstance(duration, int)):
+            end = None if duration is None else onset + duration
+            return Window(onset, end, self.recovery_steps)
+        begins = self._aligned("onset_step", onset, scenes)
+        if duration is None:
+            return Window(begins, None, self.recovery_steps)
+        lasts = self._aligned("duration_steps", duration, scenes)
+        return Window(begins, begins + lasts, self.recovery_steps)
+
+    def _aligned(
+        self, what: str, steps: int | Mapping[str, int], scenes: tuple[str, ...]
+    ) -> NDArray[np.int64]:
+        if isinstance(steps, int):
+            return np.full(len(scenes), steps, dtype=np.int64)
+        missing = [scene for scene in scenes if scene not in steps]
+        if missing:
+            raise UserError(
+                f"fault on channel '{self.channel}': {what} gives no step for scene "
+                f"'{missing[0]}'; name every scene that runs"
+            )
+        return np.array([steps[scene] for scene in scenes], dtype=np.int64)
+
+    def describe(self) -> str:
+        """Return the fault in a few words."""
+        return f"{self.channel} {self.intervention.words()} at {_at(self.consumers)}{self._when()}"
+
+    def _when(self) -> str:
+        onset, duration = self.onset_step, self.duration_steps
+        words = ""
+        if not isinstance(onset, int):
+            words = " from a step of each scene's own"
+        elif onset:
+            words = f" from step {onset}"
+        if isinstance(duration, int):
+            words += f" for {duration} steps"
+        elif duration is not None:
+            words += " for a time of each scene's own"
+        return words + (f", recovering over {self.recovery_steps}" if self.recovery_steps else "")
+
+
+class Coupled(_Frozen):
+    """Faults on several channels with one cause, for instance a calibration error.
+
+    They draw the same random numbers. A name in `consumers` needs to read only one of the channels.
+    """
+
+    kind: Literal["coupled"] = "coupled"
+    name: str
+    faults: tuple[Fault, ...] = Field(min_length=1)
+
+    def striking(self, *names: str) -> Self:
+        """Return the same faults at other consumers: `module.place`, modules, or `*`."""
+        return self.model_copy(update={"faults": tuple(f.striking(*names) for f in self.faults)})
+
+    def validate_against(self, interface: Interface) -> None:
+        """Raise `UserError` unless the faults can act on `interface`."""
+        readers = {c for f in self.faults for c in interface.channel(f.channel).consumers}
+        for fault in self.faults:
+            for name in fault.consumers:
+                if not _matching(name, readers):
+                    channels = tuple(f.channel for f in self.faults)
+                    raise UserError(_no_reader(interface, channels, name))
+            fault.striking(ALL).validate_against(interface)
+
+    def resolved(
+        self, interface: Interface, present: Collection[str] | None = None
+    ) -> tuple[Fault, ...]:
+        """Return the faults as `Fault.resolved` does, without those that strike nobody."""
+        self.validate_against(interface)
+        shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
+        return tuple(found for f in shared for found in f._resolved(interface, present))  # pyright: ignore[reportPrivateUsage]
+
+    def describe(self) -> str:
+        """Return the faults in a few words."""
+        return f"{self.name}: " + "; ".join(fault.describe() for fault in self.faults)
+
+
+AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
+"""A fault as arms carry it, told apart in JSON by its `kind`."""
+
+_ADAPTER: TypeAdapter[Fault | Coupled] = TypeAdapter(AnyFault)
+
+
+def fault_from_json(text: str | bytes) -> Fault | Coupled:
+    """Return the fault that `model_dump_json` wrote; raises `pydantic.ValidationError`."""
+    return _ADAPTER.validate_json(text)
+
+
+def _matching(name: str, consumers: Collection[str]) -> bool:
+    """Return whether `name` (a consumer, a module or `*`) covers one of `consumers`."""
+    return any(name in (ALL, consumer, module_of(consumer)) for consumer in consumers)
+
+
+def _at(consumers: tuple[str, ...]) -> str:
+    return "every consumer" if ALL in consumers else ", ".join(consumers)
+
+
+def _no_reader(interface: Interface, channels: tuple[str, ...], name: str) -> str:
+    readers = {c for channel in channels for c in interface.channel(channel).consumers}
+    everyone = {c for channel in interface.channels for c in channel.consumers}
+    known = readers | {module_of(reader) for reader in readers}
+    what = " and ".join(f"channel '{channel}'" for channel in channels)
+    if name in everyone or name in modules(interface):
+        return f"{what}: '{name}' does not read it; its readers: {listed(known)}"
+    return f"{what}: {unknown('consumer', name, known)}"

@@ -1,0 +1,46 @@
+"""Several interventions, one on the result of the other."""
+
+from typing import TYPE_CHECKING, Literal, Self
+
+from pydantic import Field
+
+from faultpath.arrays import Array
+from faultpath.faults.base import Intervention, Memory, Moment
+from faultpath.interface import Channel
+
+if TYPE_CHECKING:
+    from faultpath.faults.registry import AnyIntervention
+
+
+class Sequence(Intervention):
+    """Apply interventions in turn: each acts on what the one before delivers.
+
+    Parts draw independently of each other. Interventions that follow each other in time are
+    several faults, each with its window.
+    """
+
+    kind: Literal["sequence"] = "sequence"
+    parts: "tuple[AnyIntervention, ...]" = Field(min_length=1)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the last part's value; the memory holds one entry a part."""
+        value, carried = reading, ()
+        for index, part in enumerate(self.parts):
+            here = at.part(index)
+            past = part.begin(value, here) if memory is None else memory[index]
+            value, past = part.apply(value, past, here)
+            carried = (*carried, past)
+        return value, carried
+
+    def words(self) -> str:
+        """Return the parts' words in turn."""
+        return ", then ".join(part.words() for part in self.parts)
+
+    def resolved(self, channel: Channel) -> Self:
+        """Resolve every part."""
+        parts = tuple(part.resolved(channel) for part in self.parts)
+        return self.model_copy(update={"parts": parts})
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Return what the first part that does not fit says."""
+        return next(filter(None, (part.misfit(shape) for part in self.parts)), None)

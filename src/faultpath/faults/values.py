@@ -1,0 +1,121 @@
+"""Interventions on the value of a reading that need no past."""
+
+from typing import ClassVar, Literal, Self
+
+from pydantic import Field
+
+from faultpath.arrays import Array, Constant, constant, filled, is_zero, like, misfit, namespace
+from faultpath.arrays import rows as as_rows
+from faultpath.faults.base import Intervention, Memory, Moment, number
+from faultpath.interface import Channel
+
+
+class Scale(Intervention):
+    """Multiply the reading by a factor."""
+
+    kind: Literal["scale"] = "scale"
+    value_field: ClassVar[str | None] = "factor"
+    factor: Constant
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading * factor`."""
+        return reading * constant(self.factor, reading), None
+
+    def words(self) -> str:
+        """Return `scaled by FACTOR`."""
+        return f"scaled by {number(self.factor)}"
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse a factor whose shape the reading does not have."""
+        return misfit("factor", self.factor, shape)
+
+
+class UniformScale(Intervention):
+    """Multiply by a factor drawn once per scene, uniform in 1 ± half_range.
+
+    The calibration noise of DCC training (paper, "Interventions and Evidence": ± 20 %, one draw a
+    window, held throughout). Channels of different cause draw independently.
+    """
+
+    kind: Literal["uniform_scale"] = "uniform_scale"
+    value_field: ClassVar[str | None] = "half_range"
+    half_range: float = Field(ge=0, lt=1)
+
+    def begin(self, reading: Array, at: Moment) -> Memory:
+        """Return the factors, one a scene."""
+        unit = 2 * at.draws.uniform((), 0) - 1
+        return as_rows(like(1 + self.half_range * unit, reading), reading)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading * factor of the scene`."""
+        return reading * memory, memory
+
+    def words(self) -> str:
+        """Return `scaled by 1 ± HALF_RANGE, one draw a scene`."""
+        return f"scaled by 1 ± {number(self.half_range)}, one draw a scene"
+
+
+class Offset(Intervention):
+    """Add a number, or a vector along the last axis, in the reading's unit."""
+
+    kind: Literal["offset"] = "offset"
+    value_field: ClassVar[str | None] = "by"
+    by: Constant
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return `reading + by`; an offset of zero leaves even the sign of a zero alone."""
+        return (reading if is_zero(self.by) else reading + constant(self.by, reading)), None
+
+    def words(self) -> str:
+        """Return `offset by BY`."""
+        return f"offset by {number(self.by)}"
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse an offset whose shape the reading does not have."""
+        return misfit("by", self.by, shape)
+
+
+class Quantise(Intervention):
+    """Round to the nearest multiple of a step, halves to the even multiple."""
+
+    kind: Literal["quantise"] = "quantise"
+    value_field: ClassVar[str | None] = "step_size"
+    step_size: float = Field(gt=0)
+    """In the reading's unit."""
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the rounded reading."""
+        return namespace(reading).round(reading / self.step_size) * self.step_size, None
+
+    def words(self) -> str:
+        """Return `rounded to multiples of STEP_SIZE`."""
+        return f"rounded to multiples of {number(self.step_size)}"
+
+
+class Erase(Intervention):
+    """Replace the reading by a default that carries no information (paper: erasure)."""
+
+    kind: Literal["erase"] = "erase"
+    value_field: ClassVar[str | None] = "default"
+    default: Constant | None = None
+    """In the reading's unit; `None`: the erasure default that the channel declares."""
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the default; raises `ValueError` before `resolved` has supplied one."""
+        if self.default is None:
+            raise ValueError("Erase has no default; resolve it against its channel first")
+        return filled(self.default, reading), None
+
+    def words(self) -> str:
+        """Return `erased`, with the default where one is given."""
+        return "erased" if self.default is None else f"erased to {number(self.default)}"
+
+    def resolved(self, channel: Channel) -> Self:
+        """Take the channel's erasure default where no other is given."""
+        if self.default is not None:
+            return self
+        return self.model_copy(update={"default": channel.erasure_default})
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Refuse a default whose shape the reading does not have."""
+        return None if self.default is None else misfit("default", self.default, shape)

@@ -1,0 +1,131 @@
+"""Who reads what, directly and through reconstructions.
+
+The paper's rule is recursive: a module that reads a channel and reconstructs a source passes the
+channel's faults on to everything that reads its output.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from faultpath.interface.model import Interface
+
+
+def module_of(consumer: str) -> str:
+    """Return the module of a consumer `module.place`."""
+    return consumer.partition(".")[0]
+
+
+def modules(interface: "Interface") -> tuple[str, ...]:
+    """Return every module that reads something, in the order of declaration."""
+    return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.consumers))
+
+
+def reads_of(interface: "Interface", module: str) -> tuple[tuple[str, str], ...]:
+    """Return `(channel, consumer)` for every read of `module`, in the order of declaration."""
+    return tuple(
+        (channel.name, consumer)
+        for channel in interface.channels
+        for consumer in channel.consumers
+        if module_of(consumer) == module
+    )
+
+
+def feeds(
+    interface: "Interface", module: str, bindings: Mapping[str, str] | None = None
+) -> tuple[str, ...]:
+    """Return the modules that read what `module` reconstructs.
+
+    With `bindings` (channel to source) only the channels bound to that source count; without,
+    every channel that the source may feed.
+    """
+    produced = interface.reconstructs.get(module)
+    fed = (
+        channel
+        for channel in interface.channels
+        if produced in ((bindings[channel.name],) if bindings else channel.sources)
+    )
+    return tuple(dict.fromkeys(module_of(name) for channel in fed for name in channel.consumers))
+
+
+def direct_consumers(interface: "Interface", channel: str) -> tuple[str, ...]:
+    """Return the consumers that read `channel` itself; raises `UserError` for an unknown name."""
+    return interface.channel(channel).consumers
+
+
+def transitive_consumers(
+    interface: "Interface", channel: str, bindings: Mapping[str, str] | None = None
+) -> tuple[str, ...]:
+    """Return the consumers that a fault on `channel` reaches, directly or through reconstructions.
+
+    `bindings` as in `feeds`. Raises `UserError` for an unknown name.
+    """
+    reached: dict[str, None] = {}
+    waiting = [interface.channel(channel)]
+    seen = {channel}
+    while waiting:
+        here = waiting.pop(0)
+        reached.update(dict.fromkeys(here.consumers))
+        produced = {interface.reconstructs.get(module_of(name)) for name in here.consumers}
+        for other in interface.channels:
+            fed_by = (bindings[other.name],) if bindings else other.sources
+            if other.name not in seen and produced & set(fed_by):
+                seen.add(other.name)
+                waiting.append(other)
+    return tuple(reached)
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """One channel's place in the order of audit."""
+
+    channel: str
+    transitive: int
+    """Consumers that a fault reaches."""
+    direct: int
+    """Consumers that read the channel itself."""
+    weight: float | None
+    """Probe response where one was given, else the expected uncertainty of the first source."""
+
+
+def rank(
+    interface: "Interface", responses: Mapping[str, float] | None = None
+) -> tuple[Ranked, ...]:
+    """Return the channels, the one to audit first in front.
+
+    By consumer count, then by `responses` (channel to probe response at the expected deployment
+    uncertainty) or, without them, by the expected relative uncertainty; unknown counts last. Paper,
+    section "Propose Repairs, Then Audit Their Composition".
+    """
+
+    def ranked(name: str, source: str) -> Ranked:
+        expected = interface.source(source).expected_uncertainty
+        return Ranked(
+            channel=name,
+            transitive=len(transitive_consumers(interface, name)),
+            direct=len(direct_consumers(interface, name)),
+            weight=expected if responses is None else responses.get(name),
+        )
+
+    found = [ranked(channel.name, channel.sources[0]) for channel in interface.channels]
+    found.sort(
+        key=lambda r: (
+            -r.transitive,
+            -r.direct,
+            -(r.weight if r.weight is not None else -1.0),
+            r.channel,
+        )
+    )
+    return tuple(found)
+
+
+def groups(interface: "Interface") -> dict[str, tuple[str, ...]]:
+    """Return each error-correlation group and the channels that its sources feed."""
+    found: dict[str, dict[str, None]] = {}
+    for channel in interface.channels:
+        for name in channel.sources:
+            group = interface.source(name).correlation_group
+            if group is not None:
+                found.setdefault(group, {})[channel.name] = None
+    return {group: tuple(channels) for group, channels in found.items()}

@@ -1,0 +1,146 @@
+"""What a system declares about the information that its modules read.
+
+Terms follow the paper, section "A Framework for Auditing Information Interfaces": a channel
+conditions a module; its source, its consumers and its deployment conditions (latency, rate, error
+correlation) are recorded; a gap is one of fidelity (an estimate replaces the truth) or of
+availability (a channel that the trained module expects is missing).
+"""
+
+from enum import StrEnum
+from typing import Annotated, Self
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+
+from faultpath.arrays import Constant
+from faultpath.errors import UserError
+from faultpath.interface.words import unknown
+
+Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
+Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Provenance(StrEnum):
+    """Where a source's numbers come from."""
+
+    MEASURED = "measured"
+    ESTIMATED = "estimated"
+    RECONSTRUCTED = "reconstructed"
+    """The output of a module of the system, which has inputs of its own."""
+    PRIVILEGED = "privileged"
+    """Known to the simulator only; not available at deployment."""
+    CONSTANT = "constant"
+    COMMANDED = "commanded"
+
+
+class Gap(StrEnum):
+    """What deployment takes away from a channel, relative to accurate input."""
+
+    NONE = "none"
+    FIDELITY = "fidelity"
+    AVAILABILITY = "availability"
+
+
+class Uncertainty(_Frozen):
+    """The error expected of a source at deployment: a standard deviation or a half-range.
+
+    In the source's unit, or as a fraction of its value when `relative`.
+    """
+
+    std: float | None = Field(default=None, ge=0)
+    half_range: float | None = Field(default=None, ge=0)
+    """Of a uniform distribution around the true value."""
+    relative: bool = False
+    words: str = ""
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if (self.std is None) == (self.half_range is None):
+            raise ValueError("give either std or half_range")
+        return self
+
+    @property
+    def expected_std(self) -> float:
+        """The standard deviation; a half-range h counts as h / sqrt(3)."""
+        if self.std is not None:
+            return self.std
+        return (self.half_range or 0.0) / 3**0.5
+
+
+class Source(_Frozen):
+    """Something that produces a reading at every step."""
+
+    name: Name
+    unit: str
+    """`1` for a number without a unit."""
+    shape: tuple[Annotated[int, Field(ge=1)], ...] = ()
+    """Of one scene's reading; `()` for a scalar."""
+    provenance: Provenance
+    latency_s: float = Field(default=0.0, ge=0)
+    rate_hz: float | None = Field(default=None, gt=0)
+    """`None`: fresh at every control step."""
+    uncertainty: Uncertainty | None = None
+    scale: float | None = Field(default=None, gt=0)
+    """Typical magnitude in `unit`; makes an absolute uncertainty comparable with others."""
+    correlation_group: Name | None = None
+    """Sources of one group err together, by one cause."""
+    description: str = ""
+
+    @property
+    def expected_uncertainty(self) -> float | None:
+        """Expected standard deviation as a fraction of the typical value; `None` if unknown."""
+        if self.uncertainty is None:
+            return None
+        if self.uncertainty.relative:
+            return self.uncertainty.expected_std
+        return None if self.scale is None else self.uncertainty.expected_std / self.scale
+
+
+class Channel(_Frozen):
+    """A source as consumers see it."""
+
+    name: Name
+    sources: tuple[Name, ...] = Field(min_length=1)
+    """What may feed the channel; the first does at deployment."""
+    consumers: tuple[Consumer, ...] = Field(min_length=1)
+    """Every place that reads the channel, as `module.place`."""
+    erasure_default: Constant = 0.0
+    """What a consumer gets when the channel is erased."""
+    gap: Gap = Gap.NONE
+    description: str = ""
+
+
+class Interface(_Frozen):
+    """All sources and channels of a system, and which modules produce a source themselves."""
+
+    name: Name
+    sources: tuple[Source, ...]
+    channels: tuple[Channel, ...]
+    reconstructs: dict[Name, Name] = Field(default_factory=dict[str, str])
+    """Module to the source that it produces."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        from faultpath.interface.checks import check_interface  # it needs the types of this module
+
+        check_interface(self)
+        return self
+
+    def source(self, name: str) -> Source:
+        """Return the source called `name`; raises `UserError` with the known names."""
+        for source in self.sources:
+            if source.name == name:
+                return source
+        known = (source.name for source in self.sources)
+        raise UserError(f"interface {self.name}: {unknown('source', name, known)}")
+
+    def channel(self, name: str) -> Channel:
+        """Return the channel called `name`; raises `UserError` with the known names."""
+        for channel in self.channels:
+            if channel.name == name:
+                return channel
+        known = (channel.name for channel in self.channels)
+        raise UserError(f"interface {self.name}: {unknown('channel', name, known)}")

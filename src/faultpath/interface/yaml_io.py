@@ -1,0 +1,139 @@
+"""Interfaces as YAML: read with the safe loader only, written so that reading gives the same."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import yaml
+from pydantic import ValidationError
+from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from faultpath.errors import UserError
+from faultpath.interface.model import Interface
+
+_TEXT = "the interface text"
+
+
+def read_interface(path_or_text: Path | str) -> Interface:
+    """Return the interface in a YAML file, or in YAML text (a `str` that has a line break).
+
+    Raises `UserError` with file, line and what to do.
+    """
+    if isinstance(path_or_text, str) and "\n" in path_or_text:
+        return _parse(path_or_text, _TEXT)
+    path = Path(path_or_text)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UserError(
+            f"{path}: cannot be read ({error.strerror}); give the path of an interface file"
+        ) from None
+    except UnicodeDecodeError:
+        raise UserError(f"{path}: is not UTF-8 text; save the interface as UTF-8") from None
+    return _parse(text, str(path))
+
+
+def interface_yaml(interface: Interface) -> str:
+    """Return the interface as YAML text; what equals its default is left out."""
+    data = interface.model_dump(mode="json", exclude_defaults=True)
+    return yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=100)
+
+
+def write_interface(interface: Interface, path: Path | str) -> None:
+    """Write the interface to a YAML file, in UTF-8."""
+    Path(path).write_text(interface_yaml(interface), encoding="utf-8")
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of an interface file, for editors and other tools."""
+    return Interface.model_json_schema()
+
+
+def _parse(text: str, where: str) -> Interface:
+    root = _compose(text, where)
+    if not isinstance(root, MappingNode):
+        raise UserError(f"{where}: holds no interface; start with `name:`, `sources:`, `channels:`")
+    for line, key in _repeated_keys(root):
+        raise UserError(f"{where}, line {line}: key '{key}' appears twice; drop one")
+    try:
+        return Interface.model_validate(yaml.safe_load(text))
+    except yaml.YAMLError as error:
+        raise _not_yaml(error, where) from None
+    except ValidationError as error:
+        raise _refused(error, root, where) from None
+
+
+def _compose(text: str, where: str) -> Node | None:
+    try:
+        for event in cast(Any, yaml).parse(text, Loader=yaml.SafeLoader):
+            if isinstance(event, yaml.AliasEvent):
+                line = cast(Any, event).start_mark.line + 1
+                raise UserError(f"{where}, line {line}: aliases are not read; write it out")
+        return cast(Any, yaml).compose(text, Loader=yaml.SafeLoader)
+    except RecursionError:
+        raise UserError(f"{where}: is nested too deeply; an interface has few levels") from None
+    except yaml.YAMLError as error:
+        raise _not_yaml(error, where) from None
+
+
+def _not_yaml(error: yaml.YAMLError, where: str) -> UserError:
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
+        where = f"{where}, line {error.problem_mark.line + 1}"
+        problem = " ".join(filter(None, (error.context, error.problem)))
+    else:
+        problem = " ".join(str(error).split())
+    return UserError(f"{where}: is not plain YAML ({problem}); correct it or drop the tag")
+
+
+def _items(node: Node) -> Iterator[tuple[Any, Node, Node]]:
+    """Yield `(key, node that shows the place, value node)` of a mapping or a sequence."""
+    if isinstance(node, MappingNode):
+        for key, value in cast(list[tuple[Node, Node]], node.value):
+            yield (key.value if isinstance(key, ScalarNode) else None), key, value
+    elif isinstance(node, SequenceNode):
+        for index, value in enumerate(cast(list[Node], node.value)):
+            yield index, value, value
+
+
+def _repeated_keys(node: Node) -> Iterator[tuple[int, str]]:
+    seen: set[Any] = set()
+    for key, shown, value in _items(node):
+        if key in seen:
+            yield shown.start_mark.line + 1, str(key)
+        seen.add(key)
+        yield from _repeated_keys(value)
+
+
+def _line(root: Node, path: Sequence[str | int]) -> int:
+    """Return the line of the deepest part of `path` that the file has, counted from one."""
+    node, line = root, root.start_mark.line + 1
+    for part in path:
+        for key, shown, value in _items(node):
+            if key == part:
+                node, line = value, shown.start_mark.line + 1
+                break
+        else:
+            break
+    return line
+
+
+def _refused(error: ValidationError, root: Node, where: str) -> UserError:
+    first = error.errors(include_url=False)[0]
+    path = cast("tuple[str | int, ...]", first.get("ctx", {}).get("where", first["loc"]))
+    said = first["msg"].removeprefix("Value error, ")
+    if "where" not in first.get("ctx", {}):
+        named = ".".join(str(part) for part in path)
+        said = f"{named}: {said[0].lower()}{said[1:]}" + _remedy(first["type"])
+    more = error.error_count() - 1
+    tail = f" ({more} more to correct after it)" if more else ""
+    return UserError(f"{where}, line {_line(root, path)}: {said}{tail}")
+
+
+def _remedy(kind: str) -> str:
+    match kind:
+        case "missing":
+            return "; add it"
+        case "extra_forbidden":
+            return "; drop it or correct its spelling"
+        case _:
+            return "; correct the value"

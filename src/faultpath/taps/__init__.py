@@ -1,0 +1,31 @@
+"""Where a source's reading becomes what a consumer gets."""
+
+from faultpath.taps.errors import (
+    IllegalRead,
+    MalformedReading,
+    NotDelivered,
+    StruckElsewhere,
+    TapError,
+    UndeclaredReader,
+)
+from faultpath.taps.reading import Reading
+from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
+from faultpath.taps.taps import ModuleTaps, StrikeState, Taps
+
+__all__ = [
+    "IllegalRead",
+    "MalformedReading",
+    "Missed",
+    "ModuleTaps",
+    "NotDelivered",
+    "Reading",
+    "Receipt",
+    "Receipts",
+    "StrikeReceipt",
+    "StrikeState",
+    "StruckElsewhere",
+    "TapError",
+    "Taps",
+    "UndeclaredReader",
+    "check_delivered",
+]

@@ -1,0 +1,25 @@
+"""Mistakes of a system's author, found where a reading becomes what a consumer gets."""
+
+
+class TapError(Exception):
+    """A tap was used against what the interface declares; the sentence names the tap."""
+
+
+class UndeclaredReader(TapError):
+    """A consumer asked for a channel that it is not declared to read in this variant."""
+
+
+class IllegalRead(TapError):
+    """A reading came from another source, from a privileged one, or from the future."""
+
+
+class MalformedReading(TapError):
+    """A reading does not have one row a scene, or steps ran backwards."""
+
+
+class NotDelivered(TapError):
+    """A fault never reached a consumer that it strikes, although a scene ran past its onset."""
+
+
+class StruckElsewhere(TapError):
+    """A consumer that no fault names got an altered reading."""

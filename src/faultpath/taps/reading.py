@@ -1,0 +1,16 @@
+"""A source's value at a step."""
+
+from dataclasses import dataclass
+
+from faultpath.arrays import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What a source says; nobody writes to `value` once it is part of a reading."""
+
+    value: Array
+    """`[B, ...]`, one row a scene, in the source's unit."""
+    source: str
+    step: int
+    """Control step at which the value was valid."""

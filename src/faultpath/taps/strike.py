@@ -1,0 +1,95 @@
+"""One fault at one tap: its window, its memory, and what it makes of a reading."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.arrays import Array, namespace, pick, rows, to_numpy
+from faultpath.errors import UserError
+from faultpath.faults import Draws, Fault, Moment, Window
+from faultpath.faults.base import Memory
+from faultpath.taps.tally import Tally
+
+
+class Strike:
+    """A resolved fault as it acts on the deliveries of one tap."""
+
+    __slots__ = ("_begun", "_draws", "_dt_s", "_memory", "_near", "_window", "fault", "in_force")
+
+    def __init__(self, fault: Fault, window: Window, draws: Draws, dt_s: float) -> None:
+        self.fault = fault
+        self.in_force = Tally()
+        self._window = window
+        self._near: Window | None = None
+        self._draws = draws
+        self._dt_s = dt_s
+        self._memory: Memory = None
+        self._begun = False
+
+    def act(self, reading: Array, step: int) -> tuple[Array, Any]:
+        """Return the value and whether the fault is in force: a bool or a bool array `[B]`.
+
+        Raises `UserError` where the intervention cannot act on such a reading.
+        """
+        if self._window.over(step):
+            self._memory = None
+            return reading, False
+        if self._near is None:
+            self._near = self._window.beside(reading)
+        at = Moment(step, step - self._near.onset, self._dt_s, self._draws)
+        if not self._begun:
+            self._memory = self.fault.intervention.begin(reading, at)
+            self._begun = True
+        value, self._memory = self.fault.intervention.apply(reading, self._memory, at)
+        if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
+            raise self._unfit(
+                f"turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
+                f"{list(value.shape)}; choose one that keeps them"
+            )
+        weight = self._near.weight(step)
+        return self._blend(reading, value, weight), weight > 0
+
+    def _blend(self, reading: Array, value: Array, weight: Any) -> Array:
+        if isinstance(weight, float):
+            if weight in (0.0, 1.0):
+                return value if weight else reading
+            self._check_blends(reading)
+            return reading + (value - reading) * weight
+        if not self.fault.recovery_steps:
+            return pick(weight > 0, value, reading)
+        self._check_blends(reading)
+        share = rows(namespace(weight).astype(weight, reading.dtype), reading)
+        mixed = reading + (value - reading) * share
+        return pick(weight >= 1, value, pick(weight > 0, mixed, reading))
+
+    def _check_blends(self, reading: Array) -> None:
+        if not namespace(reading).isdtype(reading.dtype, "real floating"):
+            raise self._unfit(f"cannot recover step by step in {reading.dtype}; leave recovery out")
+
+    def _unfit(self, said: str) -> UserError:
+        return UserError(
+            f"fault on channel '{self.fault.channel}': {self.fault.intervention.kind} {said}"
+        )
+
+    def onsets(self, n_scenes: int) -> NDArray[np.int64]:
+        """Return the first step in force, `[B]`."""
+        return np.broadcast_to(np.asarray(self._window.onset, dtype=np.int64), (n_scenes,))
+
+    def in_window(self, step: int, n_scenes: int) -> NDArray[np.bool_]:
+        """Return which scenes are in the window or recovering from it at `step`, `[B]`."""
+        return np.broadcast_to(np.asarray(self._window.weight(step)) > 0, (n_scenes,))
+
+    def memory_words(self) -> str:
+        """Return what the intervention carries, in short form."""
+        return _words(self._memory)
+
+
+def _words(memory: Memory) -> str:
+    if isinstance(memory, tuple):
+        return "(" + ", ".join(_words(part) for part in memory) + ")"  # pyright: ignore[reportUnknownVariableType]
+    if hasattr(memory, "shape"):
+        values = to_numpy(memory)
+        shown = np.array2string(values, threshold=8, precision=4)
+        return f"{values.dtype} {list(values.shape)} {shown}"
+    return str(memory)

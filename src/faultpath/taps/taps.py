@@ -1,0 +1,316 @@
+"""Taps: the only place where a source's reading becomes what a consumer gets."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.arrays import Array, differs
+from faultpath.errors import UserError
+from faultpath.faults import Coupled, Draws, Fault
+from faultpath.interface import Interface, Provenance, modules
+from faultpath.interface.words import listed, unknown
+from faultpath.taps.errors import IllegalRead, MalformedReading, UndeclaredReader
+from faultpath.taps.reading import Reading
+from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
+from faultpath.taps.strike import Strike
+from faultpath.taps.tally import Running, Tally
+
+
+class _Tap:
+    """One consumer's end of one channel."""
+
+    __slots__ = (
+        "altered",
+        "cached",
+        "channel",
+        "consumer",
+        "deliveries",
+        "first_step",
+        "last_step",
+        "legal",
+        "source",
+        "strikes",
+        "struck",
+    )
+
+    def __init__(self, channel: str, consumer: str, source: str, legal: bool) -> None:
+        self.channel = channel
+        self.consumer = consumer
+        self.source = source
+        self.legal = legal
+        self.strikes: tuple[Strike, ...] = ()
+        self.deliveries = 0
+        self.first_step = -1
+        self.last_step = -1
+        self.cached: Array = None
+        self.struck = Tally()
+        self.altered = Tally()
+
+    def __str__(self) -> str:
+        return f"{self.channel} -> {self.consumer}"
+
+    def add(self, strike: Strike) -> None:
+        """Let a fault strike here; a fault that is alone counts for the whole tap."""
+        self.strikes = (*self.strikes, strike)
+        self.struck = strike.in_force if len(self.strikes) == 1 else Tally()
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleTaps:
+    """All that a module under test sees of the taps: its own deliveries."""
+
+    module: str
+    deliver: Callable[[str, str, Reading, int], Array]
+    """`deliver(channel, place, reading, step)` for the consumer `module.place`."""
+
+
+@dataclass(frozen=True)
+class StrikeState:
+    """One fault at one tap, as it stood at the tap's last delivery."""
+
+    channel: str
+    consumer: str
+    fault: str
+    step: int | None
+    """`None` before the first delivery."""
+    in_window: NDArray[np.bool_]
+    """`[B]`"""
+    memory: str
+
+
+class Taps:
+    """The taps of one variant over one block of scenes, with the faults of one arm.
+
+    Args:
+        interface: What the system declares.
+        faults: Faults in the order in which they act where they meet at a tap.
+        scenes: Scene ids, one a row of every reading.
+        dt_s: Length of a control step, s.
+        seed: Seed of the faults' random numbers.
+        bindings: Channel to the source that feeds it here; the rest keep their first source.
+        consumers: Consumers that this variant has; `None`: all that are declared.
+        privileged: Privileged sources that this arm may read.
+
+    Raises:
+        UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
+    """
+
+    def __init__(
+        self,
+        interface: Interface,
+        faults: Iterable[Fault | Coupled] = (),
+        *,
+        scenes: tuple[str, ...],
+        dt_s: float,
+        seed: int = 0,
+        bindings: Mapping[str, str] | None = None,
+        consumers: Collection[str] | None = None,
+        privileged: Collection[str] = (),
+    ) -> None:
+        self._interface = interface
+        self._scenes = tuple(scenes)
+        self._running = Running(None)
+        self._struck, self._altered = Tally(), Tally()
+        self._absent: list[tuple[str, str]] = []
+        self._taps = _taps(interface, bindings or {}, consumers, privileged)
+        self._strike(tuple(faults), dt_s, seed)
+
+    def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
+        present = {consumer for _, consumer in self._taps}
+        draws: dict[str, Draws] = {}
+        for declared in faults:
+            everywhere = declared.resolved(self._interface)
+            if not declared.resolved(self._interface, present):
+                names = {consumer for fault in everywhere for consumer in fault.consumers}
+                raise UserError(
+                    f"fault '{declared.describe()}' strikes nobody in this variant, which has no "
+                    f"{listed(names)}; leave the fault out or name other consumers"
+                )
+            for fault in everywhere:
+                window = fault.window(self._scenes)
+                cause = fault.drawn_from
+                drawn = draws.setdefault(cause, Draws(self._scenes, seed, cause))
+                for consumer in fault.consumers:
+                    tap = self._taps.get((fault.channel, consumer))
+                    if tap is None:
+                        self._absent.append((fault.channel, consumer))
+                    else:
+                        tap.add(Strike(fault, window, drawn, dt_s))
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
+        """Return what `consumer` gets of `channel` at control step `step`.
+
+        Without a fault on this tap that is `reading.value` itself, uncopied. A second delivery in
+        one step returns what the first did.
+
+        Raises:
+            UndeclaredReader: This variant has no such consumer of the channel.
+            IllegalRead: The reading is not of the bound source, is privileged, or of the future.
+            MalformedReading: It has not one row a scene, or `step` is before the last one.
+        """
+        tap = self._taps.get((channel, consumer))
+        if tap is None:
+            raise self._undeclared(channel, consumer)
+        if reading.source != tap.source or not tap.legal or reading.step > step:
+            raise self._illegal(tap, reading, step)
+        if step != tap.last_step:
+            if step < tap.last_step:
+                raise MalformedReading(
+                    f"tap {tap}: step {step} comes after step {tap.last_step}; a new run needs "
+                    "new taps"
+                )
+            if tap.first_step < 0:
+                tap.first_step = step
+            tap.last_step = step
+            tap.deliveries += 1
+            if tap.strikes:
+                tap.cached = self._struck_value(tap, reading.value, step)
+        return tap.cached if tap.strikes else reading.value
+
+    def _struck_value(self, tap: _Tap, reading: Array, step: int) -> Array:
+        if reading.shape[0] != len(self._scenes):
+            raise MalformedReading(
+                f"tap {tap}: the reading has {reading.shape[0]} rows for {len(self._scenes)} scenes"
+            )
+        value, struck = reading, False
+        for strike in tap.strikes:
+            value, in_force = strike.act(value, step)
+            in_force = self._running.among(in_force, reading)
+            strike.in_force.note(step, in_force)
+            struck = in_force if struck is False else struck | in_force
+        if len(tap.strikes) > 1:
+            tap.struck.note(step, struck)
+        self._struck.note(step, struck)
+        if value is not reading and struck is not False:
+            altered = self._running.among(differs(value, reading), reading)
+            tap.altered.note(step, altered)
+            self._altered.note(step, altered)
+        return value
+
+    def set_active(self, mask: Array | None) -> None:
+        """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
+        self._running = Running(mask)
+
+    def for_module(self, module: str) -> ModuleTaps:
+        """Return the view that `module` gets; raises `UserError` for an unknown module."""
+        if module not in modules(self._interface):
+            raise UserError(unknown("module", module, modules(self._interface)))
+
+        def deliver(channel: str, place: str, reading: Reading, step: int) -> Array:
+            return self.deliver(channel, f"{module}.{place}", reading, step)
+
+        return ModuleTaps(module, deliver)
+
+    def receipts(self) -> Receipts:
+        """Return what was delivered so far; this waits for the device that holds the counts."""
+        n = len(self._scenes)
+        return Receipts(
+            scenes=self._scenes,
+            taps=tuple(_receipt(tap, n) for tap in self._taps.values()),
+            absent=tuple(self._absent),
+            steps_struck=self._struck.counts(n),
+            steps_altered=self._altered.counts(n),
+        )
+
+    def verify(self, last_step: NDArray[np.int64] | int) -> tuple[Missed, ...]:
+        """Check that each fault reached the consumers that it names, and nobody else.
+
+        `last_step`: the last control step at which each scene ran, `[B]` or one for all. Returns
+        the scenes that a fault missed; raises as `check_delivered`.
+        """
+        struck = frozenset(name for name, tap in self._taps.items() if tap.strikes)
+        last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
+        return check_delivered(self.receipts(), struck, last)
+
+    def state(self) -> tuple[StrikeState, ...]:
+        """Return the state of every fault at every tap: for evaluation code, not for modules."""
+        return tuple(
+            StrikeState(
+                channel=tap.channel,
+                consumer=tap.consumer,
+                fault=strike.fault.describe(),
+                step=tap.last_step if tap.deliveries else None,
+                in_window=strike.in_window(tap.last_step, len(self._scenes)),
+                memory=strike.memory_words(),
+            )
+            for tap in self._taps.values()
+            for strike in tap.strikes
+        )
+
+    def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
+        declared = self._interface.channel(channel).consumers
+        if consumer in declared:
+            return UndeclaredReader(
+                f"tap {channel} -> {consumer}: this variant has no such consumer; name it in the "
+                "variant's consumers"
+            )
+        return UndeclaredReader(
+            f"tap {channel} -> {consumer}: the channel does not declare this consumer; add it to "
+            f"the interface, declared: {listed(declared)}"
+        )
+
+    def _illegal(self, tap: _Tap, reading: Reading, step: int) -> IllegalRead:
+        if reading.source != tap.source:
+            return IllegalRead(
+                f"tap {tap}: the reading is of source '{reading.source}', but the channel is "
+                f"bound to '{tap.source}'"
+            )
+        if not tap.legal:
+            return IllegalRead(
+                f"tap {tap}: source '{tap.source}' is privileged and this arm does not permit it"
+            )
+        return IllegalRead(
+            f"tap {tap}: the reading is of step {reading.step}, which is after step {step}"
+        )
+
+
+def _taps(
+    interface: Interface,
+    bindings: Mapping[str, str],
+    consumers: Collection[str] | None,
+    privileged: Collection[str],
+) -> dict[tuple[str, str], _Tap]:
+    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
+    for name in bindings:
+        interface.channel(name)
+    for name in privileged:
+        interface.source(name)
+    declared = {name for channel in interface.channels for name in channel.consumers}
+    for name in consumers or ():
+        if name not in declared:
+            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
+    taps: dict[tuple[str, str], _Tap] = {}
+    for channel in interface.channels:
+        bound = bindings.get(channel.name, channel.sources[0])
+        if bound not in channel.sources:
+            said = unknown("source", bound, channel.sources)
+            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
+        secret = interface.source(bound).provenance is Provenance.PRIVILEGED
+        for name in channel.consumers:
+            if consumers is None or name in consumers:
+                legal = bound in privileged or not secret
+                taps[channel.name, name] = _Tap(channel.name, name, bound, legal)
+    return taps
+
+
+def _receipt(tap: _Tap, n_scenes: int) -> Receipt:
+    return Receipt(
+        channel=tap.channel,
+        consumer=tap.consumer,
+        source=tap.source,
+        deliveries=tap.deliveries,
+        first_step=tap.first_step if tap.deliveries else None,
+        last_step=tap.last_step if tap.deliveries else None,
+        strikes=tuple(
+            StrikeReceipt(
+                fault=strike.fault.describe(),
+                onset_step=strike.onsets(n_scenes),
+                steps_in_force=strike.in_force.counts(n_scenes),
+            )
+            for strike in tap.strikes
+        ),
+        steps_struck=tap.struck.counts(n_scenes),
+        steps_altered=tap.altered.counts(n_scenes),
+    )
