@@ -1,0 +1,121 @@
+"""Scenes from a seed: draw a layout, keep it if it is feasible and looks as it was meant to."""
+
+from math import atan2, dist
+
+import torch
+
+from faultpath import streams
+from faultpath.quadrotor.scenes.feasibility import END_CLEARANCE_M, FreeLattice
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.layout import Layout
+from faultpath.quadrotor.scenes.scene import Box, Cylinder, Point, Scene, Topology
+from faultpath.quadrotor.scenes.topologies import LAYOUTS
+from faultpath.quadrotor.vehicle import draw
+
+START_TO_GOAL_M = (6.0, 8.0)
+LONGEST_WAY_M = 16.0
+"""Twelve seconds at 3.4 m/s are 41 m; the bound keeps detours short of half of that."""
+
+SEEN_AHEAD_OPEN_M = 2.0
+SEEN_AHEAD_OCCLUDED_M = 2.5
+"""An open scene is found by looking 2.0 m ahead, an occluded one not even by looking 2.5 m. A
+one-second plan reaches 1-3 m, depending on the speed at which it begins (v_max 3.4 m/s)."""
+
+_ATTEMPTS = 400
+
+
+def generate_scene(library: str, index: int, seed: int) -> Scene:
+    """Return one scene, the same for the same library name, index and seed.
+
+    Topologies interleave. One in four scenes of each topology is occluded, and half of those
+    of walled topologies have loose obstacles, so that any 20 in a row are representative.
+
+    Args:
+        library: Name of the library; part of the scene's id.
+        index: Place in it.
+        seed: Seed of the library.
+    """
+    topologies = list(Topology)
+    turn, row = index % len(topologies), index // len(topologies)
+    topology = topologies[turn]
+    occluded = (row + turn) % 4 == 0
+    # Divided so that occluded scenes have obstacles as often as others.
+    obstacles = topology is Topology.CLUTTER or (row // 2 + row // 4 + turn) % 2 == 0
+    scene_id = f"{library}/{index:03d}"
+    for attempt in range(_ATTEMPTS):
+        rng = streams.generator("scene", scene_id, seed, attempt)
+        size = tuple(
+            float(rng.integers(low, high)) / 10 for low, high in ((86, 95), (56, 65), (28, 33))
+        )
+        layout = Layout(size_m=(size[0], size[1], size[2]))
+        LAYOUTS[topology](rng, layout, occluded, obstacles)
+        boxes, cylinders, start, goal = _frozen_plan(layout, mirror=bool(rng.uniform() < 0.5))
+        scene = Scene(
+            id=scene_id,
+            index=index,
+            library=library,
+            topology=topology,
+            obstacles=obstacles,
+            occluded=occluded,
+            bounds=layout.bounds,
+            boxes=boxes,
+            cylinders=cylinders,
+            start_m=start,
+            goal_m=goal,
+            start_yaw_rad=round(atan2(goal[1] - start[1], goal[0] - start[0]), 4),
+            vehicle=draw(streams.generator("vehicle", scene_id, seed)),
+        )
+        if is_sound(scene):
+            return scene
+    raise RuntimeError(f"no sound layout for {scene_id} in {_ATTEMPTS} attempts")
+
+
+def is_sound(scene: Scene) -> bool:
+    """Return whether a scene is feasible, of the right length, and open or occluded as it says."""
+    apart = dist(scene.start_m, scene.goal_m)
+    if (
+        not START_TO_GOAL_M[0] <= apart <= START_TO_GOAL_M[1]
+        or end_clearance_m(scene) < END_CLEARANCE_M
+    ):
+        return False
+    lattice = FreeLattice.of(scene)
+    if lattice.path_length_m() > LONGEST_WAY_M:
+        return False
+    if scene.occluded:
+        return not lattice.found_by_looking(SEEN_AHEAD_OCCLUDED_M)
+    return lattice.found_by_looking(SEEN_AHEAD_OPEN_M)
+
+
+def end_clearance_m(scene: Scene) -> float:
+    """Return the exact distance from start or goal, whichever is less, to the nearest surface."""
+    ends = torch.tensor([scene.start_m, scene.goal_m], dtype=torch.float64).T[:, None, :]
+    return float(Geometry.stack([scene]).distance(ends).min())
+
+
+def _frozen_plan(
+    layout: Layout, mirror: bool
+) -> tuple[tuple[Box, ...], tuple[Cylinder, ...], Point, Point]:
+    """Return obstacles, start and goal to the millimetre; mirrored, the flight goes towards -x."""
+    turn = -1.0 if mirror else 1.0
+
+    def point(at: Point) -> Point:
+        return round(turn * at[0], 3), round(at[1], 3), round(at[2], 3)
+
+    boxes = tuple(
+        Box(
+            centre_m=point(box.centre_m),
+            half_extents_m=point((turn * box.half_extents_m[0], *box.half_extents_m[1:])),
+            yaw_rad=round(turn * box.yaw_rad, 4),
+        )
+        for box in layout.boxes
+    )
+    cylinders = tuple(
+        Cylinder(
+            centre_m=(round(turn * pillar.centre_m[0], 3), round(pillar.centre_m[1], 3)),
+            radius_m=round(pillar.radius_m, 3),
+            low_m=round(pillar.low_m, 3),
+            high_m=round(pillar.high_m, 3),
+        )
+        for pillar in layout.cylinders
+    )
+    return boxes, cylinders, point(layout.start_m), point(layout.goal_m)

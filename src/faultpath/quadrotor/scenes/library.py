@@ -1,0 +1,144 @@
+"""Libraries of scenes: the three frozen ones of the package, and a user's own files.
+
+A library file is JSON, one scene per line, with a content hash of each scene and of all. The frozen
+files can be made again, to the byte, from the seeds below.
+"""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.scenes.generate import generate_scene
+from faultpath.quadrotor.scenes.scene import Scene, digest
+
+FORMAT = "faultpath-scenes/1"
+
+FROZEN_SEEDS = {"training": 101, "selection": 202, "held-out": 303}
+"""The libraries of the package and the seeds that made them, 100 scenes each [paper, setup]."""
+
+FROZEN_COUNT = 100
+
+
+@dataclass(frozen=True)
+class Library:
+    """Scenes that belong together.
+
+    Attributes:
+        name: The library's name.
+        scenes: Its scenes in order; scene i has index i.
+        content_hash: Hexadecimal digest of the name and of every scene.
+    """
+
+    name: str
+    scenes: tuple[Scene, ...]
+    content_hash: str
+
+    @classmethod
+    def of(cls, name: str, scenes: tuple[Scene, ...]) -> "Library":
+        """Return the library of some scenes, with its hash."""
+        return cls(name, scenes, digest([name, *(scene.content_hash for scene in scenes)]))
+
+    def __len__(self) -> int:
+        return len(self.scenes)
+
+    def __iter__(self) -> Iterator[Scene]:
+        return iter(self.scenes)
+
+    def __getitem__(self, index: int) -> Scene:
+        return self.scenes[index]
+
+
+def load_library(name: str | Path) -> Library:
+    """Return a frozen library by its name, or a library from a file.
+
+    Args:
+        name: One of `FROZEN_SEEDS`, or the path of a file that `write_library` made.
+
+    Raises:
+        UserError: If there is no such library or file, or the file is damaged.
+    """
+    if isinstance(name, str) and name in FROZEN_SEEDS:
+        return _read(frozen_file(name), f"frozen library {name!r}")
+    path = Path(name)
+    if not path.is_file():
+        raise UserError(
+            f"There is no scene library {str(name)!r}: give one of {', '.join(FROZEN_SEEDS)}, or "
+            "the path of a file made by 'faultpath scenes generate'."
+        )
+    return _read(path, f"scene library {str(path)!r}")
+
+
+def frozen_file(name: str) -> Traversable:
+    """Return the file of a frozen library inside the package."""
+    return files("faultpath.quadrotor.scenes") / "frozen" / f"{name}.json"
+
+
+def _read(file: Traversable | Path, what: str) -> Library:
+    """Read a library file and check it against its hash; `what` names it in errors."""
+    remedy = (
+        f"make it again with 'faultpath scenes generate', or use one of {', '.join(FROZEN_SEEDS)}"
+    )
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+        if content["format"] != FORMAT:
+            raise UserError(
+                f"The {what} has the format {content['format']!r}, but this version reads "
+                f"{FORMAT!r}: {remedy}."
+            )
+        scenes = tuple(Scene.model_validate(entry) for entry in content["scenes"])
+        library, promised = Library.of(content["name"], scenes), content["content_hash"]
+    except (ValueError, ValidationError, KeyError, TypeError) as error:
+        reason = str(error).splitlines()[0]
+        raise UserError(f"The {what} is no readable library ({reason}): {remedy}.") from error
+    if library.content_hash != promised:
+        raise UserError(
+            f"The {what} was changed after it was written (content hash {library.content_hash}, "
+            f"but the file says {promised}): {remedy}."
+        )
+    return library
+
+
+def generate_library(name: str, seed: int, count: int) -> Library:
+    """Return `count` new scenes; the same name, seed and count give the same scenes."""
+    return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
+
+
+def as_text(library: Library) -> str:
+    """Return a library as the text of its file, one scene per line."""
+    head = {"format": FORMAT, "name": library.name, "content_hash": library.content_hash}
+    lines = ",\n".join(
+        json.dumps(scene.model_dump(mode="json"), separators=(",", ":")) for scene in library.scenes
+    )
+    return f'{json.dumps(head)[:-1]}, "scenes": [\n{lines}\n]}}\n'
+
+
+def write_library(path: str | Path, seed: int, count: int, name: str) -> Library:
+    """Generate a library and write it to a file.
+
+    Args:
+        path: The file to write; it must not exist yet.
+        seed: Seed of the library.
+        count: How many scenes.
+        name: Name of the library; it becomes part of every scene's id. The names of the frozen
+            libraries are taken, so that no scene of a user's can pass for one of theirs.
+
+    Raises:
+        UserError: If the name is taken, the count is not positive, or the file exists.
+    """
+    if name in FROZEN_SEEDS:
+        raise UserError(f"The library name {name!r} belongs to the package: choose another name.")
+    if count < 1:
+        raise UserError(f"A library of {count} scenes cannot be made: ask for at least 1.")
+    path = Path(path)
+    if path.exists():
+        raise UserError(f"The file {str(path)!r} exists already: remove it or name another.")
+    library = generate_library(name, seed, count)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(as_text(library), encoding="utf-8", newline="\n")
+    return library
