@@ -14,9 +14,9 @@ class Rollout:
     """Predicted motion under candidate commands; `h = 0` is the end of the first interval."""
 
     positions: Tensor
-    """`[3, H, S, K]`, metres, world frame."""
+    """`[3, S, H, K]`, metres, world frame: each scene's points lie together for the clearance."""
     velocities: Tensor
-    """`[3, H, S, K]`, m/s, world frame."""
+    """`[3, S, H, K]`, m/s, world frame."""
     final: State
     """State at the end of the horizon, batch `[S, K]`."""
 
@@ -24,12 +24,12 @@ class Rollout:
 def rollout(predictor: Predictor, inputs: PredictorInputs, commands: Tensor) -> Rollout:
     """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`."""
     horizon, _, scenes, candidates = commands.shape
-    positions = commands.new_empty(3, horizon, scenes, candidates)
+    positions = commands.new_empty(3, scenes, horizon, candidates)
     velocities = torch.empty_like(positions)
     memory = predictor.begin(inputs)
-    state = inputs.state.expand(scenes, candidates)
+    state = inputs.state
     for h in range(horizon):
         state, memory = predictor.step(state, commands[h], memory)
-        positions[:, h] = state.position
-        velocities[:, h] = state.velocity
+        positions[:, :, h] = state.position
+        velocities[:, :, h] = state.velocity
     return Rollout(positions, velocities, state)

@@ -5,28 +5,17 @@ the batch first and are several times slower on the planner's shapes. Everything
 is differentiable, also at the identity.
 """
 
-import math
-
 import torch
 from torch import Tensor
 
-_SQRT_HALF = math.sqrt(0.5)
 # Added to a squared angle before its root: far below what either dtype can resolve next to an
 # angle that matters, it keeps 0/0 and the root's infinite slope out of the identity.
 _TINY = 1e-24
 
 
-def _columns(matrix: Tensor) -> tuple[Tensor, ...]:
-    """Split [3, n, *b] matrices into their three columns [3, 1, *b]."""
-    return matrix.split(1, 1)
-
-
 def compose(first: Tensor, second: Tensor) -> Tensor:
     """Return the product `first @ second`, [3, 3, *b] each; batch shapes may broadcast."""
-    a, b = _columns(first), second.split(1, 0)
-    product = a[0] * b[0]
-    product = product.addcmul_(a[1], b[1])
-    return product.addcmul_(a[2], b[2])
+    return (first.unsqueeze(2) * second).sum(1)
 
 
 def rotate(rotation: Tensor, vector: Tensor) -> Tensor:
@@ -42,19 +31,20 @@ def rotate_back(rotation: Tensor, vector: Tensor) -> Tensor:
 def exp(phi: Tensor) -> Tensor:
     """Return the rotation by |phi| rad about phi, for `phi` [3, *b]; [3, 3, *b].
 
-    Rodrigues' formula through half angles, exp = cos(t) I + 2 c [q] + 2 q q^T with
-    q = phi sin(t/2)/t and c = cos(t/2): no difference of close numbers at small angles. The
-    factors of two are split between the operands, so that the sum is one fused kernel.
+    Rodrigues' formula through half angles, exp = cos(t) I + 2 c [q]x + 2 q q^T with t = |phi|,
+    q = phi sin(t/2)/t and c = cos(t/2): no quotient of cancelled numbers at small angles.
     """
-    half = (phi * phi).sum(0).add_(_TINY).mul_(0.25).sqrt_()
-    root_two_q = phi * (half.sin() / half).mul_(_SQRT_HALF)
-    root_two_c = half.cos().mul_(2.0 * _SQRT_HALF)
-    skewed = root_two_q * root_two_c
-    x, y, z = skewed.unbind(0)
-    nx, ny, nz = skewed.neg().unbind(0)
-    cos = (root_two_c * root_two_c).sub_(1.0)
-    base = torch.stack((cos, nz, y, z, cos, nx, ny, x, cos)).view(3, *phi.shape)
-    return torch.addcmul(base, root_two_q.unsqueeze(1), root_two_q)
+    angle = (phi * phi).sum(0).add_(_TINY).sqrt_()
+    half = angle * 0.5
+    s, c = half.sin(), half.cos()
+    q = phi * (s / angle)
+    doubled = q + q
+    skew = doubled * c
+    x, y, z = skew.unbind(0)
+    nx, ny, nz = skew.neg().unbind(0)
+    cos = (c * c).addcmul_(s, s, value=-1.0)
+    rest = torch.stack((cos, nz, y, z, cos, nx, ny, x, cos)).view(3, *phi.shape)
+    return rest.addcmul_(doubled.unsqueeze(1), q)
 
 
 def log(rotation: Tensor) -> Tensor:

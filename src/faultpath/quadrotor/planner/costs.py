@@ -35,7 +35,7 @@ class Scored:
     commands: Tensor
     """`[H, 4, S, K]`."""
     clearance: Tensor
-    """Clearance of the vehicle's centre along the rollout, `[H, S, K]`, metres."""
+    """Clearance of the vehicle's centre along the rollout, `[S, H, K]`, metres."""
     goal: Tensor
     """`[3, S]`, metres, world frame."""
 
@@ -69,7 +69,7 @@ class RunningGoal(GoalCost):
 
     def distance(self, scored: Scored) -> Tensor:
         """See `GoalCost.distance`."""
-        return _norm(scored.rollout.positions - scored.goal[:, None, :, None]).mean(0)
+        return _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
 
 
 class NavigationCost:
@@ -85,7 +85,7 @@ class NavigationCost:
         cost = self.goal.distance(scored).mul_(w.goal)
         cost += self._risk(scored.clearance)
         speed = _norm(scored.rollout.velocities)
-        cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(0).mul_(w.speed)
+        cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
         cost += self._heading(scored).mul_(w.heading)
         cost += scored.commands[:, 1:].square().sum(1).mean(0).mul_(w.rate_effort)
         return cost
@@ -93,8 +93,8 @@ class NavigationCost:
     def _risk(self, clearance: Tensor) -> Tensor:
         w = self.weights
         free = clearance - COLLISION_RADIUS_M
-        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(0).mul_(w.risk)
-        return risk.add_((free < 0).to(free.dtype).mean(0), alpha=w.hit)
+        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
+        return risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
 
     def _heading(self, scored: Scored) -> Tensor:
         """One minus the cosine between the body's x axis and the direction of travel, seen from

@@ -86,7 +86,7 @@ class MPPI:
     def decide(self, proposal: Proposal, clearance: Tensor, goal: Tensor) -> Tensor:
         """Return the improved plan `[H, 4, S]`; its first row is the command to execute.
 
-        `clearance` is `[H, S, K]` along the proposal's positions, `goal` `[3, S]`.
+        `clearance` is `[S, H, K]` along the proposal's positions, `goal` `[3, S]`.
         """
         commands = proposal.commands
         cost = self._cost(Scored(proposal.rollout, commands, clearance, goal))

@@ -8,7 +8,7 @@ import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
-from faultpath.quadrotor.vehicle import RATE_LIMITS_RADPS
+from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
 from faultpath.streams import generator
 
 
@@ -48,7 +48,7 @@ class Sampler(ABC):
         commands = noise.mul_(scale).add_(plan[..., None])
         thrust = commands[:, 0]
         torch.minimum(thrust.clamp_(min=0), 2 * hover[:, None], out=thrust)
-        for axis, limit in enumerate(RATE_LIMITS_RADPS):
+        for axis, limit in enumerate(RATE_LIMIT_RADPS):
             commands[:, axis + 1].clamp_(-limit, limit)
         return commands
 

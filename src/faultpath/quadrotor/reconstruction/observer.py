@@ -9,7 +9,7 @@ from torch import Tensor
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction.base import Memory, Reconstruction, Sensed
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_MOTOR_TIME_CONSTANT_S
 
 LOW_PASS = 0.5  # paper, appendix: fixed before held-out evaluation
 
@@ -38,7 +38,7 @@ class DisturbanceObserver(Reconstruction):
         self._alpha = low_pass
         self._dt = dt_s
         self._air = LinearDrag()
-        lag = NOMINAL.motor_time_constant_s
+        lag = NOMINAL_MOTOR_TIME_CONSTANT_S
         self._keep = math.exp(-dt_s / lag)
         self._mean = lag / dt_s * (1 - self._keep)
 

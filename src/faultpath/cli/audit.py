@@ -1,0 +1,91 @@
+"""`faultpath audit`: run the arms of one question, decide, report."""
+
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import numbers, settings
+
+FAILED_TRIALS = 1
+
+
+def command(
+    system: Annotated[
+        str, typer.Argument(help="`quadrotor`, `module:attribute` or `file.py:attribute`.")
+    ],
+    baseline: Annotated[str, typer.Option(help="Variant to compare with.")],
+    repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
+    fault: Annotated[
+        str,
+        typer.Option(help="`calibration=+0.1`, or `CHANNEL:KIND=VALUE[@CONSUMERS][,onset=STEP]`."),
+    ],
+    library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
+    scenes: Annotated[int | None, typer.Option(help="Run only the first so many scenes.")] = None,
+    seeds: Annotated[str, typer.Option(help="Seeds of the planner's noise.")] = "0",
+    wind: Annotated[str | None, typer.Option(help="Quadrotor: wind level, L0 to L3.")] = None,
+    environment: Annotated[
+        str | None, typer.Option(help="Quadrotor: obstacles or free-space.")
+    ] = None,
+    predictor: Annotated[
+        str | None, typer.Option(help="Quadrotor: dki, dki-drag or true-parameter.")
+    ] = None,
+    planner: Annotated[str | None, typer.Option(help="Quadrotor: terminal or running.")] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Worker processes; default one a core.")
+    ] = None,
+) -> int:
+    """Audit a repair against a baseline under correct inputs, under the fault at each module
+    alone, and under the shared fault."""
+    from faultpath.audit import plan_audit
+    from faultpath.cli.run import run_audit
+    from faultpath.faults import parse_fault
+    from faultpath.trials import SystemSpec, load_system
+
+    named = {
+        "wind": wind,
+        "environment": environment,
+        "predictor": predictor,
+        "planner": planner,
+    }
+    options = settings(set_ or []) | {k: v for k, v in named.items() if v is not None}
+    spec = SystemSpec(name=system, options=options)
+    built = load_system(spec)
+    audit = plan_audit(
+        built,
+        spec,
+        baseline=baseline,
+        repair=repair,
+        fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
+        fault_text=fault,
+        library=built.library(library),
+        scenes=scenes,
+        seeds=numbers(seeds, "--seeds"),
+    )
+    folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
+    failed = run_audit(built, audit, folder, workers or os.cpu_count() or 1, tuple(sys.argv))
+    return FAILED_TRIALS if failed else 0
+
+
+def _name(
+    study: str,
+    fault: str,
+    library: str,
+    scenes: int | None,
+    seeds: str,
+    options: dict[str, str],
+) -> str:
+    """Name the run folder after everything that makes it another study."""
+    parts = [study, fault, Path(library).stem, *(f"{k}-{v}" for k, v in sorted(options.items()))]
+    if scenes is not None:
+        parts.append(f"{scenes}-scenes")
+    if seeds != "0":
+        parts.append(f"seeds-{seeds}")
+    return re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")

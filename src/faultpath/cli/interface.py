@@ -1,0 +1,42 @@
+"""`faultpath interface`: who reads what."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import settings
+
+
+def command(
+    system: Annotated[str, typer.Argument(help="`quadrotor`, or `file.py:attribute`.")],
+    svg: Annotated[Path | None, typer.Option(help="Draw it into this SVG file.")] = None,
+    yaml: Annotated[Path | None, typer.Option(help="Write it into this YAML file.")] = None,
+    schema: Annotated[
+        Path | None, typer.Option(help="Write the JSON Schema of interface files.")
+    ] = None,
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="Option of the system, key=value.")
+    ] = None,
+) -> None:
+    """Print a system's information interface, and draw it."""
+    from rich.console import Console
+
+    from faultpath.interface import interface_yaml, json_schema
+    from faultpath.report import draw_interface, terminal_interface
+    from faultpath.store import write_text
+    from faultpath.trials import SystemSpec, load_system
+
+    built = load_system(SystemSpec(name=system, options=settings(set_ or [])))
+    console = Console()
+    console.print(terminal_interface(built.interface))
+    writes = {
+        svg: lambda: draw_interface(built.interface),
+        yaml: lambda: interface_yaml(built.interface),
+        schema: lambda: json.dumps(json_schema(), indent=2) + "\n",
+    }
+    for path, text in writes.items():
+        if path is not None:
+            write_text(path, text())
+            console.print(f"Written: {path}", soft_wrap=True)

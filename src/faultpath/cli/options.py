@@ -1,0 +1,28 @@
+"""Reading what several verbs take."""
+
+from collections.abc import Sequence
+
+from faultpath.errors import UserError
+
+
+def settings(pairs: Sequence[str]) -> dict[str, str]:
+    """Read `key=value` pairs; `UserError` for one without `=` or given twice."""
+    found: dict[str, str] = {}
+    for pair in pairs:
+        key, separator, value = pair.partition("=")
+        if not separator or not key:
+            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
+        if key in found:
+            raise UserError(f"--set gives '{key}' twice: give it once.")
+        found[key] = value
+    return found
+
+
+def numbers(text: str, what: str) -> tuple[int, ...]:
+    """Read comma-separated integers such as `0,1,2`."""
+    try:
+        return tuple(int(part) for part in text.split(","))
+    except ValueError:
+        raise UserError(
+            f"{what} {text!r} is not a list of whole numbers, for example 0,1,2."
+        ) from None

@@ -1,0 +1,90 @@
+"""Carrying an audit out on the terminal: progress, tables, files."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from faultpath.audit import Audit
+from faultpath.cli.pages import save_pages
+from faultpath.errors import UserError
+from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
+from faultpath.execution import Progress as RunProgress
+from faultpath.record import DecisionRecord
+from faultpath.report import terminal_record
+from faultpath.store import write_text
+from faultpath.trials import System
+
+
+def run_audit(
+    system: System, audit: Audit, folder: Path, workers: int, command: Sequence[str]
+) -> int:
+    """Run, decide and write the run folder; return the number of trials that failed."""
+    console = Console()
+    stopwatch = Stopwatch()
+    result = _run(console, system, audit, folder, workers)
+    record = audit.conclude(result.outcomes)
+    provenance = run_provenance(result, stopwatch, command, workers)
+    write_text(folder / "record.json", _json(record))
+    write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
+    save_pages(system, folder)
+    console.print(terminal_record(record))
+    console.print(f"[bold]Report:[/bold] {folder / 'report.html'}", soft_wrap=True)
+    _tell_failures(console, result)
+    return len(result.failures)
+
+
+def _run(
+    console: Console, system: System, audit: Audit, folder: Path, workers: int
+) -> RunResult:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[trials]} trials"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Progress(*columns, console=console) as bar:
+        task = bar.add_task("Flying", total=None, trials="", left="")
+
+        def show(now: RunProgress) -> None:
+            bar.update(
+                task,
+                total=now.trials_total,
+                completed=now.trials_estimated,
+                trials=f"{now.trials_done}/{now.trials_total}",
+                left=_left(now.seconds_left),
+            )
+
+        try:
+            return run_study(
+                audit.study, folder, workers, show, notice=bar.console.print, system=system
+            )
+        except Interrupted as stop:
+            raise UserError(
+                f"interrupted with {stop.done} of {stop.total} blocks done and kept in {folder}; "
+                "run the same command again to resume."
+            ) from None
+
+
+def _left(seconds: float | None) -> str:
+    if seconds is None:
+        return ""
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} left"
+
+
+def _json(record: DecisionRecord) -> str:
+    return json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
+
+
+def _tell_failures(console: Console, result: RunResult) -> None:
+    if not result.failures:
+        return
+    console.print(
+        f"[bold red]{len(result.failures)} trials failed and void their pairs.[/bold red]"
+    )
+    for failure in result.failures:
+        console.print(f"  {failure.scene}: {failure.error} ({failure.details})", markup=False)
