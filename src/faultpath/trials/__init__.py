@@ -1,1 +1,32 @@
-"""Arms over identical scenes."""
+"""Arms over identical scenes: systems, studies, outcomes and their pairing."""
+
+from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
+from faultpath.trials.registry import load_system
+from faultpath.trials.system import Library, SceneRef, System, Variant
+from faultpath.trials.table import OutcomeTable, TrialRow
+
+__all__ = [
+    "Arm",
+    "FloorPlan",
+    "Library",
+    "Outcome",
+    "OutcomeTable",
+    "PairingRefused",
+    "Pairs",
+    "Pillar",
+    "Prism",
+    "Row",
+    "SceneRef",
+    "Side",
+    "Status",
+    "Study",
+    "System",
+    "SystemSpec",
+    "TrialRow",
+    "Variant",
+    "load_system",
+    "pair",
+]

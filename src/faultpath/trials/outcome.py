@@ -41,3 +41,8 @@ class Outcome:
     error: str | None = None
     trace: NDArray[np.float32] | None = None
     """Position at each control step, `[T, 3]`, metres, world frame."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the program failed, so that the trial says nothing."""
+        return self.status is Status.FAILED

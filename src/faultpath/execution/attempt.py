@@ -1,0 +1,115 @@
+"""One attempt at running an arm over some scenes, and what can come of it."""
+
+import math
+import sys
+import time
+import traceback
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.errors import UserError
+from faultpath.taps import TapError, Taps
+from faultpath.trials.arm import Arm
+from faultpath.trials.outcome import Outcome
+from faultpath.trials.system import System
+
+
+class WrongOutcomes(Exception):
+    """The system did not return one outcome for each scene, in order."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """Every scene has an outcome."""
+
+    outcomes: tuple[Outcome, ...]
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Raised:
+    """The system raised an error, in one scene or another."""
+
+    error: str
+    traceback: str
+
+
+@dataclass(frozen=True)
+class Wrong:
+    """The audit itself is wrong, whichever scene: no result of it would mean anything."""
+
+    error: Exception
+
+
+@dataclass(frozen=True)
+class Died:
+    """The worker process died."""
+
+    how: str
+
+
+Reply = Done | Raised | Wrong | Died
+
+_WRONG = (UserError, TapError, WrongOutcomes)
+
+
+def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | Wrong:
+    """Run an arm over some scenes; an error comes back as a value."""
+    started = time.perf_counter()
+    try:
+        outcomes = _run(system, arm, scenes)
+    except _WRONG as error:
+        return Wrong(error)
+    except Exception as error:
+        return Raised(f"{type(error).__name__}: {error}", traceback.format_exc())
+    return Done(outcomes, time.perf_counter() - started)
+
+
+def limit_threads() -> None:
+    """Keep torch, where a system has loaded it, to one thread.
+
+    Workers share the processors among themselves, and a sum over several threads may differ in
+    its last bits.
+    """
+    torch = sys.modules.get("torch")
+    if torch is not None:
+        torch.set_num_threads(1)
+
+
+def _run(system: System, arm: Arm, scenes: Sequence[str]) -> tuple[Outcome, ...]:
+    variant = system.variants[arm.variant]
+    taps = Taps(
+        system.interface,
+        arm.faults,
+        scenes=tuple(scenes),
+        dt_s=system.control_dt_s,
+        seed=arm.seed,
+        bindings=variant.bindings,
+        consumers=variant.consumers,
+        privileged=variant.privileged,
+    )
+    outcomes = tuple(system.run(arm.variant, scenes, taps, arm.seed))
+    if [outcome.scene for outcome in outcomes] != list(scenes):
+        raise WrongOutcomes(
+            f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
+            f"{[outcome.scene for outcome in outcomes]}: run() returns one for each, in order"
+        )
+    taps.verify(_last_steps(outcomes, system.control_dt_s))
+    receipts = taps.receipts()
+    return tuple(
+        replace(
+            outcome,
+            struck_steps=int(receipts.steps_struck[i]),
+            altered_steps=int(receipts.steps_altered[i]),
+        )
+        for i, outcome in enumerate(outcomes)
+    )
+
+
+def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:
+    """Return the last control step of each trial; before the first for one that failed."""
+    steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
+    return np.array(steps, dtype=np.int64) - 1

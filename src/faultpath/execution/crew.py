@@ -1,0 +1,173 @@
+"""Worker processes seen from the parent."""
+
+import multiprocessing.connection as connections
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from faultpath.execution.attempt import Died, Done, Raised, Wrong
+from faultpath.execution.schedule import Task
+from faultpath.execution.worker import Hello, Order, Ready
+
+_ONE_THREAD = (
+    "OMP_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+_BOOT = (
+    "import sys; from faultpath.execution.worker import main; "
+    "main(int(sys.argv[1]), int(sys.argv[2]))"
+)
+
+
+class WorkerLost(Exception):
+    """Worker processes cannot be brought up."""
+
+
+class Worker:
+    """One worker process and the task that it is at.
+
+    The process is started by command, not by `multiprocessing`: its environment limits numpy and
+    torch to one thread before either is imported, and the user's script is not imported again.
+    """
+
+    def __init__(self, number: int, hello: Hello) -> None:
+        self.number = number
+        self.ready = False
+        self.task: Task | None = None
+        ours, theirs = socket.socketpair()
+        lifeline, self._lifeline = os.pipe()
+        path = os.pathsep.join(entry for entry in sys.path if entry)
+        environment = {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": path}
+        # A blocked signal stays blocked in the child until it says how it takes it.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            self.process = subprocess.Popen(
+                [sys.executable, "-P", "-c", _BOOT, str(theirs.fileno()), str(lifeline)],
+                pass_fds=(theirs.fileno(), lifeline),
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=sys.__stderr__,  # our standard output belongs to the command
+            )
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            theirs.close()
+            os.close(lifeline)
+        self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
+        with suppress(OSError):  # a worker that died already shows when we read
+            self.channel.send(hello)
+
+    def send(self, task: Task) -> None:
+        """Hand a task out."""
+        self.task = task
+        with suppress(OSError):
+            self.channel.send(Order(task.unit.arm, task.scenes))
+
+    def receive(self) -> Ready | Done | Raised | Wrong | Died:
+        """Return the next message, or how the process ended."""
+        try:
+            return self.channel.recv()
+        except (EOFError, OSError):
+            return Died(self._obituary())
+
+    def stop(self) -> None:
+        """End the process now; harmless when it has ended."""
+        self.process.kill()
+        self.process.wait()
+        self.channel.close()
+        if self._lifeline >= 0:
+            os.close(self._lifeline)
+            self._lifeline = -1
+
+    def _obituary(self) -> str:
+        try:
+            code = self.process.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            return "the worker process fell silent"
+        if code >= 0:
+            return f"the worker process ended by itself with status {code}"
+        hint = ", often for want of memory" if code == -signal.SIGKILL else ""
+        return f"the worker process was ended by {signal.Signals(-code).name}{hint}"
+
+
+class Crew:
+    """Several workers; one that dies is replaced."""
+
+    def __init__(self, hello: Hello, expected: Ready, count: int) -> None:
+        self._hello = hello
+        self._expected = expected
+        self._false_starts = 0
+        self._workers: dict[int, Worker] = {}
+        try:
+            for number in range(count):
+                self._workers[number] = Worker(number, hello)
+        except BaseException:
+            self.stop()
+            raise
+
+    def __enter__(self) -> "Crew":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def idle(self) -> Iterator[Worker]:
+        """Yield the workers that could start a task now."""
+        for worker in self._workers.values():
+            if worker.ready and worker.task is None:
+                yield worker
+
+    def replies(self, timeout_s: float) -> Iterator[tuple[Task, Done | Raised | Wrong | Died]]:
+        """Wait for news and yield what came of tasks."""
+        channels = {worker.channel: worker for worker in self._workers.values()}
+        for channel in connections.wait(list(channels), timeout_s):
+            worker = next(w for c, w in channels.items() if c is channel)
+            message = worker.receive()
+            if isinstance(message, Ready):
+                self._welcome(worker, message)
+                continue
+            task, worker.task = worker.task, None
+            if isinstance(message, Died):
+                self._replace(worker)
+            if task is not None:
+                yield task, message
+            else:
+                self._false_start(message)
+
+    def stop(self) -> None:
+        """End every worker."""
+        for worker in self._workers.values():
+            worker.stop()
+
+    def _welcome(self, worker: Worker, message: Ready) -> None:
+        if message != self._expected:
+            raise WorkerLost(
+                f"system {self._hello.system.name!r} has another fingerprint or library in a "
+                "worker process than here: neither may depend on the process that builds it"
+            )
+        worker.ready = True
+
+    def _replace(self, worker: Worker) -> None:
+        worker.stop()
+        self._workers[worker.number] = Worker(worker.number, self._hello)
+
+    def _false_start(self, message: Done | Raised | Wrong | Died) -> None:
+        """Give up when workers cannot build the system."""
+        if isinstance(message, Wrong):
+            raise message.error
+        if isinstance(message, Raised):
+            raise WorkerLost(
+                f"system {self._hello.system.name!r} cannot be built in a worker process:\n"
+                f"{message.traceback}"
+            )
+        self._false_starts += 1
+        if self._false_starts > 2 * len(self._workers):
+            how = message.how if isinstance(message, Died) else "it said nothing of use"
+            raise WorkerLost(f"worker processes do not come up: {how}")

@@ -1,0 +1,131 @@
+"""Which units are done, and what becomes of a reply."""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
+from faultpath.execution.schedule import Task
+from faultpath.execution.units import Unit
+from faultpath.store.folder import RunFolder
+from faultpath.trials.outcome import Outcome, Status
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run is."""
+
+    blocks_done: int
+    blocks_total: int
+    blocks_kept: int
+    """Of those done, the ones that an earlier invocation left."""
+    trials_done: int
+    trials_total: int
+    trials_estimated: float
+    """Trials done, plus the likely share of those that run now."""
+    seconds_left: float | None
+    """`None` until something can be known."""
+
+
+ProgressCallback = Callable[[Progress], None]
+
+
+class Ledger:
+    """The state of a run: stores each unit as soon as all its scenes have an outcome."""
+
+    def __init__(self, units: Iterable[Unit], folder: RunFolder, workers: int) -> None:
+        self.units = tuple(units)
+        self.outcomes: dict[tuple[str, str], Outcome] = {}
+        self.kept = 0
+        self.computed = 0
+        self._folder = folder
+        self._workers = workers
+        self._partial: dict[str, dict[str, Outcome]] = {}
+        self._tracebacks: dict[str, list[str]] = {}
+        self._running: dict[tuple[str, tuple[str, ...]], float] = {}
+        self._seconds, self._timed_trials = 0.0, 0
+
+    @property
+    def done(self) -> int:
+        """Units done."""
+        return self.kept + self.computed
+
+    def keep(self, unit: Unit, outcomes: Iterable[Outcome]) -> None:
+        """Take over a unit that was done before."""
+        self.kept += 1
+        self._enter(unit, outcomes)
+
+    def start(self, task: Task) -> None:
+        """Note that a task runs now."""
+        self._running[task.unit.key, task.scenes] = time.monotonic()
+
+    def settle(self, task: Task, reply: Reply) -> tuple[Task, ...]:
+        """Take in a reply and return the tasks that follow from it.
+
+        A block whose program raised an error is run again scene by scene, so that only the scenes
+        at fault are lost. A block over which a worker died is run again once, and then scene by
+        scene too. `Wrong` raises its error: nothing that follows would mean anything.
+        """
+        self._running.pop((task.unit.key, task.scenes), None)
+        match reply:
+            case Wrong():
+                raise reply.error
+            case Done():
+                self._seconds += reply.seconds
+                self._timed_trials += len(task.scenes)
+                return self._record(task.unit, reply.outcomes)
+            case Died() if not task.retried:
+                return (replace(task, retried=True),)
+            case Died() | Raised() if len(task.scenes) > 1:
+                return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
+            case Raised():
+                return self._fail(task, reply.error, reply.traceback)
+            case Died():
+                return self._fail(task, reply.how, reply.how)
+
+    def progress(self) -> Progress:
+        """Return how far the run is, with an estimate for the blocks that run now."""
+        done = sum(map(len, self._partial.values())) + len(self.outcomes)
+        total = sum(len(unit.scenes) for unit in self.units)
+        estimated, left = float(done), None
+        if self._timed_trials and self._seconds > 0:
+            pace = self._seconds / self._timed_trials
+            now = time.monotonic()
+            for (_, scenes), since in self._running.items():
+                estimated += min(0.95 * len(scenes), (now - since) / pace)
+            left = (total - estimated) * pace / max(1, self._workers)
+        return Progress(self.done, len(self.units), self.kept, done, total, estimated, left)
+
+    def _fail(self, task: Task, error: str, details: str) -> tuple[Task, ...]:
+        (scene,) = task.scenes
+        arm = task.unit.arm.model_dump_json()
+        self._tracebacks.setdefault(task.unit.key, []).append(f"{scene}: {arm}\n{details}\n")
+        outcome = Outcome(
+            scene=scene,
+            status=Status.FAILED,
+            time_s=0.0,
+            terminal_distance_m=None,
+            min_clearance_m=None,
+            initial_hash="",
+            disturbance_hash="",
+            planner_noise_hash="",
+            error=error,
+        )
+        return self._record(task.unit, (outcome,))
+
+    def _record(self, unit: Unit, outcomes: Iterable[Outcome]) -> tuple[Task, ...]:
+        partial = self._partial.setdefault(unit.key, {})
+        partial.update((outcome.scene, outcome) for outcome in outcomes)
+        if len(partial) == len(unit.scenes):
+            ordered = [partial[scene] for scene in unit.scenes]
+            if details := self._tracebacks.pop(unit.key, None):
+                self._folder.save_failure(unit.key, "\n".join(sorted(details)))
+            self._folder.save_shard(unit.key, ordered)
+            del self._partial[unit.key]
+            self.computed += 1
+            self._enter(unit, ordered)
+        return ()
+
+    def _enter(self, unit: Unit, outcomes: Iterable[Outcome]) -> None:
+        key = unit.arm.key()
+        self.outcomes.update(((key, outcome.scene), outcome) for outcome in outcomes)

@@ -1,0 +1,100 @@
+"""Where a run's numbers come from: code, packages, machine and command."""
+
+import platform
+import subprocess
+import time
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import faultpath
+from faultpath.execution.runner import RunResult
+from faultpath.record.provenance import RunProvenance
+
+_PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
+
+
+class Stopwatch:
+    """When an invocation started, on the calendar and on a clock that is never set."""
+
+    def __init__(self) -> None:
+        self.started = datetime.now(UTC)
+        self._from = time.monotonic()
+
+    def seconds(self) -> float:
+        """Return the seconds since the start."""
+        return time.monotonic() - self._from
+
+
+def run_provenance(
+    result: RunResult, stopwatch: Stopwatch, command: Sequence[str], workers: int
+) -> RunProvenance:
+    """Describe the run that has just finished."""
+    commit, dirty = checkout(Path(faultpath.__file__).parent)
+    return RunProvenance(
+        faultpath_version=faultpath.__version__,
+        commit=commit,
+        dirty=dirty,
+        command=tuple(command),
+        python=platform.python_version(),
+        packages=packages(),
+        platform=platform.platform(),
+        processor=processor(),
+        workers=workers,
+        started=stopwatch.started.isoformat(timespec="seconds"),
+        finished=datetime.now(UTC).isoformat(timespec="seconds"),
+        wall_s=round(stopwatch.seconds(), 3),
+        blocks_computed=result.blocks_computed,
+        blocks_kept=result.blocks_kept,
+        system_fingerprint=result.system_fingerprint,
+        library_hash=result.library_hash,
+        outcomes_sha256=result.outcomes_sha256,
+    )
+
+
+def checkout(package: Path) -> tuple[str | None, bool | None]:
+    """Return the commit of the checkout that `package` is tracked in, and whether it was changed.
+
+    `(None, None)` without one. A package installed into an environment that happens to lie inside
+    some other repository is not tracked there, and that repository's commit would say nothing.
+    """
+    if _git(package, "ls-files", "--error-unmatch", "__init__.py") is None:
+        return None, None
+    changes = _git(package, "status", "--porcelain", "--", ".")
+    return _git(package, "rev-parse", "HEAD"), None if changes is None else bool(changes)
+
+
+def packages() -> dict[str, str]:
+    """Return the versions of the packages that numbers depend on, of those installed."""
+    found: dict[str, str] = {}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def processor() -> str:
+    """Return the model of the processor, as well as the platform tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(models, "") or platform.processor() or platform.machine()
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            capture_output=True,
+            text=True,
+            timeout=10,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()

@@ -1,0 +1,175 @@
+"""Run a study into a folder, from wherever an earlier invocation left it."""
+
+import logging
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import faultpath
+from faultpath.errors import UserError
+from faultpath.execution.attempt import attempt, limit_threads
+from faultpath.execution.crew import Crew
+from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
+from faultpath.execution.schedule import Schedule
+from faultpath.execution.units import Unit, plan
+from faultpath.execution.worker import Hello, Ready
+from faultpath.store.folder import RunFolder
+from faultpath.store.manifest import Manifest
+from faultpath.store.tables import Trace, TrialAddress, traces_of
+from faultpath.trials.arm import Arm, Study
+from faultpath.trials.registry import load_system
+from faultpath.trials.system import System
+from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
+
+_TICK_S = 0.5
+_log = logging.getLogger("faultpath")
+
+
+class Interrupted(Exception):
+    """Ctrl-C stopped a run; everything finished is stored, and the same command resumes."""
+
+    def __init__(self, done: int, total: int) -> None:
+        super().__init__(f"interrupted with {done} of {total} blocks done")
+        self.done = done
+        self.total = total
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A trial in which the program raised an error or died."""
+
+    arm: Arm
+    scene: str
+    error: str
+    details: Path | None
+    """The file with the traceback, when there is one."""
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """A finished run."""
+
+    outcomes: OutcomeTable
+    traces: Mapping[TrialAddress, Trace]
+    """Position at each control step, `[T, 3]`, metres, world frame."""
+    blocks_computed: int
+    blocks_kept: int
+    failures: tuple[Failure, ...]
+    outcomes_sha256: str
+    system_fingerprint: str
+    library_hash: str
+
+
+def run_study(
+    study: Study,
+    folder: Path | str,
+    workers: int = 2,
+    progress: ProgressCallback | None = None,
+    notice: Callable[[str], None] = _log.warning,
+    system: System | None = None,
+) -> RunResult:
+    """Run every arm of a study over its scenes, keeping what `folder` already holds.
+
+    `workers` is the number of worker processes; 0 runs in this one. `progress` is called after
+    each block and about twice a second; `notice` with what a user should read, such as a damaged
+    file or another process in the folder. `system` saves building it here when the caller has.
+
+    Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
+    error of `faultpath.taps` when the audit itself is wrong.
+    """
+    if workers < 0:
+        raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    system = load_system(study.system) if system is None else system
+    library = system.library(study.library)
+    fingerprint = system.fingerprint()
+    scenes = selected(study, library)
+    check_rows(study.rows, system.variants)
+    units = plan(study.arms(), scenes, system.block_size, library, fingerprint)
+    manifest = Manifest(
+        faultpath_version=faultpath.__version__,
+        system_fingerprint=fingerprint,
+        library_hash=library.content_hash,
+        study=study,
+    )
+    run = RunFolder(Path(folder))
+    ledger = Ledger(units, run, workers)
+    report = progress or _ignore
+    try:
+        with run.open(manifest, notice):
+            missing = _keep_finished(ledger, run, notice)
+            report(ledger.progress())
+            if workers == 0:
+                _run_here(system, missing, ledger, report)
+            elif missing:
+                hello = Hello(study.system, study.library)
+                expected = Ready(fingerprint, library.content_hash)
+                with Crew(hello, expected, min(workers, len(missing))) as crew:
+                    _run_with(crew, missing, ledger, report)
+            table = assemble(study, library, ledger.outcomes)
+            digest = run.save_tables(table)
+    except KeyboardInterrupt:
+        raise Interrupted(ledger.done, len(units)) from None
+    return RunResult(
+        outcomes=table,
+        traces=traces_of(table),
+        blocks_computed=ledger.computed,
+        blocks_kept=ledger.kept,
+        failures=_failures(ledger, run),
+        outcomes_sha256=digest,
+        system_fingerprint=fingerprint,
+        library_hash=library.content_hash,
+    )
+
+
+def _keep_finished(
+    ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
+) -> tuple[Unit, ...]:
+    missing: list[Unit] = []
+    for unit in ledger.units:
+        outcomes = run.load_shard(unit.key, unit.scenes, notice)
+        if outcomes is None:
+            missing.append(unit)
+        else:
+            ledger.keep(unit, outcomes)
+    return tuple(missing)
+
+
+def _run_here(
+    system: System, missing: tuple[Unit, ...], ledger: Ledger, report: ProgressCallback
+) -> None:
+    limit_threads()
+    schedule = Schedule(missing)
+    while task := schedule.take(0):
+        ledger.start(task)
+        schedule.put(ledger.settle(task, attempt(system, task.unit.arm, task.scenes)))
+        report(ledger.progress())
+
+
+def _run_with(
+    crew: Crew, missing: tuple[Unit, ...], ledger: Ledger, report: ProgressCallback
+) -> None:
+    schedule = Schedule(missing)
+    while ledger.done < len(ledger.units):
+        for worker in crew.idle():
+            if task := schedule.take(worker.number):
+                ledger.start(task)
+                worker.send(task)
+        for task, reply in crew.replies(_TICK_S):
+            schedule.put(ledger.settle(task, reply))
+        report(ledger.progress())
+
+
+def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:
+    failures: list[Failure] = []
+    for unit in ledger.units:
+        details = run.failures / f"{unit.key}.txt"
+        for scene in unit.scenes:
+            outcome = ledger.outcomes[unit.arm.key(), scene]
+            if outcome.failed:
+                where = details if details.exists() else None
+                failures.append(Failure(unit.arm, scene, outcome.error or "", where))
+    return tuple(failures)
+
+
+def _ignore(progress: Progress) -> None:
+    del progress

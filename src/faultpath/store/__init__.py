@@ -1,0 +1,7 @@
+"""What a run leaves behind: a folder of shards, and the tables assembled from them."""
+
+from faultpath.store.folder import RunFolder
+from faultpath.store.manifest import FORMAT, Manifest
+from faultpath.store.tables import TrialAddress, read_outcomes, read_traces
+
+__all__ = ["FORMAT", "Manifest", "RunFolder", "TrialAddress", "read_outcomes", "read_traces"]

@@ -1,0 +1,125 @@
+"""A run on disk."""
+
+import hashlib
+import os
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+from faultpath.errors import UserError
+from faultpath.store import atomic
+from faultpath.store.lock import Notice, locked
+from faultpath.store.manifest import Manifest, check_same, read_manifest
+from faultpath.store.parquet import Unreadable
+from faultpath.store.tables import decode_shard, encode_outcomes, encode_shard, encode_traces
+from faultpath.trials.outcome import Outcome
+from faultpath.trials.table import OutcomeTable
+
+
+class RunFolder:
+    """The folder of one run.
+
+    `manifest.json` says which study it is, `shards/` holds one Parquet file a finished block,
+    `failures/` the tracebacks of trials that failed, and `outcomes.parquet` and `traces.parquet`
+    are assembled at the end. Everything is written atomically.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.shards = path / "shards"
+        self.failures = path / "failures"
+        self.manifest = path / "manifest.json"
+        self.outcomes = path / "outcomes.parquet"
+        self.traces = path / "traces.parquet"
+
+    @contextmanager
+    def open(self, manifest: Manifest, notice: Notice) -> Generator[None, None, None]:
+        """Create or continue the run, alone in the folder until the end of the `with` block.
+
+        `UserError` when the folder cannot be written, or holds something else.
+        """
+        self._create()
+        with locked(self.path, notice):
+            found = read_manifest(self.manifest)
+            if found is not None:
+                check_same(self.path, found, manifest)
+            try:
+                for folder in (self.shards, self.failures):
+                    folder.mkdir(exist_ok=True)
+                for folder in (self.path, self.shards, self.failures):
+                    atomic.sweep(folder)
+                if found != manifest:
+                    atomic.write(self.manifest, manifest.encode())
+            except OSError as error:
+                raise self._unwritable(error) from error
+            yield
+
+    def save_shard(self, key: str, outcomes: Sequence[Outcome]) -> None:
+        """Store a finished block. The name carries a digest of the bytes, checked on reading."""
+        data = encode_shard(outcomes)
+        self._write(self.shards / f"{key}-{_digest(data)}.parquet", data)
+
+    def load_shard(
+        self, key: str, scenes: Sequence[str], notice: Notice
+    ) -> tuple[Outcome, ...] | None:
+        """Return a finished block, or `None` without a whole one; a damaged one is removed."""
+        for path in sorted(self.shards.glob(f"{key}-*.parquet")):
+            try:
+                data = path.read_bytes()
+                if path.stem != f"{key}-{_digest(data)}":
+                    raise Unreadable("its contents are not those that were written")
+                outcomes = decode_shard(data)
+                if [outcome.scene for outcome in outcomes] != list(scenes):
+                    raise Unreadable("it holds other scenes")
+            except Unreadable as error:
+                notice(f"{path} is damaged ({error}); removing it and running its trials again")
+                path.unlink()
+            else:
+                return outcomes
+        return None
+
+    def remove_shard(self, key: str) -> None:
+        """Forget a finished block, so that it runs again."""
+        for path in self.shards.glob(f"{key}-*.parquet"):
+            path.unlink()
+
+    def save_failure(self, key: str, text: str) -> Path:
+        """Store what is known about the failed trials of a block and return where."""
+        path = self.failures / f"{key}.txt"
+        self._write(path, text.encode(errors="backslashreplace"))
+        return path
+
+    def save_tables(self, table: OutcomeTable) -> str:
+        """Write the assembled tables and return the SHA-256 of the outcomes."""
+        data = encode_outcomes(table)
+        self._write(self.traces, encode_traces(table))
+        self._write(self.outcomes, data)
+        return hashlib.sha256(data).hexdigest()
+
+    def _create(self) -> None:
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except FileExistsError as error:
+            raise UserError(
+                f"{self.path} is a file, and the run needs a folder: choose another path"
+            ) from error
+        except OSError as error:
+            raise self._unwritable(error) from error
+        if not os.access(self.path, os.W_OK | os.X_OK):
+            raise self._unwritable(PermissionError(0, "permission denied"))
+
+    def _write(self, path: Path, data: bytes) -> None:
+        try:
+            atomic.write(path, data)
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> UserError:
+        return UserError(
+            f"cannot write to {self.path} ({error.strerror}): choose a folder that you may write "
+            "to and that has room"
+        )
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:32]

@@ -1,0 +1,82 @@
+"""What a run folder says about itself, and whether it may be continued."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from faultpath.errors import UserError
+from faultpath.trials.arm import Study
+
+FORMAT = 1
+"""Version of the folder's layout and of its columns."""
+
+
+class Manifest(BaseModel):
+    """The study of a run folder and the exact system and scenes that it was run with."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: int = FORMAT
+    faultpath_version: str
+    system_fingerprint: str
+    library_hash: str
+    study: Study
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
+
+
+def read_manifest(path: Path) -> Manifest | None:
+    """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
+    try:
+        content: Any = json.loads(path.read_text())
+        found: Any = content["format"]
+    except FileNotFoundError:
+        return None
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise _damaged(path) from error
+    if found != FORMAT:
+        raise UserError(
+            f"{path.parent} was written in format {found} and this faultpath reads format "
+            f"{FORMAT}: choose another folder, or the version of faultpath that wrote it"
+        )
+    try:
+        return Manifest.model_validate(content)
+    except ValidationError as error:
+        raise _damaged(path) from error
+
+
+def check_same(folder: Path, found: Manifest, asked: Manifest) -> None:
+    """Raise `UserError` unless `folder` may go on with the study that is asked for.
+
+    The selection of scenes may differ: a quick look at some scenes grows into the whole library
+    in the same folder, and keeps what it has.
+    """
+    differences = [
+        what
+        for what, one, two in (
+            ("version of faultpath", found.faultpath_version, asked.faultpath_version),
+            ("system", found.study.system, asked.study.system),
+            ("state of the system", found.system_fingerprint, asked.system_fingerprint),
+            ("library", found.study.library, asked.study.library),
+            ("state of the library", found.library_hash, asked.library_hash),
+            ("study", found.study.name, asked.study.name),
+            ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
+        )
+        if one != two
+    ]
+    if differences:
+        raise UserError(
+            f"{folder} holds the run of another study, with another {differences[0]}: choose a "
+            "new folder, or repeat the command that made this one"
+        )
+
+
+def _damaged(path: Path) -> UserError:
+    return UserError(
+        f"{path} cannot be read as a manifest: choose a new folder, or delete this one"
+    )

@@ -1,0 +1,69 @@
+"""Columns to Parquet bytes and back: the only file that talks to pyarrow.
+
+The bytes depend on the columns and on the version of pyarrow alone.
+"""
+
+# pyarrow ships no types.
+# pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+Values = Sequence[Any]
+
+
+class Kind(Enum):
+    """The types that a column may have; each may hold null."""
+
+    TEXT = pa.string()
+    INTEGER = pa.int64()
+    NUMBER = pa.float64()
+    NUMBERS = pa.list_(pa.float32())
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column's name and type."""
+
+    name: str
+    kind: Kind
+
+
+class Unreadable(Exception):
+    """The bytes are no Parquet file, or not one with the columns asked for."""
+
+
+def encode(columns: Sequence[Column], values: Mapping[str, Values]) -> bytes:
+    """Return a Parquet file with these columns, in this order."""
+    arrays = [pa.array(values[column.name], type=column.kind.value) for column in columns]
+    table = pa.table(arrays, names=[column.name for column in columns])
+    sink = pa.BufferOutputStream()
+    pq.write_table(table, sink, compression="zstd")
+    return sink.getvalue().to_pybytes()
+
+
+def decode(data: bytes, columns: Sequence[Column]) -> dict[str, list[Any]]:
+    """Return these columns of a Parquet file; `Unreadable` when it has not got them."""
+    try:
+        table = pq.read_table(pa.BufferReader(data))
+    except (pa.ArrowException, OSError) as error:
+        raise Unreadable(str(error)) from error
+    out: dict[str, list[Any]] = {}
+    for column in columns:
+        if column.name not in table.column_names:
+            raise Unreadable(f"there is no column {column.name!r}")
+        out[column.name] = _values(table.column(column.name), column.kind)
+    return out
+
+
+def _values(column: Any, kind: Kind) -> list[Any]:
+    if column.type != kind.value:
+        raise Unreadable(f"a column is {column.type}, not {kind.value}")
+    if kind is not Kind.NUMBERS:
+        return column.to_pylist()
+    return [scalar.values.to_numpy() if scalar.is_valid else None for scalar in column]

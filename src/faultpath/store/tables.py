@@ -1,0 +1,166 @@
+"""Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.errors import UserError
+from faultpath.store.parquet import Column, Kind, Unreadable, Values, decode, encode
+from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.table import OutcomeTable, TrialRow
+
+Trace = NDArray[np.float32]
+
+_ADDRESS = (
+    Column("variant", Kind.TEXT),
+    Column("path", Kind.TEXT),
+    Column("seed", Kind.INTEGER),
+    Column("scene", Kind.TEXT),
+)
+_PLACE = (Column("scene_index", Kind.INTEGER), Column("topology", Kind.TEXT))
+_RESULT = (
+    Column("status", Kind.TEXT),
+    Column("time_s", Kind.NUMBER),
+    Column("terminal_distance_m", Kind.NUMBER),
+    Column("min_clearance_m", Kind.NUMBER),
+    Column("struck_steps", Kind.INTEGER),
+    Column("altered_steps", Kind.INTEGER),
+    Column("initial_hash", Kind.TEXT),
+    Column("disturbance_hash", Kind.TEXT),
+    Column("planner_noise_hash", Kind.TEXT),
+    Column("error", Kind.TEXT),
+)
+_TRACE = tuple(Column(name, Kind.NUMBERS) for name in ("x_m", "y_m", "z_m"))
+_SHARD = (Column("scene", Kind.TEXT), *_RESULT, *_TRACE)
+_OUTCOMES = (*_ADDRESS, *_PLACE, *_RESULT)
+_TRACES = (*_ADDRESS, *_TRACE)
+
+
+class TrialAddress(NamedTuple):
+    """Where a trial stands in a study."""
+
+    variant: str
+    path: str
+    seed: int
+    scene: str
+
+
+def encode_shard(outcomes: Sequence[Outcome]) -> bytes:
+    """Return the outcomes of one block, traces included."""
+    return encode(_SHARD, {**_results(outcomes), **_traces(outcomes)})
+
+
+def decode_shard(data: bytes) -> tuple[Outcome, ...]:
+    """Return the outcomes of one block; `Unreadable` when the bytes are not a shard."""
+    values = decode(data, _SHARD)
+    return tuple(
+        _outcome(row, _trace([row[column.name] for column in _TRACE])) for row in _rows(values)
+    )
+
+
+def encode_outcomes(table: OutcomeTable) -> bytes:
+    """Return the table without its traces."""
+    outcomes = [row.outcome for row in table.rows]
+    place = {column.name: [getattr(r, column.name) for r in table.rows] for column in _PLACE}
+    return encode(_OUTCOMES, {**_address(table), **place, **_results(outcomes)})
+
+
+def encode_traces(table: OutcomeTable) -> bytes:
+    """Return the traces of the trials that have one."""
+    traced = OutcomeTable(tuple(row for row in table.rows if row.outcome.trace is not None))
+    outcomes = [row.outcome for row in traced.rows]
+    return encode(_TRACES, {**_address(traced), **_traces(outcomes)})
+
+
+def read_outcomes(path: Path) -> OutcomeTable:
+    """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
+    return OutcomeTable(
+        tuple(
+            TrialRow(
+                variant=row["variant"],
+                path=row["path"],
+                seed=row["seed"],
+                scene_index=row["scene_index"],
+                topology=row["topology"],
+                outcome=_outcome(row, None),
+            )
+            for row in _rows(_read(path, _OUTCOMES))
+        )
+    )
+
+
+def read_traces(path: Path) -> dict[TrialAddress, Trace]:
+    """Read assembled traces, `[T, 3]` each, metres; `UserError` when there are none to read."""
+    traces: dict[TrialAddress, Trace] = {}
+    for row in _rows(_read(path, _TRACES)):
+        trace = _trace([row[column.name] for column in _TRACE])
+        if trace is not None:
+            address = TrialAddress(row["variant"], row["path"], row["seed"], row["scene"])
+            traces[address] = trace
+    return traces
+
+
+def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
+    """Return the traces of a table by trial."""
+    return {
+        TrialAddress(row.variant, row.path, row.seed, row.outcome.scene): row.outcome.trace
+        for row in table.rows
+        if row.outcome.trace is not None
+    }
+
+
+def _read(path: Path, columns: Sequence[Column]) -> dict[str, list[Any]]:
+    try:
+        return decode(path.read_bytes(), columns)
+    except OSError as error:
+        raise UserError(
+            f"cannot read {path} ({error.strerror}): finish the run that writes it"
+        ) from error
+    except Unreadable as error:
+        raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
+
+
+def _rows(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
+    return [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
+
+
+def _address(table: OutcomeTable) -> dict[str, Values]:
+    return {
+        "variant": [row.variant for row in table.rows],
+        "path": [row.path for row in table.rows],
+        "seed": [row.seed for row in table.rows],
+        "scene": [row.outcome.scene for row in table.rows],
+    }
+
+
+def _results(outcomes: Sequence[Outcome]) -> dict[str, Values]:
+    values: dict[str, Values] = {
+        column.name: [getattr(outcome, column.name) for outcome in outcomes] for column in _RESULT
+    }
+    return {
+        **values,
+        "scene": [outcome.scene for outcome in outcomes],
+        "status": [outcome.status.value for outcome in outcomes],
+    }
+
+
+def _traces(outcomes: Sequence[Outcome]) -> dict[str, Values]:
+    traces = [None if o.trace is None else np.asarray(o.trace, np.float32) for o in outcomes]
+    return {
+        column.name: [None if trace is None else trace[:, axis] for trace in traces]
+        for axis, column in enumerate(_TRACE)
+    }
+
+
+def _trace(axes: Sequence[Trace | None]) -> Trace | None:
+    present = [axis for axis in axes if axis is not None]
+    return np.stack(present, axis=1) if len(present) == len(axes) else None
+
+
+def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
+    fields = {column.name: row[column.name] for column in _RESULT}
+    status = Status(fields.pop("status"))
+    return Outcome(scene=row["scene"], status=status, trace=trace, **fields)

@@ -1,0 +1,184 @@
+"""Two arms over the same scenes, refused unless every pair met the same conditions."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.table import OutcomeTable, TrialRow
+
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
+
+_HASHES = (
+    ("initial_hash", "initial states"),
+    ("disturbance_hash", "disturbances"),
+    ("planner_noise_hash", "planner noise"),
+)
+
+
+class PairingRefused(Exception):
+    """Two trials that were to be compared did not meet the same conditions."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """One side of a contrast: a variant on a path."""
+
+    variant: str
+    path: str
+
+    def __str__(self) -> str:
+        return f"{self.variant} under {self.path}"
+
+
+@dataclass(frozen=True)
+class Trials:
+    """The trials of one side; every array is `[scenes, seeds]`.
+
+    `terminal_distance_m` and `min_clearance_m` are `None` when any of the trials has none.
+    """
+
+    success: Bools
+    crash: Bools
+    time_s: Floats
+    terminal_distance_m: Floats | None
+    min_clearance_m: Floats | None
+
+    def only(self, keep: Bools) -> "Trials":
+        """Return the scenes where `keep` `[scenes]` is true."""
+        return Trials(
+            self.success[keep],
+            self.crash[keep],
+            self.time_s[keep],
+            None if self.terminal_distance_m is None else self.terminal_distance_m[keep],
+            None if self.min_clearance_m is None else self.min_clearance_m[keep],
+        )
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Paired trials without the void ones.
+
+    A scene with a void pair in any seed is left out whole, so that the arrays stay rectangular and
+    every seed is seen over the same scenes; `void` counts the pairs in which a trial failed and
+    `void_scenes` names what was left out.
+    """
+
+    scenes: tuple[str, ...]
+    scene_indices: tuple[int, ...]
+    topologies: tuple[str, ...]
+    seeds: tuple[int, ...]
+    first: Trials
+    second: Trials
+    void: int
+    void_scenes: tuple[str, ...]
+
+    def only(self, scenes: Sequence[str]) -> "Pairs":
+        """Return the pairs of `scenes`, to cut several contrasts to what all of them have."""
+        wanted = set(scenes)
+        kept = [i for i, scene in enumerate(self.scenes) if scene in wanted]
+        keep = np.zeros(len(self.scenes), dtype=np.bool_)
+        keep[kept] = True
+        return Pairs(
+            scenes=tuple(self.scenes[i] for i in kept),
+            scene_indices=tuple(self.scene_indices[i] for i in kept),
+            topologies=tuple(self.topologies[i] for i in kept),
+            seeds=self.seeds,
+            first=self.first.only(keep),
+            second=self.second.only(keep),
+            void=self.void,
+            void_scenes=self.void_scenes,
+        )
+
+
+def pair(
+    table: OutcomeTable, first: Side, second: Side, seeds: Sequence[int] | None = None
+) -> Pairs:
+    """Pair two sides scene by scene and seed by seed.
+
+    `seeds` are those of the first side when left out. `PairingRefused` when the sides do not hold
+    the same seeds and scenes, or when two trials of a pair differ in their initial state, in
+    their disturbance or in the planner's noise.
+    """
+    seeds = table.seeds(first.variant, first.path) if seeds is None else tuple(seeds)
+    ones = [_arm(table, first, seed) for seed in seeds]
+    twos = [_arm(table, second, seed) for seed in seeds]
+    if not ones:
+        raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
+    for seed, one, two in zip(seeds, ones, twos, strict=True):
+        _check_scenes(ones[0], one, first, first, seed)
+        _check_scenes(one, two, first, second, seed)
+        for a, b in zip(one, two, strict=True):
+            _check_conditions(a.outcome, b.outcome, first, second, seed)
+    void = _flags(ones, Status.FAILED) | _flags(twos, Status.FAILED)
+    keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
+    kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
+    return Pairs(
+        scenes=tuple(row.outcome.scene for row in kept),
+        scene_indices=tuple(row.scene_index for row in kept),
+        topologies=tuple(row.topology for row in kept),
+        seeds=tuple(seeds),
+        first=_trials(ones, keep),
+        second=_trials(twos, keep),
+        void=int(void.sum()),
+        void_scenes=tuple(
+            row.outcome.scene for row, stays in zip(ones[0], keep, strict=True) if not stays
+        ),
+    )
+
+
+def _arm(table: OutcomeTable, side: Side, seed: int) -> tuple[TrialRow, ...]:
+    try:
+        return table.arm(side.variant, side.path, seed)
+    except KeyError:
+        raise PairingRefused(f"the table has no trial of {side} with seed {seed}") from None
+
+
+def _check_scenes(
+    one: Sequence[TrialRow], two: Sequence[TrialRow], first: Side, second: Side, seed: int
+) -> None:
+    left = [row.outcome.scene for row in one]
+    right = [row.outcome.scene for row in two]
+    if left != right:
+        odd = sorted(set(left) ^ set(right)) or left
+        raise PairingRefused(
+            f"cannot pair {first} with {second} (seed {seed}): they ran in different scenes, "
+            f"for example {odd[0]!r}"
+        )
+
+
+def _check_conditions(a: Outcome, b: Outcome, first: Side, second: Side, seed: int) -> None:
+    if a.failed or b.failed:
+        return  # a failed trial has no conditions to compare; its pair is void
+    for name, what in _HASHES:
+        if getattr(a, name) != getattr(b, name):
+            raise PairingRefused(
+                f"cannot pair {first} with {second} in scene {a.scene!r} (seed {seed}): their "
+                f"{what} differ ({name} {getattr(a, name)!r} and {getattr(b, name)!r}), so the "
+                "difference between the trials would not be the arms' alone"
+            )
+
+
+def _flags(arms: Sequence[Sequence[TrialRow]], status: Status) -> Bools:
+    flags = [[row.outcome.status is status for row in arm] for arm in arms]
+    return np.array(flags, dtype=np.bool_).T
+
+
+def _trials(arms: Sequence[Sequence[TrialRow]], keep: Bools) -> Trials:
+    outcomes = [[r.outcome for r, stays in zip(arm, keep, strict=True) if stays] for arm in arms]
+    return Trials(
+        success=_flags(arms, Status.SUCCESS)[keep],
+        crash=_flags(arms, Status.CRASH)[keep],
+        time_s=np.array([[o.time_s for o in arm] for arm in outcomes], dtype=np.float64).T,
+        terminal_distance_m=_optional([[o.terminal_distance_m for o in arm] for arm in outcomes]),
+        min_clearance_m=_optional([[o.min_clearance_m for o in arm] for arm in outcomes]),
+    )
+
+
+def _optional(values: list[list[float | None]]) -> Floats | None:
+    if any(value is None for arm in values for value in arm):
+        return None
+    return np.array(values, dtype=np.float64).T

@@ -1,0 +1,101 @@
+"""From the name of a system to the system, by import on demand."""
+
+import importlib
+import importlib.util
+import inspect
+import os
+import sys
+from pathlib import Path
+from types import ModuleType
+
+from faultpath.errors import UserError
+from faultpath.trials.arm import SystemSpec
+from faultpath.trials.system import System
+
+BUILT_IN = {"quadrotor": "faultpath.quadrotor.system:create"}
+"""Names that stand for a factory. They are strings, so that naming one imports nothing."""
+
+_EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco"}
+
+
+def load_system(spec: SystemSpec) -> System:
+    """Build the system that `spec` names.
+
+    The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`. The attribute
+    is called with the options as keyword arguments, all strings, and returns a `System`.
+    `UserError` for a name, attribute or option that does not exist, or a missing package.
+    """
+    target = BUILT_IN.get(spec.name, spec.name)
+    place, separator, attribute = target.rpartition(":")
+    if not separator or not place or not attribute:
+        raise UserError(
+            f"there is no system {spec.name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
+            "factory as 'module:attribute' or 'path/to/file.py:attribute'"
+        )
+    try:
+        module = _load_file(place) if place.endswith(".py") else _load_module(place)
+        factory = getattr(module, attribute, None)
+        if not callable(factory):
+            raise UserError(f"{place} has no function {attribute!r} that builds a system")
+        _check_options(spec, factory)
+        system = factory(**spec.options)
+    except ModuleNotFoundError as error:
+        raise _missing(spec.name, error) from error
+    if not isinstance(system, System):
+        raise UserError(
+            f"{target} returned a {type(system).__name__}: it must return a "
+            "faultpath.trials.system.System"
+        )
+    return system
+
+
+def _load_module(name: str) -> ModuleType:
+    here = os.getcwd()
+    if here not in sys.path:  # a console script does not look in the working directory
+        sys.path.append(here)
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError as error:
+        if error.name and (name == error.name or name.startswith(error.name + ".")):
+            raise UserError(
+                f"there is no module {error.name!r}, needed for the system: check the name, or "
+                "give the path of the file as 'path/to/file.py:attribute'"
+            ) from error
+        raise
+
+
+def _load_file(place: str) -> ModuleType:
+    path = Path(place).resolve()
+    if not path.is_file():
+        raise UserError(f"there is no file {place!r} to load a system from: check the path")
+    name = f"faultpath_system_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise UserError(f"{place!r} cannot be imported: it must be a Python file")
+    if str(path.parent) not in sys.path:  # a file may import the files beside it
+        sys.path.append(str(path.parent))
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look their module up by name
+    spec.loader.exec_module(module)
+    return module
+
+
+def _check_options(spec: SystemSpec, factory: object) -> None:
+    if not callable(factory):
+        return
+    signature = inspect.signature(factory)
+    try:
+        signature.bind(**spec.options)
+    except TypeError as error:
+        known = [name for name, p in signature.parameters.items() if p.kind is not p.VAR_KEYWORD]
+        raise UserError(
+            f"the options of system {spec.name!r} do not fit ({error}): it takes "
+            f"{', '.join(known) or 'none'}"
+        ) from error
+
+
+def _missing(name: str, error: ModuleNotFoundError) -> UserError:
+    package = (error.name or "").partition(".")[0]
+    extra = _EXTRAS.get(package)
+    hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
+    return UserError(f"system {name!r} needs the package {package!r}, not installed here: {hint}")

@@ -1,0 +1,104 @@
+"""The outcome table: one row a scene, variant, path and seed."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from faultpath.errors import UserError
+from faultpath.trials.arm import Row, Study
+from faultpath.trials.outcome import Outcome
+from faultpath.trials.system import Library, SceneRef
+
+
+@dataclass(frozen=True)
+class TrialRow:
+    """One trial and where it stands in the study."""
+
+    variant: str
+    path: str
+    seed: int
+    scene_index: int
+    topology: str
+    outcome: Outcome
+
+
+@dataclass(frozen=True)
+class OutcomeTable:
+    """Every trial of a study: the rows of the study in order, in each the scenes by index."""
+
+    rows: tuple[TrialRow, ...]
+
+    @cached_property
+    def _arms(self) -> Mapping[tuple[str, str, int], tuple[TrialRow, ...]]:
+        arms: dict[tuple[str, str, int], list[TrialRow]] = {}
+        for row in self.rows:
+            arms.setdefault((row.variant, row.path, row.seed), []).append(row)
+        return {address: tuple(rows) for address, rows in arms.items()}
+
+    def arm(self, variant: str, path: str, seed: int) -> tuple[TrialRow, ...]:
+        """Return the trials of one arm by scene index; `KeyError` when the table has none."""
+        return self._arms[variant, path, seed]
+
+    def seeds(self, variant: str, path: str) -> tuple[int, ...]:
+        """Return the seeds of a variant on a path, in the order of the study."""
+        return tuple(s for (v, p, s) in self._arms if (v, p) == (variant, path))
+
+    def failed(self) -> tuple[TrialRow, ...]:
+        """Return the trials in which the program raised an error or died."""
+        return tuple(row for row in self.rows if row.outcome.failed)
+
+
+def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
+    """Return the scenes of a study by index; `UserError` for an unknown, repeated or absent one."""
+    known = {scene.id: scene for scene in library.scenes}
+    unknown = [scene for scene in study.scenes if scene not in known]
+    if unknown:
+        raise UserError(
+            f"library {library.name!r} has no scene {unknown[0]!r}: choose from its "
+            f"{len(known)} scenes, the first of which is {next(iter(known), 'none')!r}"
+        )
+    if not study.scenes:
+        raise UserError(f"study {study.name!r} selects no scene: choose at least one")
+    if len(set(study.scenes)) < len(study.scenes):
+        twice = next(s for s in study.scenes if study.scenes.count(s) > 1)
+        raise UserError(f"study {study.name!r} selects scene {twice!r} twice: select it once")
+    return tuple(sorted((known[scene] for scene in study.scenes), key=lambda scene: scene.index))
+
+
+def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
+    """Raise `UserError` for a row without a known variant, or for two rows at one address."""
+    known = tuple(variants)
+    addresses: set[tuple[str, str, int]] = set()
+    for row in rows:
+        if row.arm.variant not in known:
+            raise UserError(
+                f"the system has no variant {row.arm.variant!r}: choose from {', '.join(known)}"
+            )
+        address = (row.variant, row.path, row.seed)
+        if address in addresses:
+            raise UserError(
+                f"two rows of the study are both called variant {row.variant!r}, path "
+                f"{row.path!r}, seed {row.seed}: give them different names"
+            )
+        addresses.add(address)
+
+
+def assemble(
+    study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]
+) -> OutcomeTable:
+    """Lay the outcomes, by arm key and scene, out in the order of the study's rows."""
+    scenes = selected(study, library)
+    return OutcomeTable(
+        tuple(
+            TrialRow(
+                variant=row.variant,
+                path=row.path,
+                seed=row.seed,
+                scene_index=scene.index,
+                topology=scene.topology,
+                outcome=outcomes[key, scene.id],
+            )
+            for row, key in ((row, row.arm.key()) for row in study.rows)
+            for scene in scenes
+        )
+    )

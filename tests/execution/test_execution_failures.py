@@ -1,0 +1,180 @@
+"""What is lost when something goes wrong: as little as can be."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from toy_study import UNITS, study
+
+from faultpath.execution import Interrupted, run_study
+from faultpath.trials.arm import Study
+
+_RUN = """
+import sys
+from pathlib import Path
+from faultpath.execution import Interrupted, run_study
+from faultpath.trials.arm import Study
+
+study = Study.model_validate_json(Path(sys.argv[1]).read_text())
+try:
+    result = run_study(study, sys.argv[2], workers=2, notice=print)
+except Interrupted as error:
+    print(error)
+    sys.exit(130)
+print(f"computed {result.blocks_computed} kept {result.blocks_kept}")
+"""
+
+
+def _start(study: Study, folder: Path) -> subprocess.Popen[str]:
+    """Run a study in a process of its own, in a session of its own."""
+    definition = folder.parent / f"{folder.name}.json"
+    definition.write_text(study.model_dump_json())
+    return subprocess.Popen(
+        [sys.executable, "-c", _RUN, str(definition), str(folder)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+        start_new_session=True,
+    )
+
+
+def _until(condition, what: str, seconds: float = 20.0) -> None:
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"waited in vain for {what}"
+        time.sleep(0.02)
+
+
+def _shards(folder: Path) -> int:
+    return len(list(folder.glob("shards/*.parquet")))
+
+
+def _calls(log: Path) -> list[list[str]]:
+    return [line.split() for line in log.read_text().splitlines()]
+
+
+def _alive(pid: int) -> bool:
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("undisturbed")
+    run_study(study(), folder, workers=0)
+    return folder
+
+
+def _same_tables(one: Path, two: Path) -> bool:
+    names = ("outcomes.parquet", "traces.parquet")
+    return all((one / name).read_bytes() == (two / name).read_bytes() for name in names)
+
+
+def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_path):
+    folder, log = tmp_path / "run", tmp_path / "log"
+    slow = study(log=str(log), sleep="0.15")
+    process = _start(slow, folder)
+    _until(lambda: _shards(folder) >= 3, "three shards")
+    process.kill()
+    process.communicate()
+    workers = {int(call[-1]) for call in _calls(log)}
+    assert process.pid not in workers
+    _until(lambda: not any(map(_alive, workers)), "the workers' end", seconds=5.0)
+    kept = _shards(folder)
+    assert kept < UNITS
+    (folder / "shards" / ".partial-left").write_bytes(b"half a shard")
+    result = run_study(slow, folder, workers=2)
+    assert result.blocks_kept == kept
+    assert result.blocks_computed == UNITS - kept
+    assert _same_tables(undisturbed, folder)
+    assert not list(folder.rglob(".partial-*"))
+
+
+def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
+    folder, log = tmp_path / "run", tmp_path / "log"
+    slow = study(log=str(log), sleep="0.15")
+    process = _start(slow, folder)
+    _until(lambda: _shards(folder) >= 2, "two shards")
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: parent and workers alike
+    out, _ = process.communicate(timeout=10)
+    assert process.returncode == 130
+    kept = _shards(folder)
+    assert f"interrupted with {kept} of {UNITS} blocks done" in out
+    assert not any(_alive(int(call[-1])) for call in _calls(log))
+    assert run_study(slow, folder, workers=2).blocks_kept == kept
+    assert _same_tables(undisturbed, folder)
+
+
+def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
+    folder, log = tmp_path / "run", tmp_path / "log"
+    slow = study(log=str(log), sleep="0.03")
+    processes = [_start(slow, folder), _start(slow, folder)]
+    outputs = [process.communicate(timeout=40)[0] for process in processes]
+    assert [process.returncode for process in processes] == [0, 0]
+    calls = [tuple(call[:-1]) for call in _calls(log)]
+    assert sum(f"computed {UNITS} kept 0" in out for out in outputs) == 1
+    waited = next(out for out in outputs if f"computed 0 kept {UNITS}" in out)
+    assert f"works in {folder}; waiting for it" in waited
+    assert len(calls) == UNITS
+    assert _same_tables(undisturbed, folder)
+
+
+@pytest.mark.parametrize("workers", [0, 2])
+def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path, workers):
+    result = run_study(study(raises="s05"), tmp_path, workers=workers)
+    sound = run_study(study(), undisturbed, workers=0)
+    for row, expected in zip(result.outcomes.rows, sound.outcomes.rows, strict=True):
+        if row.outcome.scene == "s05":
+            assert row.outcome.failed
+            assert row.outcome.error == "ValueError: no air in s05"
+        else:
+            assert row.outcome.terminal_distance_m == expected.outcome.terminal_distance_m
+    assert len(result.failures) == len(study().arms())
+    for failure in result.failures:
+        assert failure.scene == "s05"
+        text = failure.details.read_text()
+        assert 'raise ValueError(f"no air in' in text
+        assert json.dumps(failure.arm.variant) in text
+
+
+def test_what_failed_is_kept_and_named_again_on_resuming(tmp_path):
+    first = run_study(study(raises="s05"), tmp_path, workers=0)
+    again = run_study(study(raises="s05"), tmp_path, workers=0)
+    assert again.blocks_computed == 0
+    assert again.failures == first.failures
+
+
+def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
+    once = tmp_path / "died"
+    result = run_study(study(dies="s05", once=str(once)), tmp_path / "run", workers=2)
+    assert once.exists()
+    assert not result.failures
+    assert _same_tables(undisturbed, tmp_path / "run")
+
+
+def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):
+    one_arm = study(dies="s05").model_copy(update={"rows": study().rows[:1]})
+    result = run_study(one_arm, tmp_path, workers=2)
+    assert [row.outcome.scene for row in result.outcomes.failed()] == ["s05"]
+    (failure,) = result.failures
+    assert "SIGKILL" in failure.error
+    assert "SIGKILL" in failure.details.read_text()
+
+
+def test_ctrl_c_in_this_process_says_how_far_it_got(tmp_path):
+    def stop(progress):
+        if progress.blocks_done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as caught:
+        run_study(study(), tmp_path, workers=0, progress=stop)
+    assert (caught.value.done, caught.value.total) == (2, UNITS)
+    assert run_study(study(), tmp_path, workers=0).blocks_kept == 2

@@ -1,0 +1,46 @@
+"""Studies of the toy system."""
+
+from pathlib import Path
+
+from faultpath.faults import Fault, Scale
+from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+
+SYSTEM = f"{Path(__file__).with_name('toy_system.py')}:create"
+SCENES = tuple(f"s{i:02d}" for i in range(10))
+FAULT = Fault(channel="mass", intervention=Scale(factor=0.6), onset_step=3)
+PATHS = {
+    "correct": (),
+    "planner": (FAULT.striking("planner.thrust"),),
+    "shared": (FAULT,),
+}
+UNITS = 2 * len(PATHS) * 2 * 3 - 2 * 3
+"""Variants, paths, seeds and blocks; `plain` has one arm for two of the paths (see `rows`)."""
+
+
+def rows() -> tuple[Row, ...]:
+    """Every variant on every path; `plain` has no second consumer, so `shared` is `planner`."""
+    return tuple(
+        Row(
+            variant=variant,
+            path=path,
+            seed=seed,
+            arm=Arm(
+                variant=variant,
+                faults=PATHS["planner" if (variant, path) == ("plain", "shared") else path],
+                seed=seed,
+            ),
+        )
+        for variant in ("plain", "observed")
+        for path in PATHS
+        for seed in (0, 1)
+    )
+
+
+def study(scenes: tuple[str, ...] = SCENES, name: str = "toy", **options: str) -> Study:
+    return Study(
+        name=name,
+        system=SystemSpec(name=SYSTEM, options=options),
+        library="ten",
+        scenes=scenes,
+        rows=rows(),
+    )

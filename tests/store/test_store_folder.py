@@ -1,0 +1,151 @@
+"""A run folder: what it holds, what it refuses, how it heals."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.store import FORMAT, Manifest, RunFolder, read_outcomes, read_traces
+from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.outcome import Outcome, Status
+
+
+def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:
+    row = Row(variant="v", path="correct", seed=seed, arm=Arm(variant="v", seed=seed))
+    system = SystemSpec(name="quadrotor")
+    study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
+    return Manifest(faultpath_version="1", system_fingerprint="f", library_hash="h", study=study)
+
+
+def _outcomes() -> tuple[Outcome, ...]:
+    trace = np.arange(12, dtype=np.float32).reshape(4, 3)
+    return (
+        Outcome("s0", Status.SUCCESS, 2.5, 0.4, -0.125, "i", "d", "p", 3, 2, None, trace),
+        Outcome("s1", Status.FAILED, 0.0, None, None, "", "", "", error="ValueError: ä\n"),
+        Outcome("s2", Status.CRASH, 1.0, 5.0, 0.0, "i", "d", "p", trace=trace[:0]),
+    )
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> RunFolder:
+    folder = RunFolder(tmp_path / "run")
+    with folder.open(_manifest(), _unexpected):
+        folder.save_shard("k", _outcomes())
+    return folder
+
+
+def _unexpected(text: str) -> None:
+    raise AssertionError(text)
+
+
+SCENES = ("s0", "s1", "s2")
+
+
+def test_a_shard_reads_back(folder):
+    found = folder.load_shard("k", SCENES, _unexpected)
+    assert found is not None
+    for one, two in zip(found, _outcomes(), strict=True):
+        for name in Outcome.__dataclass_fields__:
+            np.testing.assert_equal(getattr(one, name), getattr(two, name))
+    assert found[0].trace is not None
+    assert found[0].trace.dtype == np.float32
+    assert folder.load_shard("another", SCENES, _unexpected) is None
+
+
+def _flip(data: bytes, at: int) -> bytes:
+    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: data[: len(data) // 2],
+        lambda data: b"",
+        lambda data: _flip(data, 40),
+        lambda data: _flip(data, len(data) - 9),
+        lambda data: data + b"\0",
+    ],
+    ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer"],
+)
+def test_a_damaged_shard_is_named_and_removed(folder, damage):
+    (shard,) = folder.shards.iterdir()
+    shard.write_bytes(damage(shard.read_bytes()))
+    notices: list[str] = []
+    assert folder.load_shard("k", SCENES, notices.append) is None
+    assert len(notices) == 1
+    assert str(shard) in notices[0]
+    assert not shard.exists()
+
+
+def test_a_shard_of_other_scenes_is_not_taken(folder):
+    notices: list[str] = []
+    assert folder.load_shard("k", SCENES[:2], notices.append) is None
+    assert "other scenes" in notices[0]
+
+
+@pytest.mark.parametrize(
+    ("other", "what"),
+    [
+        (_manifest(name="b"), "another study"),
+        (_manifest(seed=1), "another set of variants, faults or seeds"),
+        (_manifest().model_copy(update={"system_fingerprint": "g"}), "another state of the system"),
+        (_manifest().model_copy(update={"library_hash": "g"}), "another state of the library"),
+        (_manifest().model_copy(update={"faultpath_version": "2"}), "version of faultpath"),
+    ],
+)
+def test_another_study_is_refused(folder, other, what):
+    before = folder.manifest.read_bytes()
+    with pytest.raises(UserError, match=what), folder.open(other, _unexpected):
+        pass
+    assert folder.manifest.read_bytes() == before
+
+
+def test_another_selection_of_scenes_goes_on(folder):
+    with folder.open(_manifest(scenes=("s0", "s1")), _unexpected):
+        assert json.loads(folder.manifest.read_text())["study"]["scenes"] == ["s0", "s1"]
+        assert folder.load_shard("k", SCENES, _unexpected) is not None
+
+
+def test_another_format_is_refused(folder):
+    content = json.loads(folder.manifest.read_text())
+    folder.manifest.write_text(json.dumps({**content, "format": FORMAT + 1, "new": 1}))
+    with (
+        pytest.raises(UserError, match=f"format {FORMAT + 1}"),
+        folder.open(_manifest(), _unexpected),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": 1}'])
+def test_a_damaged_manifest_is_refused(folder, text):
+    folder.manifest.write_text(text)
+    with pytest.raises(UserError, match=r"manifest\.json"), folder.open(_manifest(), _unexpected):
+        pass
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
+    file = tmp_path / "file"
+    file.touch()
+    for path in (file, file / "below", Path("/proc/faultpath-run")):
+        with (
+            pytest.raises(UserError, match=str(path)),
+            RunFolder(path).open(_manifest(), _unexpected),
+        ):
+            pass
+
+
+def test_what_a_killed_writer_left_is_swept(folder):
+    leftover = folder.shards / ".partial-abc"
+    leftover.write_bytes(b"half")
+    with folder.open(_manifest(), _unexpected):
+        assert not leftover.exists()
+
+
+def test_tables_that_cannot_be_read_say_so(folder, tmp_path):
+    with pytest.raises(UserError, match=r"outcomes\.parquet"):
+        read_outcomes(folder.outcomes)
+    (tmp_path / "traces.parquet").write_bytes(b"PAR1 nothing PAR1")
+    with pytest.raises(UserError, match="damaged"):
+        read_traces(tmp_path / "traces.parquet")
