@@ -8,7 +8,7 @@ from textwrap import dedent
 
 Run = Callable[..., CompletedProcess[str]]
 
-HEAVY = ["matplotlib", "mujoco", "pyarrow", "scipy", "torch"]
+HEAVY = ["mujoco", "pyarrow", "scipy", "torch"]
 
 
 def _core_modules(root: Path) -> list[str]:

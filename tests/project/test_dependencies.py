@@ -1,0 +1,63 @@
+"""What the core imports is what the package declares, no less and no more."""
+
+import ast
+import sys
+import tomllib
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+# Packages whose types are part of the interface of the one that brings them.
+BROUGHT_BY = {"pydantic-core": "pydantic", "markupsafe": "jinja2", "click": "typer"}
+
+
+def _imported(source: str) -> Iterator[str]:
+    """Top-level names of every absolute import, at any depth of the code."""
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module.partition(".")[0]
+
+
+def _third_party(files: list[Path]) -> set[str]:
+    names = {name for path in files for name in _imported(path.read_text(encoding="utf-8"))}
+    distributions = packages_distributions()
+    outside = names - sys.stdlib_module_names - {"faultpath"}
+    found = {canonicalize_name(distributions.get(name, [name])[0]) for name in outside}
+    return {BROUGHT_BY.get(name, name) for name in found}
+
+
+@pytest.fixture(scope="module")
+def files(root: Path) -> list[Path]:
+    return sorted((root / "src").rglob("*.py"))
+
+
+def _declared(root: Path, *extras: str) -> set[str]:
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines = list(project["dependencies"])
+    for extra in extras:
+        lines += project["optional-dependencies"][extra]
+    return {canonicalize_name(Requirement(line).name) for line in lines}
+
+
+def test_the_core_imports_what_is_declared_and_nothing_else(root: Path, files: list[Path]) -> None:
+    quadrotor = root / "src" / "faultpath" / "quadrotor"
+    core = [path for path in files if not path.is_relative_to(quadrotor)]
+    assert _third_party(core) == _declared(root)
+
+
+def test_the_quadrotor_imports_only_what_its_extras_declare(root: Path, files: list[Path]) -> None:
+    assert _third_party(files) <= _declared(root, "quadrotor", "mujoco")
+
+
+def test_every_dependency_has_its_line_in_the_design_notes(root: Path) -> None:
+    notes = (root / "docs" / "design" / "dependencies.md").read_text(encoding="utf-8")
+    missing = {
+        name for name in _declared(root, "quadrotor", "mujoco", "dev") if name not in notes.lower()
+    }
+    assert missing - {"faultpath"} == set()
