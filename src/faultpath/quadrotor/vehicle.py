@@ -22,6 +22,8 @@ CONTROL_RATE_HZ = 20  # [P]
 CONTROL_DT_S = 1 / CONTROL_RATE_HZ
 PLANT_RATE_HZ = 500  # rate of the inner loop and of the integration
 STEPS_PER_CONTROL = PLANT_RATE_HZ // CONTROL_RATE_HZ
+CONTROL_DT_S = 1 / CONTROL_RATE_HZ
+PLANT_DT_S = 1 / PLANT_RATE_HZ
 COLLISION_RADIUS_M = 0.20  # sphere around the position [NavRL, sdf-nmpc use 0.2-0.3]
 
 ARM_LENGTH_M = 0.15  # centre to motor, cross configuration [DA, also of mass 1 kg]
