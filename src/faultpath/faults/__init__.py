@@ -4,6 +4,7 @@ from faultpath.faults.base import Intervention, Moment
 from faultpath.faults.draws import Draws
 from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault, fault_from_json
 from faultpath.faults.noise import Drift, Noise
+from faultpath.faults.parse import FaultPreset, parse_fault
 from faultpath.faults.probes import Replace, Shuffle
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.faults.sequence import Sequence
@@ -23,6 +24,7 @@ __all__ = [
     "Dropout",
     "Erase",
     "Fault",
+    "FaultPreset",
     "Freeze",
     "Hold",
     "Intervention",
@@ -37,4 +39,5 @@ __all__ = [
     "UniformScale",
     "Window",
     "fault_from_json",
+    "parse_fault",
 ]

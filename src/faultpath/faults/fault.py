@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
 from faultpath.errors import UserError
 from faultpath.faults.registry import AnyIntervention
@@ -51,6 +51,12 @@ class Fault(_Frozen):
     """Steps of linear return to the clean reading after `duration_steps`."""
     cause: str | None = None
     """Faults of one cause draw the same random numbers; `None`: the channel and the kind."""
+
+    @model_validator(mode="after")
+    def _recovers_from_an_end(self) -> Self:
+        if self.recovery_steps and self.duration_steps is None:
+            raise ValueError("recovery_steps needs an end to recover from; give duration_steps")
+        return self
 
     def __hash__(self) -> int:
         """Hash as JSON, since a mapping of scenes has no hash."""

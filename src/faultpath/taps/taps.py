@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,6 +116,8 @@ class Taps:
         self._struck, self._altered = Tally(), Tally()
         self._absent: list[tuple[str, str]] = []
         self._taps = _taps(interface, bindings or {}, consumers, privileged)
+        first = {channel.name: channel.sources[0] for channel in interface.channels}
+        self._bindings = MappingProxyType(first | dict(bindings or {}))
         self._strike(tuple(faults), dt_s, seed)
 
     def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
@@ -138,6 +141,11 @@ class Taps:
                         self._absent.append((fault.channel, consumer))
                     else:
                         tap.add(Strike(fault, window, drawn, dt_s))
+
+    @property
+    def bindings(self) -> Mapping[str, str]:
+        """The source that feeds each channel here."""
+        return self._bindings
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
         """Return what `consumer` gets of `channel` at control step `step`.

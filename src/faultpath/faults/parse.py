@@ -1,0 +1,235 @@
+"""Faults as text, for the command line.
+
+    calibration=+0.1                    a preset that the system names
+    wind:delay=5                        CHANNEL:KIND=VALUE, at every consumer of the channel
+    wind:offset=1/0/0                   a vector
+    velocity:noise=0.1,relative         more fields of the intervention after commas
+    wind:freeze,onset=20,for=40         when, in control steps; onset_s= and for_s= in seconds
+    mass:scale=1.1@planner+predictor.trim   only these modules and consumers
+
+A correlation group may stand for its channels: `calibration:scale=1.1`.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from pydantic import ValidationError
+
+from faultpath.errors import UserError
+from faultpath.faults.fault import Coupled, Fault
+from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
+from faultpath.interface import Interface, groups
+from faultpath.interface.words import listed, unknown
+
+FaultPreset: TypeAlias = Callable[[float], Coupled]
+"""A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""
+
+KINDS = {
+    kind: intervention
+    for kind, intervention in INTERVENTIONS.items()
+    if all(
+        name == intervention.value_field
+        for name, field in intervention.model_fields.items()
+        if field.is_required()
+    )
+}
+"""Interventions that text can state: those that need no more than one value."""
+
+_WINDOW = {
+    "onset": ("onset_step", 0),
+    "for": ("duration_steps", 1),
+    "recover": ("recovery_steps", 0),
+}
+"""Options on time: the field of `Fault` and the least number of steps."""
+_WINDOW_OPTIONS = (*_WINDOW, *(f"{name}_s" for name in _WINDOW))
+
+
+@dataclass(frozen=True)
+class _Text:
+    """Fault text taken apart, not yet understood."""
+
+    name: str
+    kind: str | None
+    value: str | None
+    options: Mapping[str, str]
+    consumers: tuple[str, ...]
+
+
+def parse_fault(
+    text: str, interface: Interface, presets: Mapping[str, FaultPreset], dt_s: float
+) -> Fault | Coupled:
+    """Return the fault that `text` states, checked against `interface`.
+
+    `dt_s` is the length of a control step, for options in seconds. Raises `UserError`, one sentence
+    that quotes the text and names the known values.
+    """
+    try:
+        parts = _take_apart(text)
+        when, rest = _timing(parts.options, dt_s)
+        if parts.kind is None:
+            fault = _preset(parts, rest, interface, presets)
+        else:
+            fault = _intervention(parts.name, parts.kind, parts.value, rest, interface)
+        fault = _at_time(fault, when)
+        if parts.consumers:
+            fault = fault.striking(*parts.consumers)
+        fault.validate_against(interface)
+    except UserError as error:
+        raise UserError(f"fault '{text}': {error}") from None
+    return fault
+
+
+def _take_apart(text: str) -> _Text:
+    if not text.strip():
+        raise UserError("the text is empty; write CHANNEL:KIND=VALUE or PRESET=SIZE")
+    items: list[str] = []
+    consumers: list[str] = []
+    for item in text.split(","):
+        head, at, names = (part.strip() for part in item.partition("@"))
+        if at and (consumers or "@" in names):
+            raise UserError("'@' appears twice; join consumers with '+', as in @planner+predictor")
+        if at:
+            consumers = [name.strip() for name in names.split("+")]
+            if not all(consumers):
+                raise UserError("'@' needs a module or consumer after it, as in @planner")
+        if not head:
+            raise UserError("something is missing between commas; write CHANNEL:KIND=VALUE")
+        items.append(head)
+    what, has_value, value = items[0].partition("=")
+    name, has_kind, kind = what.partition(":")
+    options: dict[str, str] = {}
+    for item in items[1:]:
+        key, _, given = item.partition("=")
+        if key in options:
+            raise UserError(f"option '{key}' appears twice; drop one")
+        options[key] = given
+    return _Text(
+        name=name,
+        kind=kind if has_kind else None,
+        value=value if has_value else None,
+        options=options,
+        consumers=tuple(dict.fromkeys(consumers)),
+    )
+
+
+def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, int], dict[str, str]]:
+    """Return the fields of a fault's window, and the options that are left."""
+    when: dict[str, int] = {}
+    rest: dict[str, str] = {}
+    for key, given in options.items():
+        plain = key.removesuffix("_s")
+        if plain not in _WINDOW:
+            rest[key] = given
+            continue
+        field, least = _WINDOW[plain]
+        if field in when:
+            raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
+        when[field] = _steps(key, given, least, dt_s if plain != key else None)
+    if "recovery_steps" in when and "duration_steps" not in when:
+        raise UserError("'recover' needs an end to recover from; add for=STEPS")
+    return when, rest
+
+
+def _steps(key: str, given: str, least: int, dt_s: float | None) -> int:
+    unit = "control steps" if dt_s is None else "seconds"
+    value = _number(key, given, unit) / (dt_s or 1.0)
+    steps = round(value) if abs(value) < 1e9 else -1
+    if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
+        of = "" if dt_s is None else f" of {dt_s:g} s each"
+        raise UserError(f"{key}={given} is not a whole number of steps{of}, at least {least}")
+    return steps
+
+
+def _number(key: str, given: str, what: str = "a number") -> float:
+    try:
+        value = float(given)
+    except ValueError:
+        raise UserError(f"'{key}' needs {what}, not '{given}'") from None
+    if value - value != 0.0:  # infinite or NaN
+        raise UserError(f"'{key}' needs a finite number, not '{given}'")
+    return value
+
+
+def _preset(
+    parts: _Text,
+    options: Mapping[str, str],
+    interface: Interface,
+    presets: Mapping[str, FaultPreset],
+) -> Coupled:
+    if parts.name not in presets:
+        if parts.name in _targets(interface):
+            raise UserError(
+                f"says nothing about what happens to '{parts.name}'; write "
+                f"{parts.name}:KIND=VALUE, kinds: {listed(KINDS)}"
+            )
+        said = unknown("preset", parts.name, presets)
+        raise UserError(f"{said}; a fault of one channel is CHANNEL:KIND=VALUE")
+    if parts.value is None:
+        raise UserError(f"'{parts.name}' needs a size, as in {parts.name}=+0.1")
+    if options:
+        raise UserError(unknown("option", next(iter(options)), _WINDOW_OPTIONS))
+    return presets[parts.name](_number(parts.name, parts.value))
+
+
+def _targets(interface: Interface) -> dict[str, tuple[str, ...]]:
+    """Return what text may name as a channel: channels and correlation groups."""
+    channels = {channel.name: (channel.name,) for channel in interface.channels}
+    return groups(interface) | channels
+
+
+def _intervention(
+    name: str, kind: str, value: str | None, options: Mapping[str, str], interface: Interface
+) -> Fault | Coupled:
+    targets = _targets(interface)
+    if name not in targets:
+        raise UserError(unknown("channel", name, targets))
+    if kind not in KINDS:
+        raise UserError(unknown("kind", kind, KINDS))
+    built = _build(f"{name}:{kind}", kind, value, dict(options))
+    faults = tuple(Fault(channel=channel, intervention=built) for channel in targets[name])
+    if name in groups(interface):
+        return Coupled(name=f"{name}:{kind}", faults=faults)
+    return faults[0]
+
+
+def _build(said: str, kind: str, value: str | None, options: dict[str, str]) -> AnyIntervention:
+    cls = KINDS[kind]
+    fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
+    for key in options:
+        if key not in fields:
+            raise UserError(unknown("option", key, (*fields, *_WINDOW_OPTIONS)))
+    given = {key: _value(key, text or "true") for key, text in options.items()}
+    if cls.value_field is None:
+        if value is not None:
+            raise UserError(f"'{kind}' takes no value; write {said}")
+    elif value is not None:
+        given[cls.value_field] = _value(kind, value)
+    elif cls.model_fields[cls.value_field].is_required():
+        raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {said}=VALUE")
+    try:
+        built: Any = cls.model_validate(given)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        place = next(iter(first["loc"]), kind)
+        message = first["msg"].removeprefix("Value error, ").removeprefix("Input ")
+        raise UserError(f"'{kind}': {place} {message}; correct the value") from None
+    return built
+
+
+def _value(key: str, text: str) -> Any:
+    """Return a number, a vector `1/0/0`, true or false, or an intervention without a value."""
+    if text in ("true", "false"):
+        return text == "true"
+    if text in KINDS:
+        return {"kind": text}
+    parts: Sequence[str] = text.split("/")
+    numbers = tuple(_number(key, part) for part in parts)
+    return numbers if len(numbers) > 1 else numbers[0]
+
+
+def _at_time(fault: Fault | Coupled, when: Mapping[str, int]) -> Fault | Coupled:
+    if isinstance(fault, Coupled):
+        faults = tuple(each.model_copy(update=dict(when)) for each in fault.faults)
+        return fault.model_copy(update={"faults": faults})
+    return fault.model_copy(update=dict(when))
