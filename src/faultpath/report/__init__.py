@@ -1,0 +1,25 @@
+"""Reports from records and outcome tables: one HTML page, LaTeX, Markdown and the terminal."""
+
+from faultpath.report.html import report_page
+from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Traces
+from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
+from faultpath.report.tables import latex_table, markdown_table
+from faultpath.report.terminal import decision, effect_table, success_table
+from faultpath.report.write import write_report
+
+__all__ = [
+    "OUTCOME_COLUMNS",
+    "ReportInput",
+    "StruckPath",
+    "TraceKey",
+    "Traces",
+    "decision",
+    "draw_interface",
+    "effect_table",
+    "latex_table",
+    "markdown_table",
+    "report_page",
+    "struck_paths",
+    "success_table",
+    "write_report",
+]

@@ -1,0 +1,60 @@
+"""How the trials of each cell ended."""
+
+from collections.abc import Sequence
+
+from faultpath.record.model import Cell
+from faultpath.report import wording
+from faultpath.report.svg import Svg, shortened, text_width
+
+_STATUSES = ("success", "crash", "timeout", "failed")
+
+
+def outcome_bars(title: str, cells: Sequence[Cell]) -> str:
+    """Return one stacked bar for each cell of a path, counts written on the pieces.
+
+    Success is plain and dark, crashes are hatched, timeouts plain and light, failed trials red.
+    """
+    told = "; ".join(
+        f"{c.variant}: " + ", ".join(f"{getattr(c, s)} {s}" for s in _STATUSES) for c in cells
+    )
+    svg = Svg(430, 34 + 50 * len(cells), f"{title}: how the trials ended", told)
+    hatch = svg.hatch("crash", "crash-line")
+    svg.text(0, 14, shortened(title, 425, 13), "head", tip=title)
+    for i, cell in enumerate(cells):
+        y = 38.0 + 50 * i
+        svg.text(0, y, shortened(cell.variant, 220, 12), tip=cell.variant)
+        svg.text(430, y, _beside(cell), "small soft", "end")
+        _bar(svg, cell, y + 6, hatch)
+    return svg.render()
+
+
+def _beside(cell: Cell) -> str:
+    failed = f"{cell.failed} failed · " if cell.failed else ""
+    if cell.median_time_s is None:
+        return f"{failed}no success"
+    return f"{failed}median time of successes {wording.plain(cell.median_time_s, 2)} s"
+
+
+def _bar(svg: Svg, cell: Cell, y: float, hatch: str) -> None:
+    x, scale = 0.0, 430.0 / max(cell.trials, 1)
+    for status in _STATUSES:
+        n: int = getattr(cell, status)
+        width = n * scale
+        if not n:
+            continue
+        svg.rect(x, y, width - 1.5, 20, status, 1.5, tip=f"{wording.counted(n, 'trial')}: {status}")
+        if status == "crash":
+            svg.filled(x, y, width - 1.5, 20, hatch)
+        _count(svg, f"{n} {status}", str(n), x, width, y, status)
+        x += width
+
+
+def _count(svg: Svg, full: str, brief: str, x: float, width: float, y: float, status: str) -> None:
+    for label in (full, brief):
+        room = text_width(label, 11) + 8
+        if room <= width - 2:
+            if status == "crash":
+                svg.rect(x + 3, y + 3, room - 4, 14, "plate", 2)
+            ink = f"on-{status}" if status in ("success", "failed") else ""
+            svg.text(x + 5, y + 14, label, f"small {ink}".rstrip())
+            return

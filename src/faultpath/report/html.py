@@ -1,0 +1,123 @@
+"""The report as one page that opens without a network."""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from faultpath.record.model import Cell, DecisionRecord, Effect
+from faultpath.report import figures, wording
+from faultpath.report.inputs import ReportInput
+from faultpath.report.interface_drawing import draw_interface, struck_paths
+from faultpath.report.pairing import Kind, Pair, read_pairs
+from faultpath.report.svg import template
+from faultpath.report.viewer import choose, viewer_data
+
+_STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
+_SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
+
+
+def report_page(source: ReportInput) -> str:
+    """Return the whole report as HTML: styles, scripts, pictures and data inside."""
+    pairs = read_pairs(source.outcomes, source.record.question)
+    chosen = choose(source, pairs)
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            record=source.record,
+            asked=source.record.question,
+            provenance=source.provenance,
+            paths=_path_titles(source.record),
+            tiles=_tiles(source.record),
+            pictures=_pictures(source, pairs),
+            struck=struck_paths(source.interface, source.record),
+            void=[pair for pair in pairs if pair.kind is Kind.VOID],
+            n_void=sum(effect.void_pairs for effect in source.record.effects),
+            n_pairs=len(pairs),
+            n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
+            break_even={b.path: b.result for b in source.record.break_even},
+            estimands=_estimands(source.record),
+            viewer=viewer_data(source, chosen) if chosen else None,
+            styles=Markup("".join(map(template, _STYLES))),
+            scripts=Markup("".join(map(template, _SCRIPTS))),
+            w=wording,
+        )
+    )
+
+
+@cache
+def _environment() -> Environment:
+    return Environment(
+        loader=PackageLoader("faultpath.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+def _path_titles(record: DecisionRecord) -> dict[str, str]:
+    return {path.name: path.title for path in record.paths}
+
+
+def _cells(record: DecisionRecord, path: str) -> list[Cell]:
+    wanted = (record.question.baseline, record.question.repair)
+    cells = [cell for cell in record.cells if cell.path == path and cell.variant in wanted]
+    return sorted(cells, key=lambda cell: wanted.index(cell.variant))
+
+
+def _tiles(record: DecisionRecord) -> list[tuple[str, Effect, Cell, Cell]]:
+    """Return title, effect and both cells of every path, for the strip under the verdict."""
+    titles = _path_titles(record)
+    return [
+        (titles.get(effect.path, effect.path), effect, cells[0], cells[1])
+        for effect in record.effects
+        if len(cells := _cells(record, effect.path)) == 2
+    ]
+
+
+def _estimands(record: DecisionRecord) -> list[str]:
+    return list(dict.fromkeys(effect.success.estimand for effect in record.effects))
+
+
+def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
+    record = source.record
+    titles, asked = _path_titles(record), record.question
+    rows = figures.effect_rows(record)
+    axis = figures.shared_range(record.break_even)
+    struck = struck_paths(source.interface, record)
+    return {
+        "interface": Markup(draw_interface(source.interface, struck)),
+        "forest": Markup(figures.forest(rows, asked.baseline, asked.repair)),
+        "forest_narrow": Markup(figures.forest(rows, asked.baseline, asked.repair, narrow=True)),
+        "frequency": [
+            Markup(figures.frequency_panel(b, titles.get(b.path, b.path), axis))
+            for b in record.break_even
+        ],
+        "pairs": [
+            Markup(figures.pair_grid(title, [p for p in pairs if p.path == name]))
+            for name, title in titles.items()
+        ],
+        "pair_key": Markup(figures.pair_key(pairs)),
+        "outcomes": [
+            Markup(figures.outcome_bars(title, _cells(record, name)))
+            for name, title in titles.items()
+        ],
+        "secondary": _secondary(record),
+    }
+
+
+def _secondary(record: DecisionRecord) -> list[Markup]:
+    titles = _path_titles(record)
+    named = [(titles.get(effect.path, effect.path), effect) for effect in record.effects]
+    time = [(title, effect.time_s) for title, effect in named]
+    distance = [(title, effect.terminal_distance_m) for title, effect in named]
+    clearance = [(title, effect.min_clearance_m) for title, effect in named]
+    panels = (
+        figures.interval_panel("Time on joint successes", "s", time, -1),
+        figures.interval_panel("Distance to the goal at the end", "m", distance, -1),
+        figures.interval_panel("Least clearance", "m", clearance, 1),
+    )
+    return [Markup(panel) for panel in panels]

@@ -1,0 +1,180 @@
+"""A small SVG writer: everything that is text or an attribute value is escaped on the way in."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cache
+from html import escape
+from importlib import resources
+from itertools import count
+
+Point = tuple[float, float]
+
+# Advance widths of a common sans serif (thousandths of the size), a little on the wide side: labels
+# are placed by them, and a label that is narrower than foretold overlaps nothing.
+_NARROW = dict.fromkeys("iljI.,:;'|!", 290) | dict.fromkeys('ft()[]/-r "', 350)
+_WIDE = dict.fromkeys("mwMW%@→", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
+_ADVANCE = _NARROW | _WIDE
+
+_fresh = count(1)
+
+
+def text_width(text: str, size: float) -> float:
+    """Return a safe estimate of how wide `text` is at `size` pixels."""
+    return sum(_ADVANCE.get(c, 580) for c in text) * size / 1000.0
+
+
+def shortened(text: str, width: float, size: float) -> str:
+    """Return `text`, cut with an ellipsis where it would be wider than `width` pixels."""
+    if text_width(text, size) <= width:
+        return text
+    kept = text
+    while kept and text_width(kept + "…", size) > width:
+        kept = kept[:-1]
+    return kept.rstrip(" ._-") + "…"
+
+
+def wrapped(text: str, width: float, size: float, lines: int) -> list[str]:
+    """Break `text` at spaces into at most `lines` lines, the last one shortened to fit."""
+    done: list[str] = []
+    line = ""
+    words = text.split()
+    for position, word in enumerate(words):
+        longer = f"{line} {word}".strip()
+        if text_width(longer, size) <= width or not line:
+            line = longer
+            continue
+        if len(done) == lines - 1:
+            return [*done, shortened(" ".join([line, *words[position:]]), width, size)]
+        done.append(line)
+        line = word
+    return [*done, shortened(line, width, size)]
+
+
+def spread(centres: Sequence[float], gap: float, low: float, high: float) -> list[float]:
+    """Move labels as little as needed so that neighbours stand `gap` apart, keeping the order."""
+    order = sorted(range(len(centres)), key=lambda i: centres[i])
+    placed = [max(low, min(high, c)) for c in centres]
+    for before, after in zip(order, order[1:], strict=False):
+        placed[after] = max(placed[after], placed[before] + gap)
+    ceiling = high
+    for i in reversed(order):
+        placed[i] = min(placed[i], ceiling)
+        ceiling = placed[i] - gap
+    return placed
+
+
+@cache
+def template(name: str) -> str:
+    """Return the text of a file in `faultpath/report/templates`."""
+    return resources.files("faultpath.report").joinpath("templates", name).read_text("utf-8")
+
+
+def number(value: float) -> str:
+    """Return a coordinate with at most two decimals."""
+    text = f"{value:.2f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+class Svg:
+    """One picture. Its size is in pixels at scale 1; on a page it scales with its column."""
+
+    def __init__(self, width: float, height: float, title: str, description: str = "") -> None:
+        self.width, self.height = width, height
+        self.uid = f"fig{next(_fresh)}"
+        self._title, self._description = title, description
+        self._parts: list[str] = []
+
+    def _add(self, tag: str, cls: str, tip: str | None, **attributes: float | str) -> None:
+        inner = f"<title>{escape(tip)}</title>" if tip else ""
+        self._parts.append(f"<{tag}{_attributes(cls, attributes)}>{inner}</{tag}>")
+
+    def line(self, a: Point, b: Point, cls: str) -> None:
+        """Draw a straight line from `a` to `b`."""
+        self._add("line", cls, None, x1=a[0], y1=a[1], x2=b[0], y2=b[1])
+
+    def rect(
+        self, x: float, y: float, w: float, h: float, cls: str, r: float = 0, tip: str | None = None
+    ) -> None:
+        """Draw a rectangle with its upper left corner at `(x, y)` and corner radius `r`."""
+        self._add("rect", cls, tip, x=x, y=y, width=max(w, 0.0), height=max(h, 0.0), rx=r)
+
+    def circle(self, at: Point, r: float, cls: str, tip: str | None = None) -> None:
+        """Draw a disc."""
+        self._add("circle", cls, tip, cx=at[0], cy=at[1], r=r)
+
+    def path(self, d: str, cls: str, tip: str | None = None, **attributes: str) -> None:
+        """Draw a path given in SVG's own notation."""
+        self._add("path", cls, tip, d=d, **attributes)
+
+    def polygon(self, points: Sequence[Point], cls: str, tip: str | None = None) -> None:
+        """Draw a closed polygon."""
+        self._add(
+            "polygon", cls, tip, points=" ".join(f"{number(x)},{number(y)}" for x, y in points)
+        )
+
+    def polyline(self, points: Sequence[Point], cls: str) -> None:
+        """Draw an open line through `points`."""
+        self._add(
+            "polyline", cls, None, points=" ".join(f"{number(x)},{number(y)}" for x, y in points)
+        )
+
+    def text(
+        self, x: float, y: float, content: str, cls: str = "", anchor: str = "", tip: str = ""
+    ) -> None:
+        """Write `content` with its baseline at `y`; `anchor` is start, middle or end."""
+        attributes: dict[str, float | str] = {"x": x, "y": y}
+        if anchor:
+            attributes["text-anchor"] = anchor
+        inner = escape(content) + (f"<title>{escape(tip)}</title>" if tip else "")
+        self._parts.append(f"<text{_attributes(cls, attributes)}>{inner}</text>")
+
+    @contextmanager
+    def group(self, cls: str = "", tip: str | None = None, **attributes: str) -> Iterator[None]:
+        """Put what is drawn inside into one `<g>`."""
+        inner = f"<title>{escape(tip)}</title>" if tip else ""
+        self._parts.append(f"<g{_attributes(cls, attributes)}>{inner}")
+        yield
+        self._parts.append("</g>")
+
+    def hatch(self, name: str, cls: str, spacing: float = 5) -> str:
+        """Define a diagonal hatching and return the `fill` that uses it."""
+        key = f"{self.uid}-{name}"
+        self._parts.append(
+            f'<defs><pattern id="{key}" width="{number(spacing)}" height="{number(spacing)}" '
+            'patternUnits="userSpaceOnUse" patternTransform="rotate(45)">'
+            f'<line x1="0" y1="0" x2="0" y2="{number(spacing)}" class="{escape(cls)}"/>'
+            "</pattern></defs>"
+        )
+        return f"url(#{key})"
+
+    def filled(self, x: float, y: float, w: float, h: float, fill: str) -> None:
+        """Draw a rectangle filled with a pattern from `hatch`."""
+        self._add("rect", "", None, x=x, y=y, width=max(w, 0.0), height=h, fill=fill)
+
+    def render(self, standalone: bool = False) -> str:
+        """Return the markup; `standalone` carries its own style and opens as a file."""
+        style = ""
+        if standalone:
+            css = template("tokens.css") + template("svg.css")
+            style = f'<style>{css}</style><rect class="paper" width="100%" height="100%"/>'
+        ids = f"{self.uid}-t {self.uid}-d" if self._description else f"{self.uid}-t"
+        described = (
+            f'<desc id="{self.uid}-d">{escape(self._description)}</desc>'
+            if self._description
+            else ""
+        )
+        head = (
+            f'<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" '
+            f'aria-labelledby="{ids}" viewBox="0 0 {number(self.width)} {number(self.height)}" '
+            f'width="{number(self.width)}" height="{number(self.height)}">'
+            f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'
+        )
+        return head + "".join(self._parts) + "</svg>"
+
+
+def _attributes(cls: str, attributes: dict[str, float | str] | dict[str, str]) -> str:
+    named = {"class": cls, **attributes} if cls else attributes
+    return "".join(
+        f' {key.replace("_", "-")}="{escape(value) if isinstance(value, str) else number(value)}"'
+        for key, value in named.items()
+    )

@@ -1,0 +1,171 @@
+"""The record as tables for a paper (LaTeX with booktabs) and for a page of text (Markdown).
+
+Both have the paper's Table IV as their model: methods and effects as rows, paths as columns.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from faultpath.record.model import DecisionRecord, Effect
+from faultpath.report import wording
+from faultpath.statistics import Estimate
+
+
+@dataclass(frozen=True)
+class Line:
+    """One row of a table, in the reader's own characters; `None` in `values` opens a section."""
+
+    label: str
+    values: tuple[str, ...] | None
+    numeric: bool = True
+
+
+def table_lines(record: DecisionRecord) -> tuple[tuple[str, ...], tuple[Line, ...]]:
+    """Return the column heads (paths) and the rows that both formats write out."""
+    asked = record.question
+    titles = {path.name: path.title for path in record.paths}
+    effects = {effect.path: effect for effect in record.effects}
+    rates = {(c.variant, c.path): wording.plain(c.success_percent) for c in record.cells}
+    breaks = {b.path: wording.break_even(b.result) for b in record.break_even}
+    names = [path.name for path in record.paths if path.name in effects]
+
+    def row(label: str, text: Callable[[Effect], str]) -> Line:
+        return Line(label, tuple(text(effects[name]) for name in names))
+
+    lines = [
+        Line(variant, tuple(rates[variant, name] for name in names))
+        for variant in (asked.baseline, asked.repair)
+    ]
+    lines += [
+        Line(f"{asked.repair} minus {asked.baseline}, success (pp)", None),
+        row("Difference", lambda e: wording.signed(e.success.value)),
+        row(_interval_label(record), lambda e: wording.interval(e.success) or "–"),
+        row("Wins:losses", lambda e: wording.wins_losses(e.wins, e.losses)),
+        row("p", lambda e: wording.p_value(e.p_value)),
+        row("Least detectable effect", lambda e: _or_dash(e.minimum_detectable_pp)),
+        row("Pairs (void)", lambda e: f"{e.pairs} ({e.void_pairs})"),
+        Line("Break-even fault frequency", None),
+        Line("p* [interval]", tuple(breaks.get(name, "–") for name in names)),
+        Line(f"{asked.repair} minus {asked.baseline}, other outcomes", None),
+        row("Time on joint successes (s)", lambda e: _other(e.time_s)),
+        row("Terminal distance (m)", lambda e: _other(e.terminal_distance_m)),
+        row("Least clearance (m)", lambda e: _other(e.min_clearance_m)),
+    ]
+    return tuple(titles[name] for name in names), tuple(lines)
+
+
+def markdown_table(record: DecisionRecord) -> str:
+    """Return the table as Markdown, with the question above it and the verdict below."""
+    heads, lines = table_lines(record)
+    asked = record.question
+    rows = [
+        f"| Success/100 | {' | '.join(map(_md, heads))} |",
+        f"| :-- | {' | '.join('--:' for _ in heads)} |",
+    ]
+    for line in lines:
+        cells = line.values if line.values is not None else ("",) * len(heads)
+        label = _md(line.label) if line.values is not None else f"*{_md(line.label)}*"
+        rows.append(f"| {label} | {' | '.join(map(_md, cells))} |")
+    about = (
+        f"{_md(asked.repair)} against {_md(asked.baseline)} on {_md(asked.system)}, "
+        f"fault {_md(asked.fault)}; {asked.n_scenes} scenes of {_md(asked.library)}, "
+        f"{wording.seeds(asked.seeds)}."
+    )
+    return "\n".join([about, "", *rows, "", _md(record.verdict.headline), ""])
+
+
+def latex_table(record: DecisionRecord) -> str:
+    """Return a `table` environment that needs the package booktabs and nothing else."""
+    heads, lines = table_lines(record)
+    asked = record.question
+    columns = len(heads)
+    body: list[str] = []
+    for line in lines:
+        if line.values is None:
+            body += [
+                r"\addlinespace",
+                rf"\multicolumn{{{columns + 1}}}{{@{{}}l}}{{\emph{{{_tex(line.label)}:}}}} \\",
+            ]
+        else:
+            body.append(f"{_tex(line.label)} & {' & '.join(map(_tex_value, line.values))} \\\\")
+    caption = (
+        f"{_tex(asked.repair)} against {_tex(asked.baseline)} on {_tex(asked.system)}, fault "
+        f"{_tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {_tex(asked.library)}, "
+        f"{wording.seeds(asked.seeds)}. Wins:losses are {_tex(asked.repair)}-only:"
+        f"{_tex(asked.baseline)}-only successes. Void pairs count for neither side."
+    )
+    head = " & ".join(["Method", *map(_tex, heads)])
+    return "\n".join(
+        [
+            "% Needs \\usepackage{booktabs}",
+            r"\begin{table}[t]",
+            rf"\caption{{{caption}}}",
+            r"\label{tab:faultpath}",
+            r"\centering\footnotesize",
+            r"\setlength{\tabcolsep}{3pt}",
+            rf"\begin{{tabular}}{{@{{}}l{'c' * columns}@{{}}}}",
+            r"\toprule",
+            rf"{head} \\",
+            r"\midrule",
+            *body,
+            r"\bottomrule",
+            r"\end{tabular}",
+            r"\end{table}",
+            "",
+        ]
+    )
+
+
+def _interval_label(record: DecisionRecord) -> str:
+    levels = {f"{100 * effect.success.level:g}" for effect in record.effects}
+    return f"{levels.pop()}% interval" if len(levels) == 1 else "Interval"
+
+
+def _or_dash(value: float | None) -> str:
+    return "–" if value is None else wording.plain(value)
+
+
+def _other(estimate: Estimate | None) -> str:
+    return wording.with_interval(estimate, 2)
+
+
+_MARKDOWN = str.maketrans(
+    {c: f"\\{c}" for c in r"\`*_[]|#"} | {"<": "&lt;", ">": "&gt;", "\n": " ", "\r": " "}
+)
+
+_LATEX = str.maketrans(
+    {
+        "\\": r"\textbackslash{}",
+        "&": r"\&",
+        "%": r"\%",
+        "$": r"\$",
+        "#": r"\#",
+        "_": r"\_",
+        "{": r"\{",
+        "}": r"\}",
+        "~": r"\textasciitilde{}",
+        "^": r"\textasciicircum{}",
+        "<": r"\textless{}",
+        ">": r"\textgreater{}",
+        "−": "$-$",
+        "–": "--",
+        "\n": " ",
+        "\r": " ",
+    }
+)
+
+
+def _md(text: str) -> str:
+    return text.translate(_MARKDOWN)
+
+
+def _tex(text: str) -> str:
+    # An old pdflatex stops at characters that it has no font for; these have names users give.
+    escaped = text.replace("p*", "\0").translate(_LATEX).replace("\0", r"$p^\star$")
+    return "".join(c if ord(c) < 0x250 else f"[U+{ord(c):04X}]" for c in escaped)
+
+
+def _tex_value(text: str) -> str:
+    """Braces keep a leading bracket from being read as the optional argument of `\\\\`."""
+    escaped = _tex(text).replace("< ", r"\textless{} ")
+    return "{" + escaped + "}" if escaped.startswith("[") else escaped

@@ -1,0 +1,276 @@
+"""A synthetic audit that looks like a real one: the paper's reversal, made from a seeded law.
+
+The repair is a reconstruction trained with uncertainty: ahead when only the reconstruction is
+struck, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from faultpath.interface import Interface, read_interface
+from faultpath.record import Path, Question, decide
+from faultpath.record.provenance import RunProvenance
+from faultpath.report import OUTCOME_COLUMNS, ReportInput, Traces
+from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+
+TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
+BASELINE, REPAIR = "gru", "gru-dcc"
+NASTY = '<script>alert("x")</script> & 100 % of _it_'
+
+# Chance of success by path: (baseline, repair). They share one draw, so pairs are correlated.
+CHANCES = {
+    "correct": (0.69, 0.60),
+    "predictor": (0.30, 0.33),
+    "reconstruction": (0.46, 0.63),
+    "shared": (0.69, 0.48),
+}
+
+INTERFACE = """
+name: quadrotor
+sources:
+- {name: mass_estimate, unit: kg, provenance: estimated, correlation_group: calibration}
+- {name: thrust_scale_estimate, unit: '1', provenance: estimated, correlation_group: calibration}
+- {name: position_estimate, unit: m, shape: [3], provenance: estimated, correlation_group: state}
+- {name: velocity_estimate, unit: m/s, shape: [3], provenance: estimated, latency_s: 0.02, correlation_group: state}
+- {name: attitude_estimate, unit: '1', shape: [3, 3], provenance: estimated, correlation_group: state}
+- {name: body_rate_measurement, unit: rad/s, shape: [3], provenance: measured, correlation_group: state}
+- {name: commanded_action, unit: 'N, rad/s', shape: [4], provenance: commanded}
+- {name: mission_goal, unit: m, shape: [3], provenance: commanded}
+- {name: zero_wind, unit: m/s, shape: [3], provenance: constant}
+- {name: reconstructed_wind, unit: m/s, shape: [3], provenance: reconstructed}
+- {name: true_wind, unit: m/s, shape: [3], provenance: privileged}
+- {name: depth_clearance, unit: m, shape: [20, 512], provenance: estimated}
+- {name: true_physics, unit: 'kg m^2, 1, s, kg/s, N', shape: [9], provenance: privileged}
+channels:
+- {name: mass, sources: [mass_estimate], gap: fidelity, consumers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
+- {name: thrust_scale, sources: [thrust_scale_estimate], gap: fidelity, consumers: [predictor.dynamics, predictor.trim, reconstruction.head]}
+- {name: position, sources: [position_estimate], gap: fidelity, consumers: [predictor.initial_state]}
+- {name: velocity, sources: [velocity_estimate], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
+- {name: attitude, sources: [attitude_estimate], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
+- {name: body_rate, sources: [body_rate_measurement], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
+- {name: action, sources: [commanded_action], consumers: [vehicle.actuators, reconstruction.history]}
+- {name: goal, sources: [mission_goal], consumers: [planner.goal_cost]}
+- {name: wind, sources: [zero_wind, reconstructed_wind, true_wind], gap: availability, consumers: [predictor.wind_map]}
+- {name: clearance, sources: [depth_clearance], gap: fidelity, consumers: [planner.risk_cost]}
+- {name: physics, sources: [true_physics], gap: fidelity, consumers: [predictor.physics]}
+reconstructs: {reconstruction: reconstructed_wind}
+"""
+
+
+def make_input(
+    seeds: tuple[int, ...] = (0,),
+    n_scenes: int = 80,
+    void: bool = True,
+    library: str = "held-out " + NASTY,
+) -> ReportInput:
+    """Build the audit; everything follows from the arguments."""
+    paths = _paths()
+    rows = tuple(_rows(seeds, n_scenes, void))
+    question = Question(
+        system="quadrotor",
+        options={"wind": "L3", "predictor": "wm-a"},
+        baseline=BASELINE,
+        repair=REPAIR,
+        fault="calibration=+0.1",
+        library=library,
+        library_hash="9d0c31f2" * 8,
+        n_scenes=n_scenes,
+        seeds=seeds,
+    )
+    record = decide(question, paths, OutcomeTable(rows))
+    tracks = {
+        (r.variant, r.path, r.seed, r.outcome.scene): r.outcome.trace
+        for r in rows
+        if r.outcome.trace is not None
+    }
+    return ReportInput(
+        record=record,
+        provenance=_provenance(),
+        interface=interface(),
+        outcomes=_arrow(rows),
+        traces=Traces(tracks, dt_s=0.05),
+        plans={_scene(i): _plan(i) for i in range(n_scenes)},
+    )
+
+
+def interface() -> Interface:
+    return read_interface(INTERFACE)
+
+
+@pytest.fixture(scope="session")
+def make() -> Callable[..., ReportInput]:
+    return make_input
+
+
+@pytest.fixture(scope="session")
+def one_seed() -> ReportInput:
+    return make_input()
+
+
+@pytest.fixture(scope="session")
+def three_seeds() -> ReportInput:
+    return make_input(seeds=(0, 1, 2))
+
+
+@pytest.fixture(scope="session")
+def drawn_interface() -> Interface:
+    return interface()
+
+
+def _paths() -> tuple[Path, ...]:
+    predictor = ("predictor.dynamics", "predictor.wind_map", "predictor.trim")
+    both = (*predictor, "reconstruction.head")
+    return (
+        Path(name="correct", title="Correct inputs", consumers=(), baseline_consumers=()),
+        Path(
+            name="predictor",
+            title="Predictor only",
+            consumers=predictor,
+            baseline_consumers=predictor,
+        ),
+        Path(
+            name="reconstruction",
+            title="Reconstruction only",
+            consumers=("reconstruction.head",),
+            baseline_consumers=("reconstruction.head",),
+        ),
+        Path(name="shared", title="Shared fault", consumers=both, baseline_consumers=both),
+    )
+
+
+def _scene(index: int) -> str:
+    return f"{TOPOLOGIES[index % 5]}-{index:03d}"
+
+
+def _rows(seeds: tuple[int, ...], n_scenes: int, void: bool) -> Iterator[TrialRow]:
+    for seed in seeds:
+        for index in range(n_scenes):
+            rng = np.random.default_rng([seed, index])
+            hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
+            for path, chances in CHANCES.items():
+                for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
+                    failed = (
+                        void
+                        and (index, path, variant) == (17, "shared", REPAIR)
+                        and seed == seeds[0]
+                    )
+                    draw = hard + 0.11 * rng.standard_normal()
+                    outcome = _outcome(index, seed, draw < chance, failed, path != "correct", rng)
+                    yield TrialRow(variant, path, seed, index, TOPOLOGIES[index % 5], outcome)
+
+
+def _outcome(
+    index: int, seed: int, solved: bool, failed: bool, struck: bool, rng: np.random.Generator
+) -> Outcome:
+    hashes = {
+        name: f"{name[:3]}-{index}-{seed}"
+        for name in ("initial_hash", "disturbance_hash", "planner_noise_hash")
+    }
+    if failed:
+        error = "RuntimeError: <b>no</b> candidate is finite"
+        return Outcome(_scene(index), Status.FAILED, 0.0, None, None, **hashes, error=error)
+    crash = rng.random() < 0.7
+    status = Status.SUCCESS if solved else Status.CRASH if crash else Status.TIMEOUT
+    trace = _track(index, status, rng)
+    time = 12.0 if status is Status.TIMEOUT else 0.05 * (len(trace) - 1)
+    goal = np.array(_plan(index).goal)
+    return Outcome(
+        scene=_scene(index),
+        status=status,
+        time_s=time,
+        terminal_distance_m=float(np.linalg.norm(trace[-1] - goal)),
+        min_clearance_m=0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6)),
+        struck_steps=len(trace) if struck else 0,
+        altered_steps=len(trace) if struck else 0,
+        trace=trace,
+        **hashes,
+    )
+
+
+def _track(index: int, status: Status, rng: np.random.Generator) -> np.ndarray:
+    """Fly from start to goal round the middle; a crash stops on the way, a timeout circles."""
+    plan = _plan(index)
+    start, goal = np.array(plan.start), np.array(plan.goal)
+    steps = {
+        Status.SUCCESS: int(rng.integers(55, 90)),
+        Status.CRASH: int(rng.integers(60, 80)),
+    }.get(status, 240)
+    u = np.linspace(0.0, 1.0, steps)[:, None]
+    side = np.array([0.0, 1.0, 0.0]) * rng.choice([-1.0, 1.0]) * rng.uniform(0.9, 1.7)
+    sink = np.array([0.0, 0.0, 1.0]) * rng.uniform(-0.6, 0.3)
+    track = start + u * (goal - start) + np.sin(np.pi * u) * side + np.sin(np.pi * u / 2) * sink
+    if status is Status.CRASH:
+        track = track[: int(steps * rng.uniform(0.35, 0.8))]
+    if status is Status.TIMEOUT:
+        stop = 0.55 * steps
+        angle = 2 * np.pi * np.maximum(np.arange(steps) - stop, 0)[:, None] / 60
+        track = np.where(
+            np.arange(steps)[:, None] < stop,
+            track,
+            track[int(stop)] + 0.4 * np.hstack([np.cos(angle) - 1, np.sin(angle), 0 * angle]),
+        )
+    return track.astype(np.float32)
+
+
+def _plan(index: int) -> FloorPlan:
+    rng = np.random.default_rng([7, index])
+
+    def box(x: float, y: float, w: float, d: float, top: float) -> Prism:
+        return Prism(((x, y), (x + w, y), (x + w, y + d), (x, y + d)), 0.0, top)
+
+    walls = [box(4.6, -3.0, 0.3, 2.2, 3.0), box(4.6, 0.9, 0.3, 2.1, 3.0)]
+    crates = [
+        box(
+            float(rng.uniform(1.5, 7.5)),
+            float(rng.uniform(-2.7, 2.0)),
+            float(rng.uniform(0.3, 0.9)),
+            float(rng.uniform(0.3, 0.9)),
+            float(rng.uniform(0.8, 3.0)),
+        )
+        for _ in range(6)
+    ]
+    pillars = [
+        Pillar(float(rng.uniform(1.5, 8.0)), float(rng.uniform(-2.5, 2.5)), 0.2, 0.0, 3.0)
+        for _ in range(4)
+    ]
+    return FloorPlan(
+        low=(0.0, -3.0, 0.0),
+        high=(10.0, 3.0, 3.0),
+        prisms=tuple(walls + crates) if index % 5 else tuple(crates),
+        pillars=tuple(pillars),
+        start=(0.8, float(rng.uniform(-1.5, 1.5)), 1.2),
+        goal=(9.2, float(rng.uniform(-1.5, 1.5)), 1.4),
+        title=TOPOLOGIES[index % 5],
+    )
+
+
+def _provenance() -> RunProvenance:
+    return RunProvenance(
+        faultpath_version="0.1.0",
+        commit="5c0ffee5c0ffee5c0ffee5c0ffee5c0ffee5c0ff",
+        dirty=True,
+        command=("faultpath", "audit", "quadrotor", "--library", NASTY),
+        python="3.11.2",
+        packages={"numpy": "2.4.6", "scipy": "1.18.0", "pyarrow": "26.0.1", "torch": "2.13.0"},
+        platform="Linux x86_64",
+        processor="2 cores",
+        workers=2,
+        started="2026-11-21T08:00:00Z",
+        finished="2026-11-21T08:11:42Z",
+        wall_s=702.4,
+        blocks_computed=32,
+        blocks_kept=8,
+        system_fingerprint="b7e1" * 16,
+        library_hash="9d0c31f2" * 8,
+        outcomes_sha256="77ab" * 16,
+    )
+
+
+def _arrow(rows: tuple[TrialRow, ...]) -> pa.Table:
+    def value(row: TrialRow, column: str) -> object:
+        return getattr(row, column) if hasattr(row, column) else getattr(row.outcome, column)
+
+    return pa.table({c: [value(row, c) for row in rows] for c in OUTCOME_COLUMNS})
