@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.stats import binom, binomtest, spearmanr
@@ -24,6 +24,7 @@ COUNT = st.integers(0, 60)
 PAIR = hnp.arrays(np.bool_, st.tuples(st.just(2), st.integers(1, 30), st.integers(1, 4)))
 
 
+@settings(deadline=None)
 @given(COUNT, COUNT)
 def test_exact_mcnemar_agrees_with_statsmodels_and_scipy(first_only, second_only):
     ours = mcnemar_exact(Discordant(first_only=first_only, second_only=second_only)).p_value
@@ -37,6 +38,7 @@ def test_exact_mcnemar_agrees_with_statsmodels_and_scipy(first_only, second_only
         assert ours == 1.0
 
 
+@settings(deadline=None)
 @given(COUNT, COUNT)
 def test_mid_p_takes_half_of_the_observed_weight_off_each_side(first_only, second_only):
     counts = Discordant(first_only=first_only, second_only=second_only)
@@ -53,6 +55,7 @@ def test_mid_p_known_value():
     assert mcnemar_mid_p(Discordant(first_only=1, second_only=5)).p_value == pytest.approx(8 / 64)
 
 
+@settings(deadline=None)
 @given(PAIR)
 def test_swapping_the_arms_swaps_the_counts_and_keeps_the_p_value(pair):
     forward, backward = sign_test(*pair), sign_test(*pair[::-1])
@@ -61,6 +64,7 @@ def test_swapping_the_arms_swaps_the_counts_and_keeps_the_p_value(pair):
     assert discordant_by_seed(*pair[::-1]) == discordant_by_seed(*pair).swapped()
 
 
+@settings(deadline=None)
 @given(PAIR, st.randoms(use_true_random=False))
 def test_the_order_of_scenes_and_of_seeds_does_not_matter(pair, random):
     scenes = random.sample(range(pair.shape[1]), pair.shape[1])
@@ -68,12 +72,14 @@ def test_the_order_of_scenes_and_of_seeds_does_not_matter(pair, random):
     assert sign_test(*pair[:, scenes][:, :, seeds]) == sign_test(*pair)
 
 
+@settings(deadline=None)
 @given(PAIR, st.integers(2, 4))
 def test_duplicating_seeds_does_not_shrink_the_p_value(pair, times):
     copied = np.tile(pair, (1, 1, times))
     assert sign_test(*copied).p_value == sign_test(*pair).p_value
 
 
+@settings(deadline=None)
 @given(PAIR)
 def test_one_seed_makes_the_sign_test_the_exact_mcnemar_test(pair):
     one = pair[:, :, 0]
@@ -81,6 +87,7 @@ def test_one_seed_makes_the_sign_test_the_exact_mcnemar_test(pair):
     assert success_test(*one).name == "exact McNemar"
 
 
+@settings(deadline=None)
 @given(PAIR)
 def test_identical_arms_have_p_one(pair):
     result = success_test(pair[0], pair[0])
@@ -132,6 +139,7 @@ def test_wrong_input_is_refused(first, second, message):
         success_test(first, second)
 
 
+@settings(deadline=None)
 @given(hnp.arrays(np.int64, st.tuples(st.just(2), st.integers(2, 25)), elements=st.integers(0, 6)))
 def test_spearman_agrees_with_scipy(pair):
     result = spearman(*pair)

@@ -1,6 +1,7 @@
 """Scene resamples, drawn once and shared by every effect that is to be bootstrapped jointly."""
 
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Self
 
 import numpy as np
@@ -44,9 +45,7 @@ class Resamples:
 
     def seed_counts(self, n_seeds: int) -> Floats:
         """Return [resamples, seeds]: how often each seed occurs; the same array at every call."""
-        return _counts(
-            generator("bootstrap-seeds", self.label, self.seed), self.n_resamples, n_seeds
-        )
+        return _seed_counts(self.label, self.seed, self.n_resamples, n_seeds)
 
     def reordered(self, order: NDArray[np.intp]) -> "Resamples":
         """Return the same resamples for outcomes whose scenes were reordered as ``x[order]``."""
@@ -55,6 +54,13 @@ class Resamples:
     def same_as(self, other: "Resamples") -> bool:
         """Return whether both hold the same draws, so that effects on them are joint."""
         return self is other or np.array_equal(self.counts, other.counts)
+
+
+@lru_cache(maxsize=16)
+def _seed_counts(label: str, seed: int, n_resamples: int, n_seeds: int) -> Floats:
+    drawn = _counts(generator("bootstrap-seeds", label, seed), n_resamples, n_seeds)
+    drawn.setflags(write=False)  # shared by many effects
+    return drawn
 
 
 def _counts(stream: np.random.Generator, rows: int, items: int) -> Floats:

@@ -1,0 +1,280 @@
+"""Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
+
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from faultpath.statistics import (
+    SCENES,
+    SCENES_AND_SEEDS,
+    Estimate,
+    Resamples,
+    against_each_seed,
+    difference_of_effects,
+    mean_effect,
+    mean_value,
+    median_effect,
+    percentile_interval,
+    reversal,
+    success_effect,
+    success_rate,
+)
+
+N = 20
+RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
+BINARY = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
+FLOATS = hnp.arrays(
+    np.float64,
+    st.tuples(st.just(2), st.just(N), st.integers(1, 4)),
+    elements=st.floats(-50, 50, width=32),
+)
+fewer = settings(max_examples=50, deadline=None)
+
+
+def rows(resamples):
+    """Spell the count matrix out as the scene indices of each resample."""
+    return [np.repeat(np.arange(resamples.n_scenes), row.astype(int)) for row in resamples.counts]
+
+
+def test_resamples_are_keyed_and_complete():
+    again, other = (
+        Resamples.draw("laws", N, n_resamples=500),
+        Resamples.draw("laws", N, seed=1, n_resamples=500),
+    )
+    assert RESAMPLES.same_as(again)
+    assert not RESAMPLES.same_as(other)
+    assert (RESAMPLES.counts.sum(axis=1) == N).all()
+    # 10,000 scene counts of mean 1: every scene is equally likely.
+    assert np.abs(RESAMPLES.counts.mean(axis=0) - 1).max() < 5 * np.sqrt(1 / 500)
+    assert (RESAMPLES.seed_counts(3).sum(axis=1) == 3).all()
+    with pytest.raises(ValueError, match="read-only"):
+        RESAMPLES.counts[0, 0] = 3
+
+
+@fewer
+@given(FLOATS)
+def test_draws_are_the_means_of_resampled_scenes(pair):
+    means = (pair[0] - pair[1]).mean(axis=1)
+    expected = [means[row].mean() for row in rows(RESAMPLES)]
+    effect = mean_effect(*pair, RESAMPLES, "m")
+    np.testing.assert_allclose(effect.draws, expected, atol=1e-10)
+    assert effect.value == pytest.approx(means.mean(), abs=1e-10)
+    low, high = effect.estimate(0.9).interval
+    assert (low, high) == pytest.approx(np.percentile(expected, [5, 95]), abs=1e-9)
+
+
+@fewer
+@given(BINARY.filter(lambda pair: pair.shape[2] > 1))
+def test_crossed_draws_resample_scenes_and_seeds(pair):
+    effect = success_effect(*pair, RESAMPLES, resample_seeds=True)
+    difference = pair[0].astype(float) - pair[1]
+    expected = [
+        100 * np.average(difference[row] @ seeds / seeds.sum())
+        for row, seeds in zip(
+            rows(RESAMPLES), RESAMPLES.seed_counts(difference.shape[1]), strict=True
+        )
+    ]
+    np.testing.assert_allclose(effect.draws, expected, atol=1e-10)
+    assert effect.estimate().estimand == SCENES_AND_SEEDS
+    assert success_effect(*pair, RESAMPLES).estimate().estimand == SCENES
+
+
+@fewer
+@given(BINARY, st.booleans())
+def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair, as_floats):
+    pair = pair * 0.1 if as_floats else pair
+    forward, backward = (
+        mean_effect(*arms, RESAMPLES, "m").estimate()
+        if as_floats
+        else success_effect(*arms, RESAMPLES).estimate()
+        for arms in (pair, pair[::-1])
+    )
+    assert backward == forward.swapped()
+
+
+@fewer
+@given(BINARY, st.integers(2, 3))
+def test_duplicating_seeds_changes_neither_value_nor_interval(pair, times):
+    once = success_effect(*pair, RESAMPLES).estimate()
+    copied = success_effect(*np.tile(pair, (1, 1, times)), RESAMPLES).estimate()
+    assert (copied.value, copied.interval) == (once.value, once.interval)
+
+
+@fewer
+@given(BINARY, st.permutations(range(N)))
+def test_permuting_scenes_with_their_resamples_changes_nothing(pair, order):
+    order = np.array(order)
+    moved = success_effect(*pair[:, order], RESAMPLES.reordered(order))
+    assert moved.estimate() == success_effect(*pair, RESAMPLES).estimate()
+
+
+@fewer
+@given(FLOATS)
+def test_identical_arms_give_zero_with_a_degenerate_interval(pair):
+    estimate = mean_effect(pair[0], pair[0], RESAMPLES, "m").estimate()
+    assert (estimate.value, estimate.interval, estimate.detected_sign) == (0.0, (0.0, 0.0), 0)
+
+
+def test_a_resampled_mean_of_zero_is_exactly_zero():
+    """Thirds do not cancel in floating point; an end at 0 must not come out beside it."""
+    first, second = np.zeros((2, N, 3))
+    first[:7, 0], second[7:14, 1] = 1, 1
+    draws = success_effect(first, second, RESAMPLES).draws
+    assert (draws == 0).sum() > 20
+    assert np.abs(draws[draws != 0]).min() > 1
+
+
+def test_per_seed_values_and_counts():
+    first = np.array([[1, 0], [1, 0], [0, 1], [0, 0]])
+    second = np.array([[0, 0], [0, 1], [0, 0], [0, 0]])
+    estimate = success_effect(first, second, Resamples.draw("four", 4)).estimate()
+    assert estimate.per_seed == (50.0, 0.0)
+    assert (estimate.value, str(estimate.counts)) == (25.0, "2:0/1:1")
+    assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
+    assert estimate.method == "percentile bootstrap of scenes, 10000 resamples"
+
+
+def test_one_arm():
+    outcomes = np.arange(N) < 13
+    assert success_rate(outcomes, RESAMPLES).estimate().value == 65.0
+    assert mean_value(outcomes * 2.0, RESAMPLES, "m").value == pytest.approx(1.3)
+    with pytest.raises(ValueError, match="only 0 and 1"):
+        success_rate(outcomes * 2.0, RESAMPLES)
+
+
+@fewer
+@given(BINARY, BINARY)
+def test_difference_of_effects_is_joint(a, b):
+    effect_a, effect_b = (success_effect(*pair, RESAMPLES) for pair in (a, b))
+    change = difference_of_effects(effect_a, effect_b)
+    np.testing.assert_array_equal(change.draws, effect_b.draws - effect_a.draws)
+    assert change.value == effect_b.value - effect_a.value
+    assert len(change.per_seed) == (a.shape[2] if a.shape == b.shape else 0)
+    assert difference_of_effects(effect_a, effect_a).estimate().interval == (0.0, 0.0)
+
+
+def test_reversal_needs_opposite_signs_and_a_detected_change():
+    never, helps, helps_less = np.zeros((N, 2)), np.zeros((N, 2)), np.zeros((N, 2))
+    helps[:12], helps_less[:3] = 1, 1
+
+    def against(first, second):
+        return success_effect(first, second, RESAMPLES)
+
+    turned = reversal(against(helps, never), against(never, helps))
+    assert turned.detected
+    assert turned.in_every_seed
+    assert turned.change.value == -120.0
+    weaker = reversal(against(helps, never), against(helps_less, never))
+    assert weaker.change.detected_sign == -1
+    assert not weaker.detected
+    mixed = helps.copy()
+    mixed[:, 1] = 0
+    other = np.zeros((N, 2))
+    other[:2, 1] = 1
+    split = reversal(against(mixed, other), against(never, helps))
+    assert split.detected
+    assert not split.in_every_seed
+
+
+def test_effects_that_are_not_joint_are_refused():
+    one = np.ones((N, 2))
+    here = success_effect(one, one, RESAMPLES)
+    elsewhere = success_effect(one, one, Resamples.draw("other", N, n_resamples=500))
+    with pytest.raises(ValueError, match="same resamples"):
+        difference_of_effects(here, elsewhere)
+    with pytest.raises(ValueError, match="'pp' and 'm'"):
+        difference_of_effects(here, mean_effect(one, one, RESAMPLES, "m"))
+    crossed = success_effect(one, one, RESAMPLES, resample_seeds=True)
+    with pytest.raises(ValueError, match="one effect resamples seeds"):
+        difference_of_effects(here, crossed)
+    three = np.ones((N, 3))
+    with pytest.raises(ValueError, match="same seeds"):
+        difference_of_effects(crossed, success_effect(three, three, RESAMPLES, resample_seeds=True))
+
+
+def test_wrong_input_is_refused():
+    with pytest.raises(ValueError, match="19 scenes, the resamples 'laws' have 20"):
+        success_effect(np.ones(19), np.ones(19), RESAMPLES)
+    with pytest.raises(ValueError, match="one seed says nothing"):
+        success_effect(np.ones(N), np.ones(N), RESAMPLES, resample_seeds=True)
+    with pytest.raises(ValueError, match="one shape"):
+        mean_effect(np.ones((N, 1)), np.ones((N, 3)), RESAMPLES, "m")
+    with pytest.raises(ValueError, match="0 resamples of 5 scenes"):
+        Resamples.draw("none", 5, n_resamples=0)
+    with pytest.raises(ValueError, match="level of an interval"):
+        percentile_interval(np.zeros(3), 95)
+
+
+def test_a_fixed_arm_is_repeated_beside_each_seed():
+    fixed = np.arange(N) % 2
+    assert (against_each_seed(fixed, 3) == fixed[:, None]).all()
+    assert against_each_seed(fixed, 3).shape == (N, 3)
+    with pytest.raises(ValueError, match="only one column"):
+        against_each_seed(np.ones((N, 2)), 3)
+
+
+@fewer
+@given(FLOATS, st.data())
+def test_medians_are_those_of_the_resampled_joint_scenes(pair, data):
+    joint = data.draw(hnp.arrays(np.bool_, pair.shape[1:]).filter(lambda mask: mask.any()))
+    effect = median_effect(*pair, joint, RESAMPLES)
+    within = [
+        (first - second)[seen].mean() if seen.any() else None
+        for first, second, seen in zip(*pair, joint, strict=True)
+    ]
+    expected = [
+        np.median([within[scene] for scene in row if within[scene] is not None])
+        for row in rows(RESAMPLES)
+        if any(within[scene] is not None for scene in row)
+    ]
+    np.testing.assert_allclose(effect.draws, expected, atol=1e-9)
+    assert effect.value == pytest.approx(np.median([w for w in within if w is not None]))
+    assert effect.n_scenes == joint.any(axis=1).sum()
+
+
+def test_times_of_scenes_that_are_not_joint_are_not_read():
+    first, second = np.full(N, 3.0), np.full(N, 2.0)
+    joint = np.arange(N) < 15
+    first[15:] = np.nan
+    estimate = median_effect(first, second, joint, RESAMPLES).estimate()
+    assert (estimate.value, estimate.interval, estimate.n_scenes) == (1.0, (1.0, 1.0), 15)
+    with pytest.raises(ValueError, match="no scene is jointly successful"):
+        median_effect(first, second, np.zeros(N, dtype=bool), RESAMPLES)
+    with pytest.raises(ValueError, match="first has shape"):
+        median_effect(first[:3], second, joint, RESAMPLES)
+    with pytest.raises(ValueError, match="first holds NaN"):
+        median_effect(first, second, np.ones(N, dtype=bool), RESAMPLES)
+
+
+def test_ten_thousand_resamples_of_100_scenes_take_at_most_20_ms():
+    resamples = Resamples.draw("speed", 100)
+    rng = np.random.default_rng(0)
+    first, second = rng.random((2, 100, 3)) < 0.6
+
+    def seconds():
+        start = time.process_time()
+        success_effect(first, second, resamples).estimate()
+        return time.process_time() - start
+
+    assert min(seconds() for _ in range(10)) <= 0.020
+
+
+def test_an_estimate_prints_swaps_and_refuses_nonsense():
+    base = {"method": "m", "estimand": SCENES, "n_scenes": 100, "n_seeds": 3, "unit": "pp"}
+    estimate = Estimate(value=-9.67, low=-16.0, high=-4.0, **base)
+    assert estimate.text() == "-9.7 pp [-16.0, -4.0]"
+    assert estimate.detected_sign == -1
+    assert estimate.swapped().text() == "9.7 pp [4.0, 16.0]"
+    assert Estimate(value=-0.01, **base).text() == "0.0 pp"
+    assert Estimate.model_validate_json(estimate.model_dump_json()) == estimate
+    for wrong in (
+        {"value": float("nan")},
+        {"value": 0.0, "low": 1.0},
+        {"value": 0.0, "low": 1.0, "high": -1.0},
+    ):
+        with pytest.raises(ValueError, match=r"finite|both ends|upside down"):
+            Estimate(**wrong, **base)
