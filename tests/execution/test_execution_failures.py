@@ -30,6 +30,13 @@ print(f"computed {result.blocks_computed} kept {result.blocks_kept}")
 """
 
 
+def _slow(tmp_path: Path) -> tuple[Study, Path, Path]:
+    """Return a study that is slow while a file exists, that file, and the log of its calls."""
+    log, gate = tmp_path / "log", tmp_path / "slow"
+    gate.touch()
+    return study(log=str(log), slow_while=str(gate)), gate, log
+
+
 def _start(study: Study, folder: Path) -> subprocess.Popen[str]:
     """Run a study in a process of its own, in a session of its own."""
     definition = folder.parent / f"{folder.name}.json"
@@ -79,8 +86,8 @@ def _same_tables(one: Path, two: Path) -> bool:
 
 
 def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_path):
-    folder, log = tmp_path / "run", tmp_path / "log"
-    slow = study(log=str(log), sleep="0.15")
+    folder = tmp_path / "run"
+    slow, gate, log = _slow(tmp_path)
     process = _start(slow, folder)
     _until(lambda: _shards(folder) >= 3, "three shards")
     process.kill()
@@ -88,6 +95,7 @@ def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_p
     workers = {int(call[-1]) for call in _calls(log)}
     assert process.pid not in workers
     _until(lambda: not any(map(_alive, workers)), "the workers' end", seconds=5.0)
+    gate.unlink()
     kept = _shards(folder)
     assert kept < UNITS
     (folder / "shards" / ".partial-left").write_bytes(b"half a shard")
@@ -99,13 +107,14 @@ def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_p
 
 
 def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
-    folder, log = tmp_path / "run", tmp_path / "log"
-    slow = study(log=str(log), sleep="0.15")
+    folder = tmp_path / "run"
+    slow, gate, log = _slow(tmp_path)
     process = _start(slow, folder)
     _until(lambda: _shards(folder) >= 2, "two shards")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: parent and workers alike
     out, _ = process.communicate(timeout=10)
     assert process.returncode == 130
+    gate.unlink()
     kept = _shards(folder)
     assert f"interrupted with {kept} of {UNITS} blocks done" in out
     assert not any(_alive(int(call[-1])) for call in _calls(log))
@@ -114,9 +123,11 @@ def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
 
 
 def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
-    folder, log = tmp_path / "run", tmp_path / "log"
-    slow = study(log=str(log), sleep="0.03")
+    folder = tmp_path / "run"
+    slow, gate, log = _slow(tmp_path)
     processes = [_start(slow, folder), _start(slow, folder)]
+    _until(lambda: _shards(folder) >= 1, "a shard")
+    gate.unlink()
     outputs = [process.communicate(timeout=40)[0] for process in processes]
     assert [process.returncode for process in processes] == [0, 0]
     calls = [tuple(call[:-1]) for call in _calls(log)]

@@ -89,7 +89,8 @@ class ToySystem(System):
         if log := options.get("log"):
             with Path(log).open("a") as file:  # one short write: whole, whoever else appends
                 file.write(f"{variant} {seed} {','.join(scenes)} {os.getpid()}\n")
-        time.sleep(float(options.get("sleep", "0")))
+        if Path(options.get("slow_while", "")).is_file():
+            time.sleep(0.2)
         if options.get("raises") in scenes:
             raise ValueError(f"no air in {options['raises']}")
         if options.get("dies") in scenes:

@@ -1,7 +1,16 @@
 """What a run leaves behind: a folder of shards, and the tables assembled from them."""
 
+from faultpath.store.atomic import write_text
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import FORMAT, Manifest
 from faultpath.store.tables import TrialAddress, read_outcomes, read_traces
 
-__all__ = ["FORMAT", "Manifest", "RunFolder", "TrialAddress", "read_outcomes", "read_traces"]
+__all__ = [
+    "FORMAT",
+    "Manifest",
+    "RunFolder",
+    "TrialAddress",
+    "read_outcomes",
+    "read_traces",
+    "write_text",
+]

@@ -5,6 +5,8 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
+from faultpath.errors import UserError
+
 _PREFIX = ".partial-"
 
 
@@ -23,6 +25,16 @@ def write(path: Path, data: bytes) -> None:
             os.unlink(name)
         raise
     _sync_folder(path.parent)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file as `write` does; `UserError` when it cannot be written."""
+    try:
+        write(path, text.encode())
+    except OSError as error:
+        raise UserError(
+            f"cannot write {path} ({error.strerror}): choose a place that you may write to"
+        ) from error
 
 
 def sweep(folder: Path) -> None:

@@ -1,0 +1,129 @@
+"""A contrast is of trials that met the same conditions, or it is refused."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faultpath.trials import OutcomeTable, PairingRefused, Side, TrialRow, pair
+from faultpath.trials.outcome import Outcome, Status
+
+ONE, TWO = Side("repair", "shared"), Side("baseline", "shared")
+SCENES = ("a", "b", "c")
+SEEDS = (3, 5)
+
+
+def _outcome(scene: str, seed: int, success: bool, distance: float | None = 1.0) -> Outcome:
+    return Outcome(
+        scene=scene,
+        status=Status.SUCCESS if success else Status.CRASH,
+        time_s=2.0 + seed,
+        terminal_distance_m=distance,
+        min_clearance_m=None,
+        initial_hash=f"i-{scene}",
+        disturbance_hash=f"d-{scene}",
+        planner_noise_hash=f"n-{scene}-{seed}",
+    )
+
+
+def _table(change: Callable[[TrialRow], TrialRow] = lambda row: row) -> OutcomeTable:
+    """Only the repair succeeds in `a`; both do in `b`; with seed 5 only the baseline in `c`."""
+    wins = {ONE: {"a": SEEDS, "b": SEEDS, "c": ()}, TWO: {"a": (), "b": SEEDS, "c": (5,)}}
+    return OutcomeTable(
+        tuple(
+            change(
+                TrialRow(
+                    side.variant,
+                    side.path,
+                    seed,
+                    index,
+                    "open",
+                    _outcome(scene, seed, seed in wins[side][scene]),
+                )
+            )
+            for side in (ONE, TWO)
+            for seed in SEEDS
+            for index, scene in enumerate(SCENES)
+        )
+    )
+
+
+def _altering(variant: str, scene: str, seed: int, **fields: object) -> OutcomeTable:
+    def change(row: TrialRow) -> TrialRow:
+        if (row.variant, row.outcome.scene, row.seed) != (variant, scene, seed):
+            return row
+        return replace(row, outcome=replace(row.outcome, **fields))
+
+    return _table(change)
+
+
+def test_pairs_are_by_scene_and_seed():
+    pairs = pair(_table(), ONE, TWO)
+    assert (pairs.scenes, pairs.seeds, pairs.void) == (SCENES, SEEDS, 0)
+    assert pairs.scene_indices == (0, 1, 2)
+    np.testing.assert_array_equal(pairs.first.success, [[1, 1], [1, 1], [0, 0]])
+    np.testing.assert_array_equal(pairs.second.success, [[0, 0], [1, 1], [0, 1]])
+    np.testing.assert_array_equal(pairs.second.crash, ~pairs.second.success)
+    np.testing.assert_array_equal(pairs.first.time_s, [[5.0, 7.0]] * 3)
+    assert pairs.first.min_clearance_m is None
+
+
+def test_swapping_the_sides_swaps_the_arrays():
+    one, two = pair(_table(), ONE, TWO), pair(_table(), TWO, ONE)
+    np.testing.assert_array_equal(one.first.success, two.second.success)
+    np.testing.assert_array_equal(one.second.success, two.first.success)
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [
+        ("initial_hash", "initial states"),
+        ("disturbance_hash", "disturbances"),
+        ("planner_noise_hash", "planner noise"),
+    ],
+)
+def test_other_conditions_are_refused_by_name(name, what):
+    table = _altering("repair", "b", 5, **{name: "other"})
+    with pytest.raises(PairingRefused, match=rf"scene 'b' \(seed 5\): their {what} differ"):
+        pair(table, ONE, TWO)
+
+
+def test_a_failed_trial_voids_its_pair_and_leaves_its_scene_out():
+    table = _altering("baseline", "b", 3, status=Status.FAILED, initial_hash="", time_s=0.0)
+    pairs = pair(table, ONE, TWO)
+    assert (pairs.void, pairs.void_scenes, pairs.scenes) == (1, ("b",), ("a", "c"))
+    np.testing.assert_array_equal(pairs.first.success, [[1, 1], [0, 0]])
+    np.testing.assert_array_equal(pairs.first.time_s, [[5.0, 7.0]] * 2)
+
+
+def test_when_every_scene_is_void_nothing_is_left():
+    def fail(row: TrialRow) -> TrialRow:
+        return replace(row, outcome=replace(row.outcome, status=Status.FAILED))
+
+    pairs = pair(_table(fail), ONE, TWO)
+    assert (pairs.void, pairs.scenes) == (6, ())
+    assert pairs.first.success.shape == pairs.first.time_s.shape == (0, 2)
+
+
+def test_pairs_can_be_cut_to_common_scenes():
+    pairs = pair(_table(), ONE, TWO).only(("c", "b"))
+    assert pairs.scenes == ("b", "c")
+    np.testing.assert_array_equal(pairs.second.success, [[1, 1], [0, 1]])
+
+
+def test_one_distance_that_is_missing_takes_the_array_away():
+    table = _altering("repair", "a", 3, terminal_distance_m=None)
+    pairs = pair(table, ONE, TWO)
+    assert pairs.first.terminal_distance_m is None
+    assert pairs.second.terminal_distance_m is not None
+
+
+def test_sides_of_different_extent_are_refused():
+    short = OutcomeTable(tuple(row for row in _table().rows if row != _table().rows[-1]))
+    with pytest.raises(PairingRefused, match="different scenes, for example 'c'"):
+        pair(short, ONE, TWO)
+    with pytest.raises(PairingRefused, match="no trial of baseline under correct with seed 3"):
+        pair(_table(), ONE, Side("baseline", "correct"))
+    with pytest.raises(PairingRefused, match="repair under correct"):
+        pair(_table(), Side("repair", "correct"), TWO)
