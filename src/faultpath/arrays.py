@@ -98,6 +98,11 @@ def pick(condition: Any, yes: Array, no: Array) -> Array:
     return namespace(yes).where(rows(condition, yes), yes, no)
 
 
+def kept(condition: Any, reading: Array, held: Array) -> Array:
+    """Return `pick(condition, reading, held)` as an array that no later write can reach."""
+    return copy(reading) if condition is True else pick(condition, reading, held)
+
+
 def differs(value: Array, reading: Array) -> Array:
     """Return `[B]`: whether any number of a scene differs. A NaN equals a NaN."""
     unequal = value != reading

@@ -10,7 +10,7 @@
 A correlation group may stand for its channels: `calibration:scale=1.1`.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -223,9 +223,9 @@ def _value(key: str, text: str) -> Any:
         return text == "true"
     if text in KINDS:
         return {"kind": text}
-    parts: Sequence[str] = text.split("/")
-    numbers = tuple(_number(key, part) for part in parts)
-    return numbers if len(numbers) > 1 else numbers[0]
+    if "/" in text:
+        return tuple(_number(key, part) for part in text.split("/"))
+    return _number(key, text)
 
 
 def _at_time(fault: Fault | Coupled, when: Mapping[str, int]) -> Fault | Coupled:

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.arrays import Array, copy, pick, place
+from faultpath.arrays import Array, copy, kept, pick, place
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.faults.values import Erase
 from faultpath.interface import Channel
@@ -52,7 +52,7 @@ class Hold(Intervention):
         """Return the held reading, refreshed when its time has come."""
         held, turn = memory
         now = at.elapsed // self.every
-        held = pick((now != turn) | (at.elapsed < 0), copy(reading), held)
+        held = kept((now != turn) | (at.elapsed < 0), reading, held)
         return held, (held, now)
 
     def words(self) -> str:
@@ -74,7 +74,7 @@ class Freeze(Intervention):
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the held reading, which follows the readings up to the onset."""
-        held = pick(at.elapsed <= 0, copy(reading), memory)
+        held = kept(at.elapsed <= 0, reading, memory)
         return held, held
 
     def words(self) -> str:

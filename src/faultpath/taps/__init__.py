@@ -10,7 +10,8 @@ from faultpath.taps.errors import (
 )
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
-from faultpath.taps.taps import ModuleTaps, StrikeState, Taps
+from faultpath.taps.tap import StrikeState
+from faultpath.taps.taps import ModuleTaps, Taps
 
 __all__ = [
     "IllegalRead",

@@ -10,52 +10,14 @@ from numpy.typing import NDArray
 from faultpath.arrays import Array, differs
 from faultpath.errors import UserError
 from faultpath.faults import Coupled, Draws, Fault
-from faultpath.interface import Interface, Provenance, modules
+from faultpath.interface import Interface, modules
 from faultpath.interface.words import listed, unknown
 from faultpath.taps.errors import IllegalRead, MalformedReading, UndeclaredReader
 from faultpath.taps.reading import Reading
-from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
+from faultpath.taps.receipts import Missed, Receipts, check_delivered
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Running, Tally
-
-
-class _Tap:
-    """One consumer's end of one channel."""
-
-    __slots__ = (
-        "altered",
-        "cached",
-        "channel",
-        "consumer",
-        "deliveries",
-        "first_step",
-        "last_step",
-        "legal",
-        "source",
-        "strikes",
-        "struck",
-    )
-
-    def __init__(self, channel: str, consumer: str, source: str, legal: bool) -> None:
-        self.channel = channel
-        self.consumer = consumer
-        self.source = source
-        self.legal = legal
-        self.strikes: tuple[Strike, ...] = ()
-        self.deliveries = 0
-        self.first_step = -1
-        self.last_step = -1
-        self.cached: Array = None
-        self.struck = Tally()
-        self.altered = Tally()
-
-    def __str__(self) -> str:
-        return f"{self.channel} -> {self.consumer}"
-
-    def add(self, strike: Strike) -> None:
-        """Let a fault strike here; a fault that is alone counts for the whole tap."""
-        self.strikes = (*self.strikes, strike)
-        self.struck = strike.in_force if len(self.strikes) == 1 else Tally()
+from faultpath.taps.tap import StrikeState, Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,20 +27,6 @@ class ModuleTaps:
     module: str
     deliver: Callable[[str, str, Reading, int], Array]
     """`deliver(channel, place, reading, step)` for the consumer `module.place`."""
-
-
-@dataclass(frozen=True)
-class StrikeState:
-    """One fault at one tap, as it stood at the tap's last delivery."""
-
-    channel: str
-    consumer: str
-    fault: str
-    step: int | None
-    """`None` before the first delivery."""
-    in_window: NDArray[np.bool_]
-    """`[B]`"""
-    memory: str
 
 
 class Taps:
@@ -115,7 +63,7 @@ class Taps:
         self._running = Running(None)
         self._struck, self._altered = Tally(), Tally()
         self._absent: list[tuple[str, str]] = []
-        self._taps = _taps(interface, bindings or {}, consumers, privileged)
+        self._taps = wire(interface, bindings or {}, consumers, privileged)
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self._bindings = MappingProxyType(first | dict(bindings or {}))
         self._strike(tuple(faults), dt_s, seed)
@@ -177,7 +125,7 @@ class Taps:
                 tap.cached = self._struck_value(tap, reading.value, step)
         return tap.cached if tap.strikes else reading.value
 
-    def _struck_value(self, tap: _Tap, reading: Array, step: int) -> Array:
+    def _struck_value(self, tap: Tap, reading: Array, step: int) -> Array:
         if reading.shape[0] != len(self._scenes):
             raise MalformedReading(
                 f"tap {tap}: the reading has {reading.shape[0]} rows for {len(self._scenes)} scenes"
@@ -216,7 +164,7 @@ class Taps:
         n = len(self._scenes)
         return Receipts(
             scenes=self._scenes,
-            taps=tuple(_receipt(tap, n) for tap in self._taps.values()),
+            taps=tuple(tap.receipt(n) for tap in self._taps.values()),
             absent=tuple(self._absent),
             steps_struck=self._struck.counts(n),
             steps_altered=self._altered.counts(n),
@@ -234,18 +182,8 @@ class Taps:
 
     def state(self) -> tuple[StrikeState, ...]:
         """Return the state of every fault at every tap: for evaluation code, not for modules."""
-        return tuple(
-            StrikeState(
-                channel=tap.channel,
-                consumer=tap.consumer,
-                fault=strike.fault.describe(),
-                step=tap.last_step if tap.deliveries else None,
-                in_window=strike.in_window(tap.last_step, len(self._scenes)),
-                memory=strike.memory_words(),
-            )
-            for tap in self._taps.values()
-            for strike in tap.strikes
-        )
+        n = len(self._scenes)
+        return tuple(state for tap in self._taps.values() for state in tap.states(n))
 
     def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
         declared = self._interface.channel(channel).consumers
@@ -259,7 +197,7 @@ class Taps:
             f"the interface, declared: {listed(declared)}"
         )
 
-    def _illegal(self, tap: _Tap, reading: Reading, step: int) -> IllegalRead:
+    def _illegal(self, tap: Tap, reading: Reading, step: int) -> IllegalRead:
         if reading.source != tap.source:
             return IllegalRead(
                 f"tap {tap}: the reading is of source '{reading.source}', but the channel is "
@@ -272,53 +210,3 @@ class Taps:
         return IllegalRead(
             f"tap {tap}: the reading is of step {reading.step}, which is after step {step}"
         )
-
-
-def _taps(
-    interface: Interface,
-    bindings: Mapping[str, str],
-    consumers: Collection[str] | None,
-    privileged: Collection[str],
-) -> dict[tuple[str, str], _Tap]:
-    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
-    for name in bindings:
-        interface.channel(name)
-    for name in privileged:
-        interface.source(name)
-    declared = {name for channel in interface.channels for name in channel.consumers}
-    for name in consumers or ():
-        if name not in declared:
-            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
-    taps: dict[tuple[str, str], _Tap] = {}
-    for channel in interface.channels:
-        bound = bindings.get(channel.name, channel.sources[0])
-        if bound not in channel.sources:
-            said = unknown("source", bound, channel.sources)
-            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
-        secret = interface.source(bound).provenance is Provenance.PRIVILEGED
-        for name in channel.consumers:
-            if consumers is None or name in consumers:
-                legal = bound in privileged or not secret
-                taps[channel.name, name] = _Tap(channel.name, name, bound, legal)
-    return taps
-
-
-def _receipt(tap: _Tap, n_scenes: int) -> Receipt:
-    return Receipt(
-        channel=tap.channel,
-        consumer=tap.consumer,
-        source=tap.source,
-        deliveries=tap.deliveries,
-        first_step=tap.first_step if tap.deliveries else None,
-        last_step=tap.last_step if tap.deliveries else None,
-        strikes=tuple(
-            StrikeReceipt(
-                fault=strike.fault.describe(),
-                onset_step=strike.onsets(n_scenes),
-                steps_in_force=strike.in_force.counts(n_scenes),
-            )
-            for strike in tap.strikes
-        ),
-        steps_struck=tap.struck.counts(n_scenes),
-        steps_altered=tap.altered.counts(n_scenes),
-    )

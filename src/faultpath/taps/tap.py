@@ -1,0 +1,130 @@
+"""One consumer's end of one channel, and how a variant's taps come about."""
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.arrays import Array
+from faultpath.errors import UserError
+from faultpath.interface import Interface, Provenance
+from faultpath.interface.words import unknown
+from faultpath.taps.receipts import Receipt, StrikeReceipt
+from faultpath.taps.strike import Strike
+from faultpath.taps.tally import Tally
+
+
+@dataclass(frozen=True)
+class StrikeState:
+    """One fault at one tap, as it stood at the tap's last delivery."""
+
+    channel: str
+    consumer: str
+    fault: str
+    step: int | None
+    """`None` before the first delivery."""
+    in_window: NDArray[np.bool_]
+    """`[B]`"""
+    memory: str
+
+
+class Tap:
+    """One consumer's end of one channel."""
+
+    __slots__ = (
+        "altered",
+        "cached",
+        "channel",
+        "consumer",
+        "deliveries",
+        "first_step",
+        "last_step",
+        "legal",
+        "source",
+        "strikes",
+        "struck",
+    )
+
+    def __init__(self, channel: str, consumer: str, source: str, legal: bool) -> None:
+        self.channel = channel
+        self.consumer = consumer
+        self.source = source
+        self.legal = legal
+        self.strikes: tuple[Strike, ...] = ()
+        self.deliveries = 0
+        self.first_step = -1
+        self.last_step = -1
+        self.cached: Array = None
+        self.struck = Tally()
+        self.altered = Tally()
+
+    def __str__(self) -> str:
+        return f"{self.channel} -> {self.consumer}"
+
+    def add(self, strike: Strike) -> None:
+        """Let a fault strike here; a fault that is alone counts for the whole tap."""
+        self.strikes = (*self.strikes, strike)
+        self.struck = strike.in_force if len(self.strikes) == 1 else Tally()
+
+    def receipt(self, n_scenes: int) -> Receipt:
+        """Return what passed here so far; this waits for the device that holds the counts."""
+        return Receipt(
+            channel=self.channel,
+            consumer=self.consumer,
+            source=self.source,
+            deliveries=self.deliveries,
+            first_step=self.first_step if self.deliveries else None,
+            last_step=self.last_step if self.deliveries else None,
+            strikes=tuple(
+                StrikeReceipt(
+                    fault=strike.fault.describe(),
+                    onset_step=strike.onsets(n_scenes),
+                    steps_in_force=strike.in_force.counts(n_scenes),
+                )
+                for strike in self.strikes
+            ),
+            steps_struck=self.struck.counts(n_scenes),
+            steps_altered=self.altered.counts(n_scenes),
+        )
+
+    def states(self, n_scenes: int) -> Iterator[StrikeState]:
+        """Yield the state of every fault here."""
+        for strike in self.strikes:
+            yield StrikeState(
+                channel=self.channel,
+                consumer=self.consumer,
+                fault=strike.fault.describe(),
+                step=self.last_step if self.deliveries else None,
+                in_window=strike.in_window(self.last_step, n_scenes),
+                memory=strike.memory_words(),
+            )
+
+
+def wire(
+    interface: Interface,
+    bindings: Mapping[str, str],
+    consumers: Collection[str] | None,
+    privileged: Collection[str],
+) -> dict[tuple[str, str], Tap]:
+    """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
+    for name in bindings:
+        interface.channel(name)
+    for name in privileged:
+        interface.source(name)
+    declared = {name for channel in interface.channels for name in channel.consumers}
+    for name in consumers or ():
+        if name not in declared:
+            raise UserError(f"this variant's consumers: {unknown('consumer', name, declared)}")
+    taps: dict[tuple[str, str], Tap] = {}
+    for channel in interface.channels:
+        bound = bindings.get(channel.name, channel.sources[0])
+        if bound not in channel.sources:
+            said = unknown("source", bound, channel.sources)
+            raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
+        secret = interface.source(bound).provenance is Provenance.PRIVILEGED
+        for name in channel.consumers:
+            if consumers is None or name in consumers:
+                legal = bound in privileged or not secret
+                taps[channel.name, name] = Tap(channel.name, name, bound, legal)
+    return taps
