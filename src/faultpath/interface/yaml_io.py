@@ -6,11 +6,13 @@ from typing import Any, cast
 
 import yaml
 from pydantic import ValidationError
+from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from faultpath.errors import UserError
 from faultpath.interface.model import Interface
 
+_DEEPEST = 12
 _TEXT = "the interface text"
 
 
@@ -65,15 +67,22 @@ def _parse(text: str, where: str) -> Interface:
 
 def _compose(text: str, where: str) -> Node | None:
     try:
-        for event in cast(Any, yaml).parse(text, Loader=yaml.SafeLoader):
-            if isinstance(event, yaml.AliasEvent):
-                line = cast(Any, event).start_mark.line + 1
-                raise UserError(f"{where}, line {line}: aliases are not read; write it out")
+        _check_events(cast(Any, yaml).parse(text, Loader=yaml.SafeLoader), where)
         return cast(Any, yaml).compose(text, Loader=yaml.SafeLoader)
-    except RecursionError:
-        raise UserError(f"{where}: is nested too deeply; an interface has few levels") from None
     except yaml.YAMLError as error:
         raise _not_yaml(error, where) from None
+
+
+def _check_events(events: Iterator[Any], where: str) -> None:
+    """Refuse what makes a short file expensive to read: aliases of aliases and deep nesting."""
+    depth = 0
+    for event in events:
+        place = f"{where}, line {event.start_mark.line + 1}"
+        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if depth > _DEEPEST:
+            raise UserError(f"{place}: is nested too deeply; an interface has few levels")
+        if isinstance(event, AliasEvent):
+            raise UserError(f"{place}: aliases are not read; write it out")
 
 
 def _not_yaml(error: yaml.YAMLError, where: str) -> UserError:

@@ -1,0 +1,332 @@
+"""What each intervention does, to the number, on NumPy and on torch."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from pydantic import ValidationError
+
+from faultpath.faults import (
+    INTERVENTIONS,
+    Delay,
+    Draws,
+    Drift,
+    Dropout,
+    Erase,
+    Freeze,
+    Hold,
+    Intervention,
+    Moment,
+    Noise,
+    Offset,
+    Quantise,
+    Replace,
+    Scale,
+    Sequence,
+    Shuffle,
+    UniformScale,
+)
+from faultpath.interface import Channel
+from faultpath.streams import generator
+
+SCENES = ("a", "b")
+DT_S = 0.05
+LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
+
+
+def play(
+    intervention: Intervention, readings: list[Any], onset: Any = 0, steps: list[int] | None = None
+) -> list[np.ndarray[Any, Any]]:
+    """Return the values, step by step, without a window around them."""
+    draws = Draws(SCENES, 7, "cause")
+    memory, values = None, []
+    for i, reading in enumerate(readings):
+        step = i if steps is None else steps[i]
+        at = Moment(step, step - onset, DT_S, draws)
+        if i == 0:
+            memory = intervention.begin(reading, at)
+        before = np.asarray(reading).copy()
+        value, memory = intervention.apply(reading, memory, at)
+        assert type(value) is type(reading)
+        assert value.dtype == reading.dtype
+        assert value.shape == reading.shape
+        np.testing.assert_array_equal(np.asarray(reading), before, strict=True)
+        values.append(np.asarray(value).copy())
+    return values
+
+
+def ramp(to: Any, steps: int = 8, shape: tuple[int, ...] = ()) -> list[Any]:
+    """Return readings that tell their step and scene: scene b is 100 above scene a."""
+    base = np.arange(2 * int(np.prod(shape, dtype=int)), dtype=float).reshape(2, *shape)
+    return [to(base * 100 + step) for step in range(steps)]
+
+
+def normals(step: int, shape: tuple[int, ...] = ()) -> np.ndarray[Any, Any]:
+    return np.stack([generator("fault/cause", s, 7, step).normal(size=shape) for s in SCENES])
+
+
+@LIBRARIES
+@pytest.mark.parametrize(
+    ("intervention", "expected"),
+    [
+        (Scale(factor=2.0), [[2, 4, -6], [1, 8, 10]]),
+        (Scale(factor=(1.0, 0.0, 2.0)), [[1, 0, -6], [0.5, 0, 10]]),
+        (Offset(by=1.0), [[2, 3, -2], [1.5, 5, 6]]),
+        (Offset(by=(0.0, 0.5, 1.0)), [[1, 2.5, -2], [0.5, 4.5, 6]]),
+        (Quantise(step_size=2.0), [[0, 2, -4], [0, 4, 4]]),
+        (Replace(value=9.0), [[9, 9, 9], [9, 9, 9]]),
+        (Replace(value=(1.0, 2.0, 3.0)), [[1, 2, 3], [1, 2, 3]]),
+        (Erase(default=(0.0, 0.0, 1.0)), [[0, 0, 1], [0, 0, 1]]),
+    ],
+)
+def test_values(to: Any, intervention: Intervention, expected: list[list[float]]) -> None:
+    [value] = play(intervention, [to([[1.0, 2.0, -3.0], [0.5, 4.0, 5.0]])])
+    np.testing.assert_array_equal(value, np.array(expected, dtype=value.dtype), strict=True)
+
+
+@LIBRARIES
+def test_single_precision_stays_single(to: Any) -> None:
+    reading = to(np.array([0.1, 0.2], dtype=np.float32))
+    for intervention in (Scale(factor=1.1), Noise(std=0.1), Drift(rate_per_s=1.0), Offset(by=0.1)):
+        play(intervention, [reading] * 3)
+
+
+def test_a_default_is_taken_from_the_channel() -> None:
+    channel = Channel(
+        name="wind", sources=("zero",), consumers=("a.b",), erasure_default=(1.0, 2.0, 3.0)
+    )
+    assert Erase().resolved(channel) == Erase(default=(1.0, 2.0, 3.0))
+    assert Erase(default=0.0).resolved(channel) == Erase(default=0.0)
+    lost = Dropout(probability=0.5, substitute=Erase())
+    nested = Sequence(parts=(lost, Scale(factor=2.0))).resolved(channel)
+    assert nested.parts[0] == Dropout(probability=0.5, substitute=Erase(default=(1.0, 2.0, 3.0)))
+    with pytest.raises(ValueError, match="resolve it against its channel first"):
+        play(Erase(), [np.zeros(2)])
+
+
+@LIBRARIES
+def test_noise_is_the_keyed_stream(to: Any) -> None:
+    values = play(Noise(std=(0.5, 1.0, 2.0)), ramp(to, shape=(3,)))
+    for step, (value, reading) in enumerate(zip(values, ramp(np.asarray, shape=(3,)), strict=True)):
+        expected = reading + np.array([0.5, 1.0, 2.0]) * normals(step, (3,))
+        np.testing.assert_array_equal(value, expected)
+
+
+@LIBRARIES
+def test_relative_noise_scales_with_the_reading(to: Any) -> None:
+    values = play(Noise(std=0.1, relative=True), ramp(to))
+    np.testing.assert_array_equal(values[3], np.array([3.0, 103.0]) * (1 + 0.1 * normals(3)))
+
+
+@LIBRARIES
+def test_uniform_scale_is_one_draw_a_scene(to: Any) -> None:
+    values = play(UniformScale(half_range=0.2), [to(np.array([1.0, 2.0]))] * 5)
+    draws = np.array([generator("fault/cause", s, 7, 0).random() for s in SCENES])
+    for value in values:
+        np.testing.assert_array_equal(value, np.array([1.0, 2.0]) * (1 + 0.2 * (2 * draws - 1)))
+
+
+@LIBRARIES
+@pytest.mark.parametrize("per_scene", [False, True])
+def test_drift_ramps_from_the_onset(to: Any, per_scene: bool) -> None:
+    onset = to(np.array([2, 2])) if per_scene else 2
+    values = play(Drift(rate_per_s=4.0), ramp(to), onset)
+    for step, value in enumerate(values):
+        expected = np.array([step, 100 + step]) + 4.0 * (max(step - 2, 0) * DT_S)
+        np.testing.assert_array_equal(value, expected)
+
+
+@LIBRARIES
+@pytest.mark.parametrize("per_scene", [False, True])
+def test_random_walk_adds_up_the_draws_since_the_onset(to: Any, per_scene: bool) -> None:
+    onset = to(np.array([2, 4])) if per_scene else 2
+    onsets = np.array([2, 4]) if per_scene else np.array([2, 2])
+    values = play(Drift(walk_per_sqrt_s=0.3), ramp(to), onset)
+    for step, value in enumerate(values):
+        steps = [normals(s) * (s > onsets) for s in range(1, step + 1)]
+        walk = 0.3 * DT_S**0.5 * np.sum(steps, axis=0) if steps else np.zeros(2)
+        np.testing.assert_allclose(value, np.array([step, 100 + step]) + walk, rtol=1e-14)
+
+
+@LIBRARIES
+def test_random_walk_does_not_depend_on_how_often_a_tap_delivers(to: Any) -> None:
+    every = play(Drift(walk_per_sqrt_s=0.3), ramp(to), 1)
+    seldom = play(Drift(walk_per_sqrt_s=0.3), ramp(to)[3::4], 1, steps=[3, 7])
+    np.testing.assert_array_equal(seldom, every[3::4])
+
+
+@LIBRARIES
+@pytest.mark.parametrize("steps", [0, 1, 3, 20])
+def test_delay_returns_the_reading_of_then(to: Any, steps: int) -> None:
+    values = play(Delay(steps=steps), ramp(to))
+    assert [value[0] for value in values] == [max(step - steps, 0) for step in range(8)]
+    assert [value[1] for value in values] == [100 + max(step - steps, 0) for step in range(8)]
+
+
+def test_delay_counts_control_steps_not_deliveries() -> None:
+    values = play(Delay(steps=3), ramp(np.asarray)[::2], steps=[0, 2, 4, 6])
+    assert [value[0] for value in values] == [0, 0, 0, 2]
+
+
+@LIBRARIES
+def test_hold_refreshes_from_the_onset_on(to: Any) -> None:
+    values = play(Hold(every=3), ramp(to), onset=1)
+    assert [value[0] for value in values] == [0, 1, 1, 1, 4, 4, 4, 7]
+    values = play(Hold(every=3), ramp(to), onset=to(np.array([1, 2])))
+    assert [value[0] for value in values] == [0, 1, 1, 1, 4, 4, 4, 7]
+    assert [value[1] for value in values] == [100, 101, 102, 102, 102, 105, 105, 105]
+
+
+@LIBRARIES
+def test_freeze_keeps_each_scenes_own_onset(to: Any) -> None:
+    values = play(Freeze(), ramp(to), onset=3)
+    assert [value[0] for value in values] == [0, 1, 2, 3, 3, 3, 3, 3]
+    values = play(Freeze(), ramp(to), onset=to(np.array([2, 5])))
+    assert [value[0] for value in values] == [0, 1, 2, 2, 2, 2, 2, 2]
+    assert [value[1] for value in values] == [100, 101, 102, 103, 104, 105, 105, 105]
+
+
+@LIBRARIES
+@pytest.mark.parametrize("substitute", [None, Erase(default=-1.0)])
+def test_dropout_loses_what_the_stream_says(to: Any, substitute: Erase | None) -> None:
+    values = play(Dropout(probability=0.5, substitute=substitute), ramp(to, 30))
+    last = [0.0, 100.0]
+    seen = set()
+    for step, value in enumerate(values):
+        for i, scene in enumerate(SCENES):
+            lost = generator("fault/cause", scene, 7, step).random() < 0.5
+            seen.add(lost)
+            if not lost:
+                last[i] = 100.0 * i + step
+            elif substitute is not None:
+                assert value[i] == -1.0
+                continue
+            assert value[i] == last[i]
+    assert seen == {True, False}
+
+
+@LIBRARIES
+def test_dropout_of_everything_holds_the_last_reading_before_the_onset(to: Any) -> None:
+    values = play(Dropout(probability=1.0), ramp(to), onset=3)
+    assert [value[0] for value in values] == [0, 1, 2, 2, 2, 2, 2, 2]
+
+
+@LIBRARIES
+@pytest.mark.parametrize("axis", [1, 2])
+def test_shuffle_permutes_within_a_scene(to: Any, axis: int) -> None:
+    reading = np.arange(2 * 4 * 5, dtype=float).reshape(2, 4, 5)
+    values = play(Shuffle(axis=axis), [to(reading)] * 2)
+    for step, value in enumerate(values):
+        for i, scene in enumerate(SCENES):
+            order = generator("fault/cause", scene, 7, step).permutation(reading.shape[axis])
+            np.testing.assert_array_equal(value[i], np.take(reading[i], order, axis=axis - 1))
+    assert not np.array_equal(values[0], values[1])
+
+
+@LIBRARIES
+def test_a_sequence_acts_in_turn(to: Any) -> None:
+    values = play(Sequence(parts=(Delay(steps=2), Scale(factor=3.0), Offset(by=1.0))), ramp(to))
+    assert [value[0] for value in values] == [1, 1, 1, 4, 7, 10, 13, 16]
+
+
+def test_parts_of_a_sequence_draw_independently() -> None:
+    twice = play(Sequence(parts=(Noise(std=1.0), Noise(std=1.0))), [np.zeros(2)])[0]
+    once = play(Noise(std=1.0), [np.zeros(2)])[0]
+    assert not np.any(np.isclose(twice, 2 * once))
+
+
+def test_memory_outlives_a_producer_that_reuses_its_array() -> None:
+    draws = Draws(SCENES, 7, "cause")
+    for intervention in (Delay(steps=1), Freeze(), Hold(every=9), Dropout(probability=1.0)):
+        buffer = np.array([1.0, 2.0])
+        at = Moment(0, 0, DT_S, draws)
+        memory = intervention.begin(buffer, at)
+        _, memory = intervention.apply(buffer, memory, at)
+        buffer[:] = 50.0
+        value, _ = intervention.apply(buffer, memory, Moment(1, 1, DT_S, draws))
+        np.testing.assert_array_equal(value, [1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    "intervention",
+    [
+        Scale(factor=1.0),
+        UniformScale(half_range=0.0),
+        Offset(by=0.0),
+        Offset(by=(0.0, 0.0, 0.0)),
+        Noise(std=0.0),
+        Noise(std=0.0, relative=True),
+        Drift(),
+        Delay(steps=0),
+        Hold(every=1),
+        Dropout(probability=0.0),
+        Sequence(parts=(Scale(factor=1.0), Delay(steps=0))),
+    ],
+)
+@pytest.mark.parametrize("per_scene", [False, True])
+@LIBRARIES
+def test_an_identity_keeps_every_bit(to: Any, intervention: Intervention, per_scene: bool) -> None:
+    awkward = np.array([[-0.0, 5e-324, np.inf], [-np.inf, np.nan, 0.1]])
+    onset = to(np.array([1, 2])) if per_scene else 1
+    for value in play(intervention, [to(awkward.copy()) for _ in range(4)], onset):
+        assert value.tobytes() == awkward.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Scale(factor=float("nan")), "finite number"),
+        (lambda: Noise(std=-0.1), "std must not be negative"),
+        (lambda: Noise(std=(0.1, -0.1)), "std must not be negative"),
+        (lambda: Delay(steps=-1), "greater than or equal to 0"),
+        (lambda: Hold(every=0), "greater than or equal to 1"),
+        (lambda: Quantise(step_size=0.0), "greater than 0"),
+        (lambda: Dropout(probability=1.1), "less than or equal to 1"),
+        (lambda: UniformScale(half_range=1.0), "less than 1"),
+        (lambda: Shuffle(axis=0), "greater than or equal to 1"),
+        (lambda: Sequence(parts=()), "at least 1 item"),
+        (lambda: Scale.model_validate({"factor": 1.0, "size": 2}), "Extra inputs"),
+    ],
+)
+def test_refuses_what_makes_no_sense(make: Any, message: str) -> None:
+    with pytest.raises(ValidationError, match=message):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("intervention", "shape", "misfit"),
+    [
+        (Scale(factor=(1.0, 2.0)), (), "factor has shape [2] and the reading of one scene has []"),
+        (Offset(by=(1.0, 2.0)), (3,), "by has shape [2] and the reading of one scene has [3]"),
+        (Offset(by=(1.0, 2.0, 3.0)), (4, 3), None),
+        (Replace(value=((1.0, 2.0),)), (1, 2), None),
+        (Replace(value=((1.0, 2.0),)), (2,), "value has shape [1, 2] and the reading of one"),
+        (Noise(std=(1.0, 2.0)), (3,), "std has shape [2] and"),
+        (Drift(rate_per_s=(1.0, 2.0)), (3,), "rate_per_s has shape [2] and"),
+        (Erase(), (3,), None),
+        (Erase(default=(1.0,)), (3,), "default has shape [1] and"),
+        (Dropout(probability=0.1, substitute=Erase(default=(1.0,))), (3,), "default has shape [1]"),
+        (Shuffle(axis=2), (3,), "axis 2 does not exist: the reading of one scene has 1 axes"),
+        (Sequence(parts=(Freeze(), Shuffle(axis=1))), (), "axis 1 does not exist"),
+        (Delay(steps=2), (), None),
+    ],
+)
+def test_says_why_it_does_not_fit(
+    intervention: Intervention, shape: tuple[int, ...], misfit: str | None
+) -> None:
+    said = intervention.misfit(shape)
+    assert said is misfit if misfit is None else (said or "").startswith(misfit)
+
+
+def test_every_kind_is_registered_and_has_words() -> None:
+    def below(cls: type[Intervention]) -> set[type[Intervention]]:
+        return {cls}.union(*(below(child) for child in cls.__subclasses__()))
+
+    assert set(INTERVENTIONS.values()) == below(Intervention) - {Intervention}
+    assert Drift(rate_per_s=1.0, walk_per_sqrt_s=2.0).words() == (
+        "drift of 1 per s and random walk of 2 per sqrt(s)"
+    )
+    assert Sequence(parts=(Freeze(), Scale(factor=(1.0, 2.0)))).words() == (
+        "frozen, then scaled by (1, 2)"
+    )
