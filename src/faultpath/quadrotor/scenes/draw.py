@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from faultpath.quadrotor.scenes.layout import corners_of
-
 if TYPE_CHECKING:
     from faultpath.quadrotor.scenes.scene import Point, Scene
 
@@ -68,7 +66,7 @@ def floor_plan(scene: Scene, free_space: bool = False) -> FloorPlan:
     """
     polygons = [
         Polygon(
-            corners_m=tuple(corners_of(box)),
+            corners_m=box.corners_m,
             low_m=round(box.centre_m[2] - box.half_extents_m[2], 6),
             high_m=round(box.centre_m[2] + box.half_extents_m[2], 6),
         )

@@ -13,7 +13,7 @@ surfaces (0.05 m) and behind edges, and zero to rounding beside a flat wall alon
 
 Outside the arena the value goes on falling without end (cells at the border extrapolate): minus the
 sum of the distances beyond each wall. Beyond one wall that is the exact distance; beyond an edge
-it is lower. Being a sum over axes it is reproduced exactly by trilinear cells, however far
+it is lower. Being a sum over axes it is reproduced by trilinear cells, to rounding, however far
 outside a point lies.
 """
 
@@ -29,13 +29,17 @@ from faultpath.quadrotor.scenes.geometry import Prism, arena, rectangle_distance
 from faultpath.quadrotor.scenes.scene import Scene
 
 SPACING_M = 0.1
-_WHOLE = 1e-6
-"""Part of a cell that is rounding: an arena of 9 m has 90 cells of 0.1 m, not 91."""
+_MARGIN = 2
+_ROUNDING = 1e-6
+"""Part of a cell, and of a metre, that is rounding: 9 m are 90 cells of 0.1 m, not 91."""
 
 
 @dataclass(frozen=True)
 class Lattice:
-    """The lattice of one scene: the arena and one cell beyond each face.
+    """The lattice of one scene: the arena and two cells beyond each face.
+
+    The outer of the two has no corner on a face, where a wall's depth may count, so that what lies
+    further out follows the arena alone.
 
     Attributes:
         axes: World coordinates of the lattice points along x, y and z, m, float64.
@@ -47,11 +51,11 @@ class Lattice:
 
     @classmethod
     def over(cls, scene: Scene, spacing_m: float = SPACING_M) -> "Lattice":
-        """Return the lattice that covers a scene; its second point is the arena's low corner."""
+        """Return the lattice that covers a scene; its third point is the arena's low corner."""
         axes: list[Tensor] = []
         for low, high in zip(scene.bounds.low_m, scene.bounds.high_m, strict=True):
-            cells = ceil((high - low) / spacing_m - _WHOLE)
-            steps = torch.arange(-1, cells + 2, dtype=torch.float64)
+            cells = ceil((high - low) / spacing_m - _ROUNDING)
+            steps = torch.arange(-_MARGIN, cells + 1 + _MARGIN, dtype=torch.float64)
             axes.append(low + steps * spacing_m)
         return cls((axes[0], axes[1], axes[2]), spacing_m)
 
@@ -79,7 +83,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     beyond_x, beyond_y, beyond_z = beyond[0][:, None, None], beyond[1][:, None], beyond[2]
     outside = beyond_x.clamp_min(0) + beyond_y.clamp_min(0) + beyond_z.clamp_min(0)
     inside = -torch.maximum(torch.maximum(beyond_x, beyond_y), beyond_z)
-    value = torch.where(outside > 0, -outside, inside)
+    value = torch.where(outside > _ROUNDING, -outside, inside)
     if free_space:
         return value
 
@@ -90,7 +94,7 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     for (mid, half), prisms in groupby(sorted(solids(scene), key=height), key=height):
         plan = _plan_distance(list(prisms), x, y)[:, :, None]
         free = torch.minimum(free, rectangle_distance(plan, (z - mid).abs() - half))
-    return torch.where(outside > 0, value, free)
+    return torch.where(outside > _ROUNDING, value, free)
 
 
 def _plan_distance(prisms: list[Prism], x: Tensor, y: Tensor) -> Tensor:

@@ -81,7 +81,8 @@ def solids(scene: Scene) -> list[Prism]:
 def rectangle_distance(beyond_x: Tensor, beyond_y: Tensor) -> Tensor:
     """Return the signed distance in the plane from how far a point lies beyond each edge pair."""
     out_x, out_y = beyond_x.clamp_min(0), beyond_y.clamp_min(0)
-    return (out_x * out_x + out_y * out_y).sqrt() + torch.maximum(beyond_x, beyond_y).clamp_max(0)
+    outside = (out_x.mul_(out_x) + out_y.mul_(out_y)).sqrt_()
+    return outside.add_(torch.maximum(beyond_x, beyond_y).clamp_max_(0))
 
 
 @dataclass(frozen=True)
@@ -174,7 +175,7 @@ class Geometry:
             )
         )
         x, y, z = points.unbind(0)
-        local = along_x * x + along_y * y + along_z * z - offset
-        beyond_x, beyond_y, beyond_z = (local.abs() - half).unbind(0)
-        plan = rectangle_distance(beyond_x, beyond_y) - rounding
-        return rectangle_distance(plan, beyond_z) * sign
+        local = (along_x * x).add_(along_y * y).add_(along_z * z).sub_(offset)
+        beyond_x, beyond_y, beyond_z = local.abs_().sub_(half).unbind(0)
+        plan = rectangle_distance(beyond_x, beyond_y).sub_(rounding)
+        return rectangle_distance(plan, beyond_z).mul_(sign)

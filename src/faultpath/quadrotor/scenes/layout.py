@@ -1,6 +1,6 @@
 """A scene under construction: walls with doors, buildings, loose obstacles, and the gap rule."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from math import cos, hypot, pi, sin
@@ -196,7 +196,7 @@ class Layout:
 
     def _fits(self, thing: Box | Cylinder) -> bool:
         half_x, half_y = self.size_m[0] / 2, self.size_m[1] / 2
-        outline = list(corners_of(thing)) if isinstance(thing, Box) else [thing.centre_m]
+        outline = thing.corners_m if isinstance(thing, Box) else [thing.centre_m]
         grown = 0.0 if isinstance(thing, Box) else thing.radius_m
         if any(min(half_x - abs(x), half_y - abs(y)) < MIN_GAP_M + grown for x, y in outline):
             return False
@@ -209,14 +209,6 @@ class Layout:
             > 0
             for x, y, radius in self.keep_free
         )
-
-
-def corners_of(box: Box) -> Iterator[Plan]:
-    """Yield the four corners of a box in plan, in order around it."""
-    c, s = cos(box.yaw_rad), sin(box.yaw_rad)
-    hx, hy, _ = box.half_extents_m
-    for ax, ay in ((-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy)):
-        yield box.centre_m[0] + c * ax - s * ay, box.centre_m[1] + s * ax + c * ay
 
 
 def _to_box(point: Plan, box: Box) -> float:
@@ -243,6 +235,6 @@ def plan_gap(one: Box | Cylinder, other: Box | Cylinder) -> float:
     if isinstance(other, Cylinder):
         return _to_box(other.centre_m, one) - other.radius_m
     return min(
-        *(_to_box(corner, other) for corner in corners_of(one)),
-        *(_to_box(corner, one) for corner in corners_of(other)),
+        *(_to_box(corner, other) for corner in one.corners_m),
+        *(_to_box(corner, one) for corner in other.corners_m),
     )

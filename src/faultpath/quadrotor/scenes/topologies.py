@@ -65,7 +65,7 @@ def clutter(rng: np.random.Generator, room: Layout, occluded: bool, obstacles: b
         x = (1 - share) * room.start_m[0] + share * room.goal_m[0]
         y = (1 - share) * start_y + share * goal_y
         room.scatter(rng, 1, (x - 0.15, x + 0.15), (y - 0.15, y + 0.15), tall=1.0)
-    count = int(rng.integers(9, 14)) if obstacles else int(rng.integers(5, 8))
+    count = int(rng.integers(11, 16)) if obstacles else int(rng.integers(5, 8))
     room.scatter(rng, count, (-half_x + 1.7, half_x - 1.7), (-half_y, half_y))
 
 

@@ -1,0 +1,182 @@
+"""Exact distance against independent measures; nothing beside a scene in a batch may matter."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+from scipy.spatial import cKDTree
+
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath.quadrotor.vehicle import VehicleParameters
+
+BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
+
+
+def scene_of(*things: Box | Cylinder, bounds: Bounds = BOUNDS) -> Scene:
+    return Scene(
+        id="test/000",
+        index=0,
+        library="test",
+        topology="clutter",
+        obstacles=True,
+        occluded=False,
+        bounds=bounds,
+        boxes=tuple(thing for thing in things if isinstance(thing, Box)),
+        cylinders=tuple(thing for thing in things if isinstance(thing, Cylinder)),
+        start_m=(-3.0, 0.0, 1.0),
+        goal_m=(3.0, 0.0, 1.0),
+        start_yaw_rad=0.0,
+        vehicle=VehicleParameters(),
+    )
+
+
+def at(scene: Scene, *points: tuple[float, float, float]) -> list[float]:
+    tensor = torch.tensor(points, dtype=torch.float64).T[:, None, :]
+    return Geometry.stack([scene]).distance(tensor)[0].tolist()
+
+
+def spread(scenes: list[Scene], count: int, margin: float = 0.5) -> torch.Tensor:
+    """Points over the arenas and a little outside, `[3, B, count]`."""
+    rng = np.random.default_rng(7)
+    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
+    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
+    return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count)))
+
+
+def test_a_floating_box_is_measured_to_faces_edges_and_corners():
+    scene = scene_of(Box(centre_m=(0.0, 0.0, 1.5), half_extents_m=(0.5, 0.3, 0.2)))
+    points = [(0.9, 0.0, 1.5), (0.8, 0.7, 1.5), (0.8, 0.7, 2.0), (0.0, 0.0, 1.55), (0.4, 0.0, 1.5)]
+    expected = [0.4, 0.5, math.hypot(0.3, 0.4, 0.3), -0.15, -0.1]
+    assert at(scene, *points) == pytest.approx(expected, abs=1e-12)
+
+
+def test_yaw_turns_a_box_from_x_towards_y():
+    angle = math.radians(30)
+    scene = scene_of(Box(centre_m=(1.0, 0.5, 1.5), half_extents_m=(0.8, 0.1, 1.5), yaw_rad=angle))
+    along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
+    tip = (1.0 + 1.2 * along[0], 0.5 + 1.2 * along[1], 1.0)
+    beside = (1.0 + 0.35 * across[0], 0.5 + 0.35 * across[1], 1.0)
+    assert at(scene, tip, beside) == pytest.approx([0.4, 0.25], abs=1e-12)
+
+
+def test_a_pillar_is_round_and_a_short_one_has_a_top():
+    scene = scene_of(
+        Cylinder(centre_m=(1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=3.0),
+        Cylinder(centre_m=(-1.0, 0.0), radius_m=0.3, low_m=0.0, high_m=1.0),
+    )
+    points = [
+        (1.3, 0.4, 1.0),
+        (1.0, 0.1, 0.05),
+        (-1.0, 0.0, 1.4),
+        (-1.0, 0.6, 1.4),
+        (-1.0, 0.0, 0.9),
+    ]
+    assert at(scene, *points) == pytest.approx([0.2, -0.2, 0.4, 0.5, -0.1], abs=1e-12)
+
+
+def test_the_arena_is_free_inside_and_solid_outside():
+    points = [(0.0, 0.0, 1.0), (3.9, 0.0, 1.5), (0.0, 0.0, -0.2), (4.3, 3.4, 1.5), (9.0, 0.0, 1.5)]
+    assert at(scene_of(), *points) == pytest.approx([1.0, 0.1, -0.2, -0.5, -5.0], abs=1e-12)
+
+
+def surface(scene: Scene, spacing: float) -> np.ndarray:
+    """Points on every face of obstacles and arena, `[n, 3]`; uses none of the code under test."""
+
+    def sheet(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.stack(np.meshgrid(u, v, indexing="ij"), -1).reshape(-1, 2)
+
+    def ticks(low: float, high: float) -> np.ndarray:
+        return np.linspace(low, high, max(2, math.ceil((high - low) / spacing) + 1))
+
+    def hull(half: np.ndarray) -> np.ndarray:
+        faces = []
+        for axis in range(3):
+            others = [k for k in range(3) if k != axis]
+            for sign in (-1, 1):
+                face = np.empty((0, 3))
+                flat = sheet(*(ticks(-half[k], half[k]) for k in others))
+                face = np.empty((len(flat), 3))
+                face[:, others], face[:, axis] = flat, sign * half[axis]
+                faces.append(face)
+        return np.concatenate(faces)
+
+    low, high = np.array(scene.bounds.low_m), np.array(scene.bounds.high_m)
+    found = [hull((high - low) / 2) + (high + low) / 2]
+    for box in scene.boxes:
+        points = hull(np.array(box.half_extents_m))
+        c, s = math.cos(box.yaw_rad), math.sin(box.yaw_rad)
+        turned = points @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
+        found.append(turned + np.array(box.centre_m))
+    for pillar in scene.cylinders:
+        angle = ticks(0, 2 * math.pi * pillar.radius_m) / pillar.radius_m
+        rim = np.stack([np.cos(angle), np.sin(angle)], -1)
+        for radius in ticks(0.0, pillar.radius_m):
+            for height in (pillar.low_m, pillar.high_m):
+                found.append(np.c_[radius * rim, np.full(len(rim), height)])
+                found[-1][:, :2] += pillar.centre_m
+        side = pillar.radius_m * rim + pillar.centre_m
+        heights = ticks(pillar.low_m, pillar.high_m)
+        found.extend(np.c_[side, np.full(len(rim), height)] for height in heights)
+    return np.concatenate(found)
+
+
+@pytest.mark.parametrize("index", range(5))
+def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_points(index):
+    scene, spacing = load_library("training")[index], 0.04
+    points = spread([scene], 3000, margin=0.0)
+    distance = Geometry.stack([scene]).distance(points)[0].numpy()
+    nearest, _ = cKDTree(surface(scene, spacing)).query(points[:, 0].numpy().T)
+    free = distance > 0
+    assert 0.4 < free.mean() < 1.0
+    # No sample is nearer than the surface. One lies within half a diagonal of the nearest place,
+    # which bounds its distance, more loosely where the surface bends away (radius from 0.1 m).
+    bend = spacing * np.sqrt((1 + distance[free] / 0.1) / 2)
+    assert (nearest[free] >= distance[free] - 1e-9).all()
+    assert (nearest[free] <= np.hypot(distance[free], bend) + 1e-9).all()
+
+
+def test_inside_a_solid_points_are_negative_down_to_the_floor():
+    scene = scene_of(Box(centre_m=(0.0, 0.0, 1.5), half_extents_m=(0.5, 0.5, 1.5)))
+    assert at(scene, (0.0, 0.0, 0.01), (0.0, 0.0, 2.99)) == pytest.approx([-0.5, -0.5], abs=1e-9)
+
+
+def test_neither_neighbours_nor_place_nor_padding_change_a_bit():
+    scenes = list(load_library("training").scenes[:32])
+    points = spread(scenes, 1)[:, :, 0]
+    together = Geometry.stack(scenes).distance(points)
+    alone = [Geometry.stack([s]).distance(points[:, b : b + 1]) for b, s in enumerate(scenes)]
+    assert torch.equal(together, torch.cat(alone))
+    order = torch.randperm(32, generator=torch.Generator().manual_seed(1))
+    shuffled = Geometry.stack([scenes[k] for k in order.tolist()]).distance(points[:, order])
+    assert torch.equal(shuffled, together[order])
+    assert len({len(scene.boxes) + len(scene.cylinders) for scene in scenes}) > 1
+
+
+def test_trailing_axes_are_points_of_the_same_scene():
+    scenes = list(load_library("training").scenes[:3])
+    points = spread(scenes, 12)
+    geometry = Geometry.stack(scenes)
+    grid = geometry.distance(points.view(3, 3, 4, 3))
+    assert torch.equal(grid.view(3, 12), geometry.distance(points))
+    assert torch.equal(geometry.distance(points[:, :, 5]), grid.view(3, 12)[:, 5])
+
+
+def test_distance_leaves_its_points_alone():
+    scenes = list(load_library("training").scenes[:2])
+    points = spread(scenes, 5)
+    before = points.clone()
+    Geometry.stack(scenes).distance(points)
+    assert torch.equal(points, before)
+
+
+def test_free_space_keeps_only_the_arena():
+    scene = load_library("training")[5]
+    points = spread([scene], 500)
+    empty = scene.model_copy(update={"boxes": (), "cylinders": ()})
+    free = Geometry.stack([scene], free_space=True).distance(points)
+    assert torch.equal(free, Geometry.stack([empty]).distance(points))
+    assert (Geometry.stack([scene]).distance(points) <= free).all()
+    assert (Geometry.stack([scene]).distance(points) < free).any()

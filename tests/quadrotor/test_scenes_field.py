@@ -1,0 +1,133 @@
+"""The baked field: its error, its border, and independence of what is baked beside it."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.quadrotor.scenes.field import SPACING_M, DistanceField, Lattice, exact_on_lattice
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.scenes.scene import Scene
+
+HALF_DIAGONAL_M = SPACING_M * math.sqrt(3) / 2
+
+
+@pytest.fixture(scope="module")
+def scenes() -> list[Scene]:
+    return list(load_library("training").scenes[:10])
+
+
+@pytest.fixture(scope="module")
+def field(scenes: list[Scene]) -> DistanceField:
+    return DistanceField.bake(scenes)
+
+
+def spread(scenes: list[Scene], count: int, margin: float = 0.0) -> torch.Tensor:
+    rng = np.random.default_rng(11)
+    low = np.array([scene.bounds.low_m for scene in scenes]).T[:, :, None] - margin
+    high = np.array([scene.bounds.high_m for scene in scenes]).T[:, :, None] + margin
+    return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count))).float()
+
+
+@pytest.mark.parametrize("free_space", [False, True])
+def test_lattice_points_inside_carry_the_exact_distance(scenes, free_space):
+    for scene in scenes[:3]:
+        lattice = Lattice.over(scene)
+        baked = exact_on_lattice(scene, lattice, free_space)
+        points = torch.stack(torch.meshgrid(*lattice.axes, indexing="ij"))
+        exact = Geometry.stack([scene], free_space).distance(points[:, None])[0]
+        inside = baked[2:-2, 2:-2, 2:-2], exact[2:-2, 2:-2, 2:-2]
+        torch.testing.assert_close(*inside, rtol=0, atol=1e-9)
+        outside = torch.ones_like(baked, dtype=torch.bool)
+        outside[2:-2, 2:-2, 2:-2] = False
+        assert (baked[outside] < 0).all()
+
+
+def test_the_interpolation_error_is_as_documented(scenes, field):
+    points = spread(scenes, 20_000)
+    exact = Geometry.stack(scenes).distance(points.double())
+    error = (field.query(points) - exact)[exact > 0]
+    assert error.abs().max() <= HALF_DIAGONAL_M + 1e-5
+    assert 0.004 < error.square().mean().sqrt() < 0.006  # documented: 0.005 m
+    assert (error.abs() > 0.03).double().mean() < 0.01
+
+
+def test_beside_a_flat_wall_the_field_is_exact_to_rounding(scenes, field):
+    points = spread(scenes, 4000)
+    free = DistanceField.bake(scenes, free_space=True)
+    low = torch.tensor([scene.bounds.low_m for scene in scenes]).T[:, :, None]
+    points[0] = low[0] + torch.rand(points.shape[1:]) * 0.5
+    points[1] = points[1].clamp(-1.5, 1.5)
+    points[2] = points[2].clamp(1.0, 1.8)
+    error = free.query(points) - (points[0] - low[0])
+    assert error.abs().max() < 1e-5
+
+
+def test_outside_the_field_falls_by_the_distance_beyond_each_wall(scenes, field):
+    points = spread(scenes, 4000, margin=30.0)
+    bounds = [(scene.bounds.low_m, scene.bounds.high_m) for scene in scenes]
+    low, high = torch.tensor(bounds).permute(1, 2, 0)[..., None]
+    beyond = (low - points).clamp_min(0) + (points - high).clamp_min(0)
+    outside = beyond.amax(0) > SPACING_M + 1e-4  # nearer, a cell has corners on the face
+    assert outside.double().mean() > 0.5
+    error = (field.query(points) / beyond.sum(0) + 1).abs()
+    assert error[outside].max() < 0.01  # rounding, tens of metres away
+    assert error[outside & (beyond.amax(0) < 4.0)].max() < 1e-3
+
+
+def test_leaving_through_any_face_never_pays(scenes, field):
+    way = torch.linspace(0.0, 12.0, 400)
+    for axis in range(3):
+        for sign in (-1.0, 1.0):
+            points = torch.tensor([s.start_m for s in scenes]).T[:, :, None].repeat(1, 1, 400)
+            edge = [s.bounds.high_m[axis] if sign > 0 else s.bounds.low_m[axis] for s in scenes]
+            points[axis] = torch.tensor(edge)[:, None] + sign * way
+            steps = field.query(points).diff(dim=-1)
+            assert (steps < 0).all()
+
+
+@pytest.mark.parametrize("count", [1, 7, 512 * 20])
+def test_a_scene_does_not_feel_its_neighbours(scenes, field, count):
+    points = spread(scenes, count, margin=0.4)
+    together = field.query(points)
+    for row, scene in enumerate(scenes):
+        alone = DistanceField.bake(scene).query(points[:, row : row + 1])
+        assert torch.equal(alone[0], together[row])
+
+
+def test_rows_are_picked_in_any_order_and_share_the_table(scenes, field):
+    rows = [7, 2, 2, 9]
+    points = spread(scenes, 100)[:, rows]
+    picked = field.select(rows)
+    assert picked.table is field.table
+    assert torch.equal(
+        picked.query(points), DistanceField.bake([scenes[r] for r in rows]).query(points)
+    )
+    assert torch.equal(field.select(torch.tensor(rows)).query(points), picked.query(points))
+
+
+def test_a_query_leaves_its_points_and_the_table_alone(scenes, field):
+    points, table = spread(scenes, 50), field.table.clone()
+    before = points.clone()
+    first = field.query(points)
+    assert torch.equal(field.query(points), first)
+    assert torch.equal(points, before)
+    assert torch.equal(field.table, table)
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
+def test_a_point_that_is_no_number_stays_apart(scenes, field, bad):
+    points = spread(scenes, 8)
+    clean = field.query(points)
+    points[1, 3, 5] = bad
+    dirty = field.query(points)
+    assert not math.isfinite(dirty[3, 5])
+    assert not dirty[3, 5] > 0
+    dirty[3, 5] = clean[3, 5]
+    assert torch.equal(dirty, clean)
+
+
+def test_arenas_of_different_size_are_among_those_tested(scenes):
+    assert len({scene.bounds.high_m for scene in scenes}) > 3
