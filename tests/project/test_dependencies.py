@@ -28,7 +28,10 @@ def _third_party(files: list[Path]) -> set[str]:
     names = {name for path in files for name in _imported(path.read_text(encoding="utf-8"))}
     distributions = packages_distributions()
     outside = names - sys.stdlib_module_names - {"faultpath"}
-    found = {canonicalize_name(distributions.get(name, [name])[0]) for name in outside}
+    found: set[str] = set()
+    for name in outside:
+        bringing = {canonicalize_name(each) for each in distributions.get(name, [name])}
+        found.add(name if name in bringing else min(bringing))  # several share `mujoco`
     return {BROUGHT_BY.get(name, name) for name in found}
 
 
