@@ -31,26 +31,31 @@ print(f"computed {result.blocks_computed} kept {result.blocks_kept}")
 
 
 def _slow(tmp_path: Path) -> tuple[Study, Path, Path]:
-    """Return a study that is slow while a file exists, that file, and the log of its calls."""
+    """Return a study that is slow while a file exists, that file, and the log of its calls.
+
+    It hangs while the file `hang` exists.
+    """
     log, gate = tmp_path / "log", tmp_path / "slow"
     gate.touch()
-    return study(log=str(log), slow_while=str(gate)), gate, log
+    options = {"log": log, "slow_while": gate, "hang_while": tmp_path / "hang"}
+    return study(**{name: str(path) for name, path in options.items()}), gate, log
 
 
-def _start(study: Study, folder: Path) -> subprocess.Popen[str]:
-    """Run a study in a process of its own, in a session of its own."""
-    definition = folder.parent / f"{folder.name}.json"
+def _start(study: Study, folder: Path, out: Path) -> subprocess.Popen[str]:
+    """Run a study in a process of its own, in a session of its own, printing into a file."""
+    definition = out.with_suffix(".json")
     definition.write_text(study.model_dump_json())
-    return subprocess.Popen(
-        [sys.executable, "-c", _RUN, str(definition), str(folder)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-        start_new_session=True,
-    )
+    with out.open("w") as stdout:
+        return subprocess.Popen(
+            [sys.executable, "-u", "-c", _RUN, str(definition), str(folder)],
+            stdout=stdout,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+        )
 
 
-def _until(condition, what: str, seconds: float = 20.0) -> None:
+def _until(condition, what: str, seconds: float = 60.0) -> None:
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, f"waited in vain for {what}"
@@ -88,13 +93,17 @@ def _same_tables(one: Path, two: Path) -> bool:
 def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_path):
     folder = tmp_path / "run"
     slow, gate, log = _slow(tmp_path)
-    process = _start(slow, folder)
+    process = _start(slow, folder, tmp_path / "out")
     _until(lambda: _shards(folder) >= 3, "three shards")
+    hang = tmp_path / "hang"
+    hang.touch()
+    _until(lambda: len(_calls(log)) >= _shards(folder) + 2, "workers in the middle of a block")
     process.kill()
-    process.communicate()
+    process.wait()
     workers = {int(call[-1]) for call in _calls(log)}
     assert process.pid not in workers
-    _until(lambda: not any(map(_alive, workers)), "the workers' end", seconds=5.0)
+    _until(lambda: not any(map(_alive, workers)), "the workers' end")
+    hang.unlink()
     gate.unlink()
     kept = _shards(folder)
     assert kept < UNITS
@@ -109,14 +118,13 @@ def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_p
 def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
     folder = tmp_path / "run"
     slow, gate, log = _slow(tmp_path)
-    process = _start(slow, folder)
+    process = _start(slow, folder, tmp_path / "out")
     _until(lambda: _shards(folder) >= 2, "two shards")
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: parent and workers alike
-    out, _ = process.communicate(timeout=10)
-    assert process.returncode == 130
+    assert process.wait(timeout=60) == 130
     gate.unlink()
     kept = _shards(folder)
-    assert f"interrupted with {kept} of {UNITS} blocks done" in out
+    assert f"interrupted with {kept} of {UNITS} blocks done" in (tmp_path / "out").read_text()
     assert not any(_alive(int(call[-1])) for call in _calls(log))
     assert run_study(slow, folder, workers=2).blocks_kept == kept
     assert _same_tables(undisturbed, folder)
@@ -125,15 +133,16 @@ def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
 def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
     folder = tmp_path / "run"
     slow, gate, log = _slow(tmp_path)
-    processes = [_start(slow, folder), _start(slow, folder)]
-    _until(lambda: _shards(folder) >= 1, "a shard")
+    told = [tmp_path / "one", tmp_path / "two"]
+    processes = [_start(slow, folder, out) for out in told]
+    waiting = f"works in {folder}; waiting for it"
+    _until(lambda: any(waiting in out.read_text() for out in told), "one to wait for the other")
     gate.unlink()
-    outputs = [process.communicate(timeout=40)[0] for process in processes]
-    assert [process.returncode for process in processes] == [0, 0]
+    assert [process.wait(timeout=60) for process in processes] == [0, 0]
+    outputs = [out.read_text() for out in told]
     calls = [tuple(call[:-1]) for call in _calls(log)]
     assert sum(f"computed {UNITS} kept 0" in out for out in outputs) == 1
-    waited = next(out for out in outputs if f"computed 0 kept {UNITS}" in out)
-    assert f"works in {folder}; waiting for it" in waited
+    assert waiting in next(out for out in outputs if f"computed 0 kept {UNITS}" in out)
     assert len(calls) == UNITS
     assert _same_tables(undisturbed, folder)
 
@@ -163,10 +172,23 @@ def test_what_failed_is_kept_and_named_again_on_resuming(tmp_path):
     assert again.failures == first.failures
 
 
+def test_a_damaged_shard_is_named_and_run_again(undisturbed, tmp_path):
+    run_study(study(), tmp_path, workers=0)
+    damaged = sorted(tmp_path.glob("shards/*.parquet"))[3]
+    damaged.write_bytes(damaged.read_bytes()[:-20])
+    notices: list[str] = []
+    result = run_study(study(), tmp_path, workers=0, notice=notices.append)
+    assert (result.blocks_computed, result.blocks_kept) == (1, UNITS - 1)
+    (notice,) = notices
+    assert str(damaged) in notice
+    assert _same_tables(undisturbed, tmp_path)
+
+
 def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
-    once = tmp_path / "died"
-    result = run_study(study(dies="s05", once=str(once)), tmp_path / "run", workers=2)
-    assert once.exists()
+    once, log = tmp_path / "died", tmp_path / "log"
+    mortal = study(dies="s05", once=str(once), log=str(log))
+    result = run_study(mortal, tmp_path / "run", workers=2)
+    assert len(_calls(log)) == UNITS + 1  # its block ran again, as a whole
     assert not result.failures
     assert _same_tables(undisturbed, tmp_path / "run")
 

@@ -91,6 +91,8 @@ class ToySystem(System):
                 file.write(f"{variant} {seed} {','.join(scenes)} {os.getpid()}\n")
         if Path(options.get("slow_while", "")).is_file():
             time.sleep(0.2)
+        while Path(options.get("hang_while", "")).is_file():
+            time.sleep(0.01)
         if options.get("raises") in scenes:
             raise ValueError(f"no air in {options['raises']}")
         if options.get("dies") in scenes:

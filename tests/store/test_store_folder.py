@@ -1,6 +1,7 @@
 """A run folder: what it holds, what it refuses, how it heals."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from faultpath.errors import UserError
 from faultpath.store import FORMAT, Manifest, RunFolder, read_outcomes, read_traces
+from faultpath.store.tables import encode_shard
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.outcome import Outcome, Status
 
@@ -66,8 +68,9 @@ def _flip(data: bytes, at: int) -> bytes:
         lambda data: _flip(data, 40),
         lambda data: _flip(data, len(data) - 9),
         lambda data: data + b"\0",
+        lambda data: encode_shard([replace(o, time_s=9.0) for o in _outcomes()]),
     ],
-    ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer"],
+    ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer", "edited"],
 )
 def test_a_damaged_shard_is_named_and_removed(folder, damage):
     (shard,) = folder.shards.iterdir()
