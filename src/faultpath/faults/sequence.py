@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Literal, Self
 
 from pydantic import Field
 
-from faultpath.arrays import Array
+from faultpath.arrays import Array, pick
 from faultpath.faults.base import Intervention, Memory, Moment
 from faultpath.interface import Channel
 
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 class Sequence(Intervention):
     """Apply interventions in turn: each acts on what the one before delivers.
 
-    Parts draw independently of each other. Interventions that follow each other in time are
+    Each part begins at the onset, so a delay after a scale still delivers what came unscaled
+    before it, just as two faults with one window do. Parts draw independently of each other. Interventions that follow each other in time are
     several faults, each with its window.
     """
 
@@ -28,7 +29,8 @@ class Sequence(Intervention):
         for index, part in enumerate(self.parts):
             here = at.part(index)
             past = part.begin(value, here) if memory is None else memory[index]
-            value, past = part.apply(value, past, here)
+            changed, past = part.apply(value, past, here)
+            value = pick(at.elapsed >= 0, changed, value)
             carried = (*carried, past)
         return value, carried
 

@@ -1,0 +1,56 @@
+"""A small interface with a reconstruction, for tests of faults."""
+
+from faultpath.errors import UserError
+from faultpath.faults import Coupled, Fault, Scale
+from faultpath.interface import Channel, Interface, Provenance, Source
+
+INTERFACE = Interface(
+    name="toy",
+    sources=(
+        Source(
+            name="mass_estimate",
+            unit="kg",
+            provenance=Provenance.ESTIMATED,
+            correlation_group="calibration",
+        ),
+        Source(
+            name="thrust_estimate",
+            unit="1",
+            provenance=Provenance.ESTIMATED,
+            correlation_group="calibration",
+        ),
+        Source(name="seen_wind", unit="m/s", shape=(3,), provenance=Provenance.RECONSTRUCTED),
+    ),
+    channels=(
+        Channel(
+            name="mass",
+            sources=("mass_estimate",),
+            consumers=("predictor.dynamics", "predictor.trim", "observer.wind_map"),
+            erasure_default=1.0,
+        ),
+        Channel(
+            name="thrust",
+            sources=("thrust_estimate",),
+            consumers=("predictor.dynamics", "observer.model"),
+        ),
+        Channel(
+            name="wind",
+            sources=("seen_wind",),
+            consumers=("predictor.wind_map",),
+            erasure_default=(0.0, 0.0, 1.0),
+        ),
+    ),
+    reconstructs={"observer": "seen_wind"},
+)
+
+
+def calibration(error: float) -> Coupled:
+    if not -1 < error < 1:
+        raise UserError(f"calibration={error:g} leaves no positive mass or thrust")
+    return Coupled(
+        name="calibration",
+        faults=(
+            Fault(channel="mass", intervention=Scale(factor=1 + error)),
+            Fault(channel="thrust", intervention=Scale(factor=1 - error)),
+        ),
+    )

@@ -1,0 +1,276 @@
+"""Faults as data: who is struck, when, in words and in JSON."""
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from fault_toys import INTERFACE, calibration
+from hypothesis import given
+from hypothesis import strategies as st
+from pydantic import ValidationError
+
+from faultpath.errors import UserError
+from faultpath.faults import (
+    ALL,
+    Coupled,
+    Delay,
+    Drift,
+    Dropout,
+    Erase,
+    Fault,
+    Freeze,
+    Hold,
+    Noise,
+    Offset,
+    Quantise,
+    Replace,
+    Scale,
+    Sequence,
+    Shuffle,
+    UniformScale,
+    fault_from_json,
+)
+
+reals = st.floats(-1e6, 1e6)
+constants = reals | st.tuples(reals, reals, reals) | st.tuples(st.tuples(reals, reals))
+counts = st.integers(1, 50)
+simple = st.one_of(
+    st.builds(Scale, factor=constants),
+    st.builds(UniformScale, half_range=st.floats(0, 0.9)),
+    st.builds(Offset, by=constants),
+    st.builds(Quantise, step_size=st.floats(1e-3, 10)),
+    st.builds(Erase, default=st.none() | constants),
+    st.builds(Noise, std=st.floats(0, 10), relative=st.booleans()),
+    st.builds(Drift, rate_per_s=constants, walk_per_sqrt_s=st.floats(0, 10)),
+    st.builds(Delay, steps=counts),
+    st.builds(Hold, every=counts),
+    st.builds(Freeze),
+    st.builds(
+        Dropout,
+        probability=st.floats(0, 1),
+        substitute=st.none() | st.builds(Erase, default=st.none() | reals),
+    ),
+    st.builds(Replace, value=constants),
+    st.builds(Shuffle, axis=st.integers(1, 3)),
+)
+interventions = st.recursive(
+    simple,
+    lambda inner: st.builds(Sequence, parts=st.lists(inner, min_size=1, max_size=2).map(tuple)),
+    max_leaves=3,
+)
+scene_steps = st.dictionaries(st.sampled_from(["a", "b", "c"]), counts, min_size=1)
+faults = st.builds(
+    Fault,
+    channel=st.just("mass"),
+    intervention=interventions,
+    consumers=st.sampled_from([(ALL,), ("predictor",), ("predictor.trim", "observer")]),
+    onset_step=counts | scene_steps,
+    duration_steps=counts | scene_steps,
+    recovery_steps=st.integers(0, 9),
+    cause=st.none() | st.just("storm"),
+)
+
+
+@given(
+    faults
+    | st.builds(
+        lambda fs: Coupled(name="two", faults=tuple(fs)), st.lists(faults, min_size=1, max_size=2)
+    )
+)
+def test_json_round_trip_is_exact(fault: Fault | Coupled) -> None:
+    again = fault_from_json(fault.model_dump_json())
+    assert again == fault
+    assert hash(again) == hash(fault)
+
+
+def test_a_fault_of_scenes_hashes_whatever_their_order() -> None:
+    one = Fault(channel="mass", intervention=Freeze(), onset_step={"a": 1, "b": 2})
+    two = Fault(channel="mass", intervention=Freeze(), onset_step={"b": 2, "a": 1})
+    assert one == two
+    assert hash(one) == hash(two)
+
+
+SCALE = Fault(channel="mass", intervention=Scale(factor=1.1))
+
+
+def struck(fault: Fault | Coupled, present: Any = None) -> dict[str, tuple[str, ...]]:
+    return {f.channel: f.consumers for f in fault.resolved(INTERFACE, present)}
+
+
+def test_a_fault_is_shared_unless_it_says_otherwise() -> None:
+    assert struck(SCALE) == {"mass": ("predictor.dynamics", "predictor.trim", "observer.wind_map")}
+
+
+def test_striking_changes_the_consumers_only() -> None:
+    isolated = SCALE.striking("observer")
+    assert struck(isolated) == {"mass": ("observer.wind_map",)}
+    assert isolated.striking(ALL) == SCALE
+    assert isolated.striking() == SCALE
+    assert struck(SCALE.striking("predictor.trim", "observer")) == {
+        "mass": ("predictor.trim", "observer.wind_map")
+    }
+
+
+def test_a_coupled_fault_strikes_whoever_reads_either_channel() -> None:
+    assert struck(calibration(0.1).striking("observer.wind_map")) == {
+        "mass": ("observer.wind_map",)
+    }
+    assert struck(calibration(0.1).striking("observer")) == {
+        "mass": ("observer.wind_map",),
+        "thrust": ("observer.model",),
+    }
+
+
+def test_consumers_that_a_variant_lacks_are_left_out() -> None:
+    plain = {"predictor.dynamics", "predictor.trim", "predictor.wind_map"}
+    assert struck(calibration(0.1), plain) == {
+        "mass": ("predictor.dynamics", "predictor.trim"),
+        "thrust": ("predictor.dynamics",),
+    }
+    assert struck(calibration(0.1).striking("observer"), plain) == {}
+
+
+def test_resolving_twice_changes_nothing() -> None:
+    for fault in calibration(0.1).striking("observer").resolved(INTERFACE):
+        assert fault.resolved(INTERFACE) == (fault,)
+
+
+def test_faults_of_one_cause_share_it() -> None:
+    assert {f.drawn_from for f in calibration(0.1).resolved(INTERFACE)} == {"calibration"}
+    assert SCALE.resolved(INTERFACE)[0].drawn_from == "mass:scale"
+    assert SCALE.striking("observer").drawn_from == SCALE.drawn_from
+
+
+def test_erasure_takes_the_channels_default() -> None:
+    [fault] = Fault(channel="wind", intervention=Erase()).resolved(INTERFACE)
+    assert fault.intervention == Erase(default=(0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("fault", "sentence"),
+    [
+        (
+            SCALE.model_copy(update={"channel": "mas"}),
+            "interface toy: unknown channel 'mas'; did you mean 'mass'? known: mass, thrust, wind",
+        ),
+        (
+            SCALE.striking("predicter"),
+            "channel 'mass': unknown consumer 'predicter'; did you mean 'predictor'? known: "
+            "observer, observer.wind_map, predictor, predictor.dynamics, predictor.trim",
+        ),
+        (
+            SCALE.striking("observer.model"),
+            "channel 'mass': 'observer.model' does not read it; its readers: observer, "
+            "observer.wind_map, predictor, predictor.dynamics, predictor.trim",
+        ),
+        (
+            calibration(0.1).striking("predictor.wind_map"),
+            "channel 'mass' and channel 'thrust': 'predictor.wind_map' does not read it; its "
+            "readers: observer, observer.model, observer.wind_map, predictor, predictor.dynamics, "
+            "predictor.trim",
+        ),
+        (
+            Fault(channel="wind", intervention=Offset(by=(1.0, 2.0))),
+            "channel 'wind': offset does not fit: by has shape [2] and the reading of one scene "
+            "has [3]",
+        ),
+    ],
+)
+def test_a_fault_that_cannot_act_is_a_users_mistake(fault: Fault | Coupled, sentence: str) -> None:
+    with pytest.raises(UserError, match=f"^{re.escape(sentence)}$"):
+        fault.validate_against(INTERFACE)
+    with pytest.raises(UserError):
+        fault.resolved(INTERFACE)
+
+
+@pytest.mark.parametrize(
+    ("fields", "message"),
+    [
+        ({"onset_step": -1}, "greater than or equal to 0"),
+        ({"duration_steps": 0}, "greater than or equal to 1"),
+        ({"recovery_steps": 3}, "recovery_steps needs an end to recover from"),
+        ({"consumers": ()}, "at least 1 item"),
+        ({"intervention": {"kind": "melt"}}, "does not match any of the expected tags"),
+    ],
+)
+def test_refuses_what_makes_no_sense(fields: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValidationError, match=message):
+        Fault.model_validate({"channel": "mass", "intervention": Freeze()} | fields)
+
+
+def weights(fault: Fault, scenes: tuple[str, ...], steps: int) -> list[list[float]]:
+    window = fault.window(scenes)
+    return [np.broadcast_to(window.weight(s), (len(scenes),)).tolist() for s in range(steps)]
+
+
+def test_window_of_all_scenes() -> None:
+    fault = Fault(channel="mass", intervention=Freeze(), onset_step=2)
+    assert weights(fault, ("a",), 5) == [[0], [0], [1], [1], [1]]
+    fault = fault.model_copy(update={"duration_steps": 2})
+    assert weights(fault, ("a",), 6) == [[0], [0], [1], [1], [0], [0]]
+    fault = fault.model_copy(update={"recovery_steps": 3})
+    assert weights(fault, ("a",), 8) == [[0], [0], [1], [1], [0.75], [0.5], [0.25], [0]]
+    assert [fault.window(("a",)).over(step) for step in (6, 7)] == [False, True]
+
+
+def test_window_of_each_scene() -> None:
+    fault = Fault(
+        channel="mass",
+        intervention=Freeze(),
+        onset_step={"a": 0, "b": 1, "c": 9},
+        duration_steps=2,
+        recovery_steps=1,
+    )
+    expected = [[0, 1], [1, 1], [1, 0.5], [0.5, 0], [0, 0]]
+    assert weights(fault, ("b", "a"), 5) == expected
+    here = fault.window(("b", "a")).beside(torch.zeros(2))
+    assert [here.weight(s).tolist() for s in range(5)] == expected
+    lasting = fault.model_copy(update={"duration_steps": {"a": 3, "b": 1}, "recovery_steps": 0})
+    assert weights(lasting, ("b", "a"), 4) == [[0, 1], [1, 1], [0, 1], [0, 0]]
+    forever = fault.model_copy(update={"duration_steps": None, "recovery_steps": 0})
+    assert weights(forever, ("b", "a"), 3) == [[0, 1], [1, 1], [1, 1]]
+
+
+def test_every_scene_needs_its_onset() -> None:
+    fault = Fault(channel="mass", intervention=Freeze(), onset_step={"a": 0})
+    sentence = "fault on channel 'mass': onset_step gives no step for scene 'b'; name every scene"
+    with pytest.raises(UserError, match=sentence):
+        fault.window(("a", "b"))
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        (SCALE, "mass scaled by 1.1 at every consumer"),
+        (
+            SCALE.striking("observer", "predictor.trim"),
+            "mass scaled by 1.1 at observer, predictor.trim",
+        ),
+        (
+            Fault(
+                channel="wind",
+                intervention=Delay(steps=5),
+                onset_step=20,
+                duration_steps=40,
+                recovery_steps=5,
+            ),
+            "wind delayed by 5 steps at every consumer from step 20 for 40 steps, "
+            "recovering over 5",
+        ),
+        (
+            Fault(
+                channel="wind", intervention=Freeze(), onset_step={"a": 1}, duration_steps={"a": 1}
+            ),
+            "wind frozen at every consumer from a step of each scene's own for a time of each "
+            "scene's own",
+        ),
+        (
+            calibration(0.1).striking("observer"),
+            "calibration: mass scaled by 1.1 at observer; thrust scaled by 0.9 at observer",
+        ),
+    ],
+)
+def test_describes_itself(fault: Fault | Coupled, words: str) -> None:
+    assert fault.describe() == words

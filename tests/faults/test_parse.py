@@ -1,0 +1,188 @@
+"""Fault text: what it means, and the sentence for every mistake."""
+
+import pytest
+from fault_toys import INTERFACE, calibration
+
+from faultpath.errors import UserError
+from faultpath.faults import (
+    Coupled,
+    Delay,
+    Drift,
+    Dropout,
+    Erase,
+    Fault,
+    Freeze,
+    Hold,
+    Noise,
+    Offset,
+    Quantise,
+    Replace,
+    Scale,
+    UniformScale,
+    parse_fault,
+)
+
+KINDS = (
+    "delay, drift, dropout, erase, freeze, hold, noise, offset, quantise, replace, scale, shuffle, "
+    "uniform_scale"
+)
+TARGETS = "calibration, mass, thrust, wind"
+WINDOW = "for, for_s, onset, onset_s, recover, recover_s"
+
+
+def parse(text: str) -> Fault | Coupled:
+    return parse_fault(text, INTERFACE, {"calibration": calibration}, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "intervention"),
+    [
+        ("mass:scale=1.1", Scale(factor=1.1)),
+        ("mass:scale=-1e-1", Scale(factor=-0.1)),
+        ("mass:uniform_scale=0.2", UniformScale(half_range=0.2)),
+        ("wind:offset=1/-2/0", Offset(by=(1.0, -2.0, 0.0))),
+        ("wind:noise=0.1", Noise(std=0.1)),
+        ("wind:noise=0.1,relative", Noise(std=0.1, relative=True)),
+        ("wind:noise=0.1,relative=false", Noise(std=0.1)),
+        ("mass:drift=0.1", Drift(rate_per_s=0.1)),
+        ("mass:drift,walk_per_sqrt_s=0.1", Drift(walk_per_sqrt_s=0.1)),
+        ("wind:delay=5", Delay(steps=5)),
+        ("wind:hold=4", Hold(every=4)),
+        ("wind:freeze", Freeze()),
+        ("wind:erase", Erase()),
+        ("wind:erase=2", Erase(default=2.0)),
+        ("wind:dropout=0.2", Dropout(probability=0.2)),
+        ("wind:dropout=0.2,substitute=erase", Dropout(probability=0.2, substitute=Erase())),
+        ("wind:quantise=0.5", Quantise(step_size=0.5)),
+        ("wind:replace=3", Replace(value=3.0)),
+    ],
+)
+def test_one_channel(text: str, intervention: object) -> None:
+    channel = text.partition(":")[0]
+    assert parse(text) == Fault.model_validate({"channel": channel, "intervention": intervention})
+
+
+def test_preset_is_the_systems() -> None:
+    assert parse("calibration=+0.1") == calibration(0.1)
+    assert parse("calibration=-0.25") == calibration(-0.25)
+
+
+def test_a_group_stands_for_its_channels() -> None:
+    assert parse("calibration:delay=3") == Coupled(
+        name="calibration:delay",
+        faults=(
+            Fault(channel="mass", intervention=Delay(steps=3)),
+            Fault(channel="thrust", intervention=Delay(steps=3)),
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "mass:freeze,onset=20,for=40,recover=5@observer+predictor.trim",
+        "mass:freeze@observer+predictor.trim,recover_s=0.25,for_s=2,onset_s=1.0",
+        " mass:freeze @ observer + predictor.trim + observer, onset=20, for=40, recover=5",
+    ],
+)
+def test_time_and_consumers(text: str) -> None:
+    assert parse(text) == Fault(
+        channel="mass",
+        intervention=Freeze(),
+        consumers=("observer", "predictor.trim"),
+        onset_step=20,
+        duration_steps=40,
+        recovery_steps=5,
+    )
+
+
+def test_time_and_consumers_of_a_preset() -> None:
+    fault = parse("calibration=+0.1,onset=3,for=2@observer")
+    assert isinstance(fault, Coupled)
+    assert [(f.onset_step, f.duration_steps, f.consumers) for f in fault.faults] == [
+        (3, 2, ("observer",))
+    ] * 2
+    assert [f.intervention for f in fault.faults] == [Scale(factor=1.1), Scale(factor=0.9)]
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "the text is empty; write CHANNEL:KIND=VALUE or PRESET=SIZE"),
+        ("mass:freeze,,", "something is missing between commas; write CHANNEL:KIND=VALUE"),
+        (
+            "calibraton=1",
+            "unknown preset 'calibraton'; did you mean 'calibration'? known: calibration; a fault "
+            "of one channel is CHANNEL:KIND=VALUE",
+        ),
+        ("calibration", "'calibration' needs a size, as in calibration=+0.1"),
+        ("calibration=x", "'calibration' needs a number, not 'x'"),
+        ("calibration=inf", "'calibration' needs a finite number, not 'inf'"),
+        ("calibration=-1", "calibration=-1 leaves no positive mass or thrust"),
+        ("calibration=0.1,relative", f"unknown option 'relative'; known: {WINDOW}"),
+        (
+            "wind=3",
+            "says nothing about what happens to 'wind'; write wind:KIND=VALUE, kinds: " + KINDS,
+        ),
+        ("wid:freeze", f"unknown channel 'wid'; did you mean 'wind'? known: {TARGETS}"),
+        ("wind:dely=5", f"unknown kind 'dely'; did you mean 'delay'? known: {KINDS}"),
+        ("wind:sequence", f"unknown kind 'sequence'; known: {KINDS}"),
+        ("wind:delay", "'delay' needs a value (steps), as in wind:delay=VALUE"),
+        ("wind:delay=x", "'delay' needs a number, not 'x'"),
+        (
+            "wind:delay=5.5",
+            "'delay': steps should be a valid integer, got a number with a fractional part; "
+            "correct the value",
+        ),
+        (
+            "wind:delay=-1",
+            "'delay': steps should be greater than or equal to 0; correct the value",
+        ),
+        ("wind:noise=-1", "'noise': noise std must not be negative; correct the value"),
+        ("wind:freeze=3", "'freeze' takes no value; write wind:freeze"),
+        (
+            "mass:scale=1,factors=2",
+            f"unknown option 'factors'; did you mean 'for_s'? known: {WINDOW}",
+        ),
+        ("mass:scale=1,onset=1,onset=2", "option 'onset' appears twice; drop one"),
+        ("mass:scale=1,onset=1,onset_s=1", "'onset' is given in steps and in seconds; drop one"),
+        ("mass:scale=1,onset=x", "'onset' needs control steps, not 'x'"),
+        ("mass:scale=1,onset=2.5", "onset=2.5 is not a whole number of steps, at least 0"),
+        ("mass:scale=1,for=0", "for=0 is not a whole number of steps, at least 1"),
+        (
+            "mass:scale=1,for_s=0.07",
+            "for_s=0.07 is not a whole number of steps of 0.05 s each, at least 1",
+        ),
+        ("mass:scale=1,onset=1e300", "onset=1e300 is not a whole number of steps, at least 0"),
+        ("mass:scale=1,recover=3", "'recover' needs an end to recover from; add for=STEPS"),
+        ("mass:freeze@", "'@' needs a module or consumer after it, as in @planner"),
+        ("mass:freeze@a+", "'@' needs a module or consumer after it, as in @planner"),
+        (
+            "mass:freeze@a,onset=1@b",
+            "'@' appears twice; join consumers with '+', as in @planner+predictor",
+        ),
+        (
+            "mass:freeze@a@b",
+            "'@' appears twice; join consumers with '+', as in @planner+predictor",
+        ),
+        (
+            "wind:freeze@observer",
+            "channel 'wind': 'observer' does not read it; its readers: predictor, "
+            "predictor.wind_map",
+        ),
+        (
+            "wind:freeze@predict",
+            "channel 'wind': unknown consumer 'predict'; did you mean 'predictor'? known: "
+            "predictor, predictor.wind_map",
+        ),
+        (
+            "mass:offset=1/2",
+            "channel 'mass': offset does not fit: by has shape [2] and the reading of one scene "
+            "has []",
+        ),
+    ],
+)
+def test_a_mistake_is_one_sentence(text: str, sentence: str) -> None:
+    with pytest.raises(UserError) as caught:
+        parse(text)
+    assert str(caught.value) == f"fault '{text}': {sentence}"

@@ -1,0 +1,192 @@
+"""Receipts: what was delivered, where a fault acted, and what is an error."""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from tap_toys import make
+
+from faultpath.faults import Fault, Offset, Scale
+from faultpath.taps import (
+    Missed,
+    NotDelivered,
+    Reading,
+    StruckElsewhere,
+    Taps,
+    UndeclaredReader,
+    check_delivered,
+)
+
+LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
+LATE = Fault(
+    channel="mass",
+    intervention=Scale(factor=2.0),
+    consumers=("observer",),
+    onset_step={"a": 1, "b": 3},
+    duration_steps=2,
+)
+
+
+def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1) -> None:
+    for step in steps:
+        value = to(np.array([0.0, 0.0] if step == zero else [1.0, 2.0]))
+        for consumer in ("predictor.dynamics", "observer.model"):
+            taps.deliver("mass", consumer, Reading(value, "scale", step), step)
+
+
+@LIBRARIES
+def test_counts_deliveries_and_steps(to: Any) -> None:
+    taps = make([LATE])
+    run(taps, to, range(2, 6))
+    struck = taps.receipts().at("mass", "observer.model")
+    assert (struck.deliveries, struck.first_step, struck.last_step) == (4, 2, 5)
+    assert struck.steps_struck.tolist() == [1, 2]
+    assert struck.steps_altered.tolist() == [1, 2]
+    assert [s.fault for s in struck.strikes] == [
+        "mass scaled by 2 at observer.model from a step of each scene's own for 2 steps"
+    ]
+    clean = taps.receipts().at("mass", "predictor.dynamics")
+    assert (clean.deliveries, clean.strikes, clean.steps_struck.tolist()) == (4, (), [0, 0])
+    silent = taps.receipts().at("wind", "planner.wind")
+    assert (silent.deliveries, silent.first_step, silent.last_step) == (0, None, None)
+
+
+@LIBRARIES
+def test_struck_is_not_yet_altered(to: Any) -> None:
+    taps = make([LATE.model_copy(update={"onset_step": 1})])
+    run(taps, to, zero=2)
+    receipt = taps.receipts().at("mass", "observer.model")
+    assert receipt.steps_struck.tolist() == [2, 2]
+    assert receipt.steps_altered.tolist() == [1, 1]
+
+
+@LIBRARIES
+def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
+    taps = make([Fault(channel="mass", intervention=Scale(factor=2.0))])
+    reading = Reading(to(np.array([np.nan, 1.0])), "scale", 0)
+    taps.deliver("mass", "observer.model", reading, 0)
+    assert taps.receipts().steps_altered.tolist() == [0, 1]
+
+
+@LIBRARIES
+@pytest.mark.parametrize("mask_to", [np.asarray, torch.asarray])
+@pytest.mark.parametrize("onset", [1, {"a": 1, "b": 1}])
+def test_only_running_scenes_count(to: Any, mask_to: Any, onset: Any) -> None:
+    taps = make([LATE.model_copy(update={"onset_step": onset, "duration_steps": None})])
+    run(taps, to, range(3))
+    taps.set_active(mask_to(np.array([True, False])))
+    run(taps, to, range(3, 5))
+    taps.set_active(None)
+    run(taps, to, range(5, 6))
+    assert taps.receipts().steps_struck.tolist() == [5, 3]
+    assert taps.receipts().steps_altered.tolist() == [5, 3]
+
+
+@LIBRARIES
+def test_a_step_counts_once_for_the_run_however_many_taps_are_struck(to: Any) -> None:
+    taps = make([LATE.striking("*")])
+    run(taps, to)
+    assert taps.receipts().steps_struck.tolist() == [2, 2]
+
+
+def test_channels_on_numpy_and_torch_count_together() -> None:
+    wind = Fault(channel="wind", intervention=Offset(by=1.0), onset_step={"a": 9, "b": 2})
+    taps = make([LATE, wind])
+    for step in range(4):
+        taps.deliver("mass", "observer.model", Reading(np.ones(2), "scale", step), step)
+        taps.deliver("wind", "planner.wind", Reading(torch.ones(2, 3), "still", step), step)
+    assert taps.receipts().steps_struck.tolist() == [2, 2]
+    assert taps.receipts().steps_altered.tolist() == [2, 2]
+
+
+def test_two_faults_at_a_tap_are_told_apart() -> None:
+    early = LATE.model_copy(update={"onset_step": 0, "duration_steps": 4})
+    taps = make([early, LATE])
+    run(taps)
+    receipt = taps.receipts().at("mass", "observer.model")
+    assert [s.steps_in_force.tolist() for s in receipt.strikes] == [[4, 4], [2, 2]]
+    assert receipt.steps_struck.tolist() == [4, 5]
+
+
+def test_recovery_counts_as_in_force() -> None:
+    taps = make([LATE.model_copy(update={"recovery_steps": 1})])
+    run(taps)
+    assert taps.receipts().steps_struck.tolist() == [3, 3]
+
+
+def test_there_is_no_receipt_of_an_undeclared_tap() -> None:
+    with pytest.raises(UndeclaredReader, match=re.escape("there is no tap mass -> planner.wind")):
+        make().receipts().at("mass", "planner.wind")
+
+
+def test_a_fault_that_reached_everyone_is_verified() -> None:
+    taps = make([LATE])
+    run(taps)
+    assert taps.verify(5) == ()
+
+
+def test_scenes_that_ended_before_the_onset_are_reported() -> None:
+    taps = make([LATE])
+    run(taps, steps=range(3))
+    fault = "mass scaled by 2 at observer.model from a step of each scene's own for 2 steps"
+    assert taps.verify(np.array([2, 2])) == (Missed("mass", "observer.model", fault, ("b",), ()),)
+
+
+def test_scenes_without_a_delivery_in_the_window_are_reported() -> None:
+    taps = make([LATE])
+    run(taps, steps=[0, 1, 2, 5])
+    [missed] = taps.verify(5)
+    assert (missed.ended_before, missed.not_called) == ((), ("b",))
+
+
+def test_a_block_that_ended_before_the_onset_is_no_error() -> None:
+    taps = make([LATE])
+    run(taps, steps=[0])
+    [missed] = taps.verify(0)
+    assert missed.ended_before == ("a", "b")
+
+
+@pytest.mark.parametrize("steps", [(), (0,), (0, 5)])
+def test_a_fault_that_never_came_to_bear_is_an_error(steps: tuple[int, ...]) -> None:
+    taps = make([LATE])
+    run(taps, steps=steps)
+    sentence = (
+        "tap mass -> observer.model: 'mass scaled by 2 at observer.model from a step of each "
+        "scene's own for 2 steps' never reached it, although 1 of 2 scenes ran past the onset; "
+        f"the consumer got the channel in {len(steps)} steps"
+    )
+    with pytest.raises(NotDelivered, match=f"^{re.escape(sentence)}$"):
+        taps.verify(np.array([5, 2]))
+
+
+def test_one_of_two_faults_that_never_came_to_bear_is_an_error() -> None:
+    taps = make([LATE.model_copy(update={"onset_step": 0}), LATE])
+    run(taps, steps=[0])
+    with pytest.raises(NotDelivered, match="from a step of each scene's own"):
+        taps.verify(5)
+
+
+def test_a_fault_that_reached_another_is_an_error() -> None:
+    taps = make([LATE])
+    run(taps)
+    receipts = taps.receipts()
+    last = np.array([5, 5])
+    with pytest.raises(StruckElsewhere, match=re.escape("tap mass -> observer.model altered a")):
+        check_delivered(receipts, frozenset(), last)
+    named = frozenset({("mass", "observer.model")})
+    assert check_delivered(receipts, named, last) == ()
+    strange = tuple(
+        replace(r, steps_altered=np.array([1, 0])) if r.channel == "wind" else r
+        for r in receipts.taps
+    )
+    with pytest.raises(StruckElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
+        check_delivered(replace(receipts, taps=strange), named, last)
+
+
+def test_a_named_tap_where_nothing_acts_is_an_error() -> None:
+    named = frozenset({("mass", "predictor.dynamics")})
+    with pytest.raises(NotDelivered, match="a fault names it, but none acted there"):
+        check_delivered(make().receipts(), named, np.array([5, 5]))

@@ -1,0 +1,264 @@
+"""Delivery: what a consumer may read, and what it gets."""
+
+import re
+import timeit
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from tap_toys import INTERFACE, make
+
+from faultpath.errors import UserError
+from faultpath.faults import Coupled, Fault, Freeze, Noise, Offset, Quantise, Scale
+from faultpath.taps import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
+
+SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
+
+
+def mass(step: int, value: Any = None, source: str = "scale") -> Reading:
+    return Reading(np.array([1.0, 3.0]) if value is None else value, source, step)
+
+
+def test_without_a_fault_the_consumer_gets_the_very_object() -> None:
+    taps = make([SCALE])
+    anything = object()
+    assert taps.deliver("mass", "predictor.dynamics", mass(0, anything), 0) is anything
+
+
+def test_only_the_struck_consumer_gets_another_value() -> None:
+    taps = make([SCALE])
+    assert taps.deliver("mass", "observer.model", mass(0), 0).tolist() == [2.0, 6.0]
+    assert taps.deliver("mass", "predictor.dynamics", mass(0), 0).tolist() == [1.0, 3.0]
+
+
+def test_a_second_delivery_in_a_step_returns_the_first() -> None:
+    taps = make([SCALE])
+    first = taps.deliver("mass", "observer.model", mass(0), 0)
+    assert taps.deliver("mass", "observer.model", mass(0), 0) is first
+    assert taps.receipts().at("mass", "observer.model").deliveries == 1
+
+
+def test_bindings_name_the_source_of_every_channel() -> None:
+    taps = make(bindings={"wind": "truth"}, privileged={"truth"})
+    assert dict(taps.bindings) == {"mass": "scale", "wind": "truth"}
+    wind = Reading(np.zeros((2, 3)), "truth", 0)
+    assert taps.deliver("wind", "planner.wind", wind, 0) is wind.value
+
+
+@pytest.mark.parametrize(
+    ("taps", "channel", "consumer", "reading", "error", "sentence"),
+    [
+        (
+            make(),
+            "mass",
+            "planner.wind",
+            mass(0),
+            UndeclaredReader,
+            "tap mass -> planner.wind: the channel does not declare this consumer; add it to the "
+            "interface, declared: observer.model, predictor.dynamics",
+        ),
+        (
+            make(consumers={"predictor.dynamics"}),
+            "mass",
+            "observer.model",
+            mass(0),
+            UndeclaredReader,
+            "tap mass -> observer.model: this variant has no such consumer; name it in the "
+            "variant's consumers",
+        ),
+        (
+            make(),
+            "mass",
+            "observer.model",
+            mass(0, source="still"),
+            IllegalRead,
+            "tap mass -> observer.model: the reading is of source 'still', but the channel is "
+            "bound to 'scale'",
+        ),
+        (
+            make(bindings={"wind": "truth"}),
+            "wind",
+            "planner.wind",
+            Reading(np.zeros((2, 3)), "truth", 0),
+            IllegalRead,
+            "tap wind -> planner.wind: source 'truth' is privileged and this arm does not permit "
+            "it",
+        ),
+        (
+            make(),
+            "mass",
+            "observer.model",
+            mass(1),
+            IllegalRead,
+            "tap mass -> observer.model: the reading is of step 1, which is after step 0",
+        ),
+        (
+            make([SCALE]),
+            "mass",
+            "observer.model",
+            mass(0, np.zeros(3)),
+            MalformedReading,
+            "tap mass -> observer.model: the reading has 3 rows for 2 scenes",
+        ),
+    ],
+)
+def test_an_illegal_read_names_the_tap(
+    taps: Taps, channel: str, consumer: str, reading: Reading, error: type[Exception], sentence: str
+) -> None:
+    with pytest.raises(error, match=f"^{re.escape(sentence)}$"):
+        taps.deliver(channel, consumer, reading, 0)
+    assert (
+        all(receipt.deliveries == 0 for receipt in taps.receipts().taps)
+        or error is MalformedReading
+    )
+
+
+def test_steps_do_not_run_backwards() -> None:
+    taps = make()
+    taps.deliver("mass", "observer.model", mass(0), 3)
+    with pytest.raises(MalformedReading, match="step 2 comes after step 3; a new run needs new"):
+        taps.deliver("mass", "observer.model", mass(0), 2)
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ({"bindings": {"wnd": "still"}}, "unknown channel 'wnd'; did you mean 'wind'"),
+        (
+            {"bindings": {"wind": "scale"}},
+            "channel 'wind' cannot be bound: unknown source 'scale'; known: still, truth",
+        ),
+        ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
+        ({"consumers": {"pilot.x"}}, "this variant's consumers: unknown consumer 'pilot.x'"),
+        ({"faults": [SCALE.striking("pilot")]}, "channel 'mass': unknown consumer 'pilot'"),
+        (
+            {"faults": [SCALE], "consumers": {"predictor.dynamics"}},
+            "fault 'mass scaled by 2 at observer' strikes nobody in this variant, which has no "
+            "observer.model; leave the fault out or name other consumers",
+        ),
+        (
+            {"faults": [SCALE.model_copy(update={"onset_step": {"a": 1}})]},
+            "onset_step gives no step for scene 'b'",
+        ),
+    ],
+)
+def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(UserError, match=re.escape(sentence)):
+        make(**given)
+
+
+@pytest.mark.parametrize(
+    ("fault", "sentence"),
+    [
+        (
+            SCALE.model_copy(update={"intervention": Quantise(step_size=0.5)}),
+            "fault on channel 'mass': quantise turns int64 [2] into float64 [2]; choose one that "
+            "keeps them",
+        ),
+        (
+            SCALE.model_copy(
+                update={"intervention": Freeze(), "duration_steps": 1, "recovery_steps": 1}
+            ),
+            "fault on channel 'mass': freeze cannot recover step by step in int64; leave recovery",
+        ),
+        (
+            SCALE.model_copy(
+                update={
+                    "intervention": Freeze(),
+                    "onset_step": {"a": 0, "b": 0},
+                    "duration_steps": 1,
+                    "recovery_steps": 1,
+                }
+            ),
+            "fault on channel 'mass': freeze cannot recover step by step in int64; leave recovery",
+        ),
+    ],
+)
+def test_whole_numbers_are_not_turned_into_others(fault: Fault, sentence: str) -> None:
+    taps = make([fault])
+
+    def deliver_twice() -> None:
+        for step in range(2):
+            taps.deliver("mass", "observer.model", mass(step, np.array([1, 2])), step)
+
+    with pytest.raises(UserError, match=f"^{re.escape(sentence)}"):
+        deliver_twice()
+
+
+def test_a_fault_may_miss_some_consumers_of_a_variant() -> None:
+    shared = Coupled(name="all", faults=(SCALE.striking("*"),))
+    taps = make([shared], consumers={"observer.model"})
+    assert taps.receipts().absent == (("mass", "predictor.dynamics"),)
+
+
+class TestModuleView:
+    def test_delivers_to_its_own_places_only(self) -> None:
+        view = make([SCALE]).for_module("observer")
+        assert view.deliver("mass", "model", mass(0), 0).tolist() == [2.0, 6.0]
+        with pytest.raises(UndeclaredReader, match=re.escape("mass -> observer.dynamics")):
+            view.deliver("mass", "dynamics", mass(0), 0)
+        with pytest.raises(UndeclaredReader, match=re.escape("observer.predictor.dynamics")):
+            view.deliver("mass", "predictor.dynamics", mass(0), 0)
+
+    def test_shows_nothing_of_the_faults(self) -> None:
+        view = make([SCALE]).for_module("observer")
+        assert {name for name in dir(view) if not name.startswith("_")} == {"module", "deliver"}
+        assert not hasattr(view, "__dict__")
+        assert not hasattr(view.deliver, "__self__")
+        assert "Scale" not in repr(view)
+        assert "factor" not in repr(view)
+        for name in ("state", "receipts", "faults", "taps", "_taps", "verify"):
+            with pytest.raises(AttributeError):
+                getattr(view, name)
+        with pytest.raises(AttributeError):
+            view.module = "planner"  # pyright: ignore[reportAttributeAccessIssue]
+
+    def test_unknown_module_is_a_users_mistake(self) -> None:
+        with pytest.raises(UserError, match="unknown module 'observr'; did you mean 'observer'"):
+            make().for_module("observr")
+
+
+def test_state_shows_evaluation_code_what_is_in_force() -> None:
+    late = Fault(channel="mass", intervention=Freeze(), onset_step={"a": 0, "b": 5})
+    taps = make([late.striking("observer")])
+    assert [(s.step, s.in_window.tolist()) for s in taps.state()] == [(None, [False, False])]
+    taps.deliver("mass", "observer.model", mass(0), 0)
+    [state] = taps.state()
+    assert (state.channel, state.consumer, state.step) == ("mass", "observer.model", 0)
+    assert state.in_window.tolist() == [True, False]
+    assert state.fault == "mass frozen at observer.model from a step of each scene's own"
+    assert state.memory == "float64 [2] [1. 3.]"
+
+
+def test_gradients_pass_through_a_tap() -> None:
+    value = torch.ones(2, dtype=torch.float64, requires_grad=True)
+    taps = make([SCALE])
+    taps.deliver("mass", "observer.model", mass(0, value), 0).sum().backward()
+    assert value.grad is not None
+    assert value.grad.tolist() == [2.0, 2.0]
+    assert taps.receipts().steps_altered.tolist() == [1, 1]
+
+
+def test_delivery_without_a_fault_costs_next_to_nothing() -> None:
+    taps = Taps(INTERFACE, scenes=("a",), dt_s=0.05)
+    readings = iter([Reading(None, "scale", step) for step in range(40000)])
+
+    def deliver() -> None:
+        reading = next(readings)
+        taps.deliver("mass", "observer.model", reading, reading.step)
+
+    assert min(timeit.repeat(deliver, number=1000, repeat=40)) / 1000 < 3e-6
+
+
+def test_noise_on_one_channel_leaves_the_other_alone() -> None:
+    taps = make([Fault(channel="wind", intervention=Noise(std=1.0)), SCALE, SCALE])
+    assert taps.deliver("mass", "observer.model", mass(0), 0).tolist() == [4.0, 12.0]
+    wind = Reading(np.zeros((2, 3)), "still", 0)
+    assert np.all(taps.deliver("wind", "planner.wind", wind, 0) != 0)
+
+
+def test_a_value_offset_by_zero_is_the_reading_itself() -> None:
+    taps = make([Fault(channel="mass", intervention=Offset(by=0.0))])
+    reading = mass(0)
+    assert taps.deliver("mass", "observer.model", reading, 0) is reading.value
