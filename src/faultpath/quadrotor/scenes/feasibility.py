@@ -87,11 +87,15 @@ class FreeLattice:
         place = np.ravel_multi_index(self.nearest(point), self.free.shape)
         return int(np.count_nonzero(self.free.ravel()[:place]))
 
+    def _travel(self, node: int, limit: float = np.inf) -> NDArray[np.float64]:
+        """Return the length of the shortest way from one free point to each, m."""
+        return dijkstra(self._graph, directed=False, indices=[node], limit=limit)[0]
+
     def path_length_m(self) -> float:
         """Return the length of the shortest way from start to goal, infinite when there is none."""
         if not self.connected:
             return float("inf")
-        reach = dijkstra(self._graph, directed=False, indices=self._node(self.scene.start_m))
+        reach = self._travel(self._node(self.scene.start_m))
         return float(reach[self._node(self.scene.goal_m)])
 
     def found_by_looking(self, ahead_m: float) -> bool:
@@ -107,7 +111,7 @@ class FreeLattice:
         ]
         here = self._node(self.scene.start_m)
         while to_goal[here] > 0.5:
-            reach = dijkstra(self._graph, directed=False, indices=here, limit=ahead_m)
+            reach = self._travel(here, ahead_m)
             there = int(np.where(np.isfinite(reach), to_goal, np.inf).argmin())
             if to_goal[there] > to_goal[here] - 0.1:
                 return False
