@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pyarrow as pa
 import pytest
+
 from faultpath.interface import Interface, read_interface
 from faultpath.record import Path, Question, decide
 from faultpath.record.provenance import RunProvenance
@@ -32,11 +33,16 @@ INTERFACE = """
 name: quadrotor
 sources:
 - {name: mass_estimate, unit: kg, provenance: estimated, correlation_group: calibration}
-- {name: thrust_scale_estimate, unit: '1', provenance: estimated, correlation_group: calibration}
-- {name: position_estimate, unit: m, shape: [3], provenance: estimated, correlation_group: state}
-- {name: velocity_estimate, unit: m/s, shape: [3], provenance: estimated, latency_s: 0.02, correlation_group: state}
-- {name: attitude_estimate, unit: '1', shape: [3, 3], provenance: estimated, correlation_group: state}
-- {name: body_rate_measurement, unit: rad/s, shape: [3], provenance: measured, correlation_group: state}
+- {name: thrust_scale_estimate, unit: '1', provenance: estimated,
+   correlation_group: calibration}
+- {name: position_estimate, unit: m, shape: [3], provenance: estimated,
+   correlation_group: state}
+- {name: velocity_estimate, unit: m/s, shape: [3], provenance: estimated, latency_s: 0.02,
+   correlation_group: state}
+- {name: attitude_estimate, unit: '1', shape: [3, 3], provenance: estimated,
+   correlation_group: state}
+- {name: body_rate_measurement, unit: rad/s, shape: [3], provenance: measured,
+   correlation_group: state}
 - {name: commanded_action, unit: 'N, rad/s', shape: [4], provenance: commanded}
 - {name: mission_goal, unit: m, shape: [3], provenance: commanded}
 - {name: zero_wind, unit: m/s, shape: [3], provenance: constant}
@@ -45,15 +51,23 @@ sources:
 - {name: depth_clearance, unit: m, shape: [20, 512], provenance: estimated}
 - {name: true_physics, unit: 'kg m^2, 1, s, kg/s, N', shape: [9], provenance: privileged}
 channels:
-- {name: mass, sources: [mass_estimate], gap: fidelity, consumers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
-- {name: thrust_scale, sources: [thrust_scale_estimate], gap: fidelity, consumers: [predictor.dynamics, predictor.trim, reconstruction.head]}
-- {name: position, sources: [position_estimate], gap: fidelity, consumers: [predictor.initial_state]}
-- {name: velocity, sources: [velocity_estimate], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
-- {name: attitude, sources: [attitude_estimate], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
-- {name: body_rate, sources: [body_rate_measurement], gap: fidelity, consumers: [predictor.initial_state, reconstruction.history]}
-- {name: action, sources: [commanded_action], consumers: [vehicle.actuators, reconstruction.history]}
+- {name: mass, sources: [mass_estimate], gap: fidelity,
+   consumers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
+- {name: thrust_scale, sources: [thrust_scale_estimate], gap: fidelity,
+   consumers: [predictor.dynamics, predictor.trim, reconstruction.head]}
+- {name: position, sources: [position_estimate], gap: fidelity,
+   consumers: [predictor.initial_state]}
+- {name: velocity, sources: [velocity_estimate], gap: fidelity,
+   consumers: [predictor.initial_state, reconstruction.history]}
+- {name: attitude, sources: [attitude_estimate], gap: fidelity,
+   consumers: [predictor.initial_state, reconstruction.history]}
+- {name: body_rate, sources: [body_rate_measurement], gap: fidelity,
+   consumers: [predictor.initial_state, reconstruction.history]}
+- {name: action, sources: [commanded_action],
+   consumers: [vehicle.actuators, reconstruction.history]}
 - {name: goal, sources: [mission_goal], consumers: [planner.goal_cost]}
-- {name: wind, sources: [zero_wind, reconstructed_wind, true_wind], gap: availability, consumers: [predictor.wind_map]}
+- {name: wind, sources: [zero_wind, reconstructed_wind, true_wind], gap: availability,
+   consumers: [predictor.wind_map]}
 - {name: clearance, sources: [depth_clearance], gap: fidelity, consumers: [planner.risk_cost]}
 - {name: physics, sources: [true_physics], gap: fidelity, consumers: [predictor.physics]}
 reconstructs: {reconstruction: reconstructed_wind}

@@ -100,7 +100,7 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
             Markup(figures.pair_grid(title, [p for p in pairs if p.path == name]))
             for name, title in titles.items()
         ],
-        "pair_key": Markup(figures.pair_key(pairs)),
+        "pair_key": [(Markup(sign), words) for sign, words in figures.pair_key(pairs)],
         "outcomes": [
             Markup(figures.outcome_bars(title, _cells(record, name)))
             for name, title in titles.items()

@@ -72,10 +72,27 @@ def _best_order(interface: Interface) -> _Order:
     best, fewest = order, _crossings(interface, order)
     for _ in range(6):
         order = _swept(interface, order)
-        crossings = _crossings(interface, order)
-        if crossings < fewest:
-            best, fewest = order, crossings
+        for candidate in (order, _exchanged(interface, order)):
+            crossings = _crossings(interface, candidate)
+            if crossings < fewest:
+                best, fewest = candidate, crossings
     return best
+
+
+def _exchanged(interface: Interface, order: _Order) -> _Order:
+    """Exchange neighbouring channels as long as that takes crossings away."""
+    fewest, improved = _crossings(interface, order), True
+    while improved:
+        improved = False
+        for i in range(len(order.channels) - 1):
+            names = list(order.channels)
+            names[i], names[i + 1] = names[i + 1], names[i]
+            taps = _gathered(order.taps, {name: float(k) for k, name in enumerate(names)})
+            candidate = _Order(order.sources, tuple(names), taps)
+            crossings = _crossings(interface, candidate)
+            if crossings < fewest:
+                order, fewest, improved = candidate, crossings, True
+    return order
 
 
 def _declared(interface: Interface) -> _Order:

@@ -1,11 +1,11 @@
 """A small SVG writer: everything that is text or an attribute value is escaped on the way in."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from functools import cache
+from hashlib import blake2b
 from html import escape
 from importlib import resources
-from itertools import count
 
 Point = tuple[float, float]
 
@@ -14,8 +14,6 @@ Point = tuple[float, float]
 _NARROW = dict.fromkeys("iljI.,:;'|!", 290) | dict.fromkeys('ft()[]/-r "', 350)
 _WIDE = dict.fromkeys("mwMW%@→", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
 _ADVANCE = _NARROW | _WIDE
-
-_fresh = count(1)
 
 
 def text_width(text: str, size: float) -> float:
@@ -50,19 +48,6 @@ def wrapped(text: str, width: float, size: float, lines: int) -> list[str]:
     return [*done, shortened(line, width, size)]
 
 
-def spread(centres: Sequence[float], gap: float, low: float, high: float) -> list[float]:
-    """Move labels as little as needed so that neighbours stand `gap` apart, keeping the order."""
-    order = sorted(range(len(centres)), key=lambda i: centres[i])
-    placed = [max(low, min(high, c)) for c in centres]
-    for before, after in zip(order, order[1:], strict=False):
-        placed[after] = max(placed[after], placed[before] + gap)
-    ceiling = high
-    for i in reversed(order):
-        placed[i] = min(placed[i], ceiling)
-        ceiling = placed[i] - gap
-    return placed
-
-
 @cache
 def template(name: str) -> str:
     """Return the text of a file in `faultpath/report/templates`."""
@@ -80,7 +65,8 @@ class Svg:
 
     def __init__(self, width: float, height: float, title: str, description: str = "") -> None:
         self.width, self.height = width, height
-        self.uid = f"fig{next(_fresh)}"
+        content = f"{title}\0{description}\0{width}\0{height}".encode()
+        self.uid = f"fig-{blake2b(content, digest_size=6).hexdigest()}"
         self._title, self._description = title, description
         self._parts: list[str] = []
 
@@ -129,7 +115,7 @@ class Svg:
         self._parts.append(f"<text{_attributes(cls, attributes)}>{inner}</text>")
 
     @contextmanager
-    def group(self, cls: str = "", tip: str | None = None, **attributes: str) -> Iterator[None]:
+    def group(self, cls: str = "", tip: str | None = None, **attributes: str) -> Generator[None]:
         """Put what is drawn inside into one `<g>`."""
         inner = f"<title>{escape(tip)}</title>" if tip else ""
         self._parts.append(f"<g{_attributes(cls, attributes)}>{inner}")

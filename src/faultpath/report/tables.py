@@ -17,7 +17,13 @@ class Line:
 
     label: str
     values: tuple[str, ...] | None
-    numeric: bool = True
+
+
+_OTHERS: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
+    ("time on joint successes (s)", lambda effect: effect.time_s),
+    ("terminal distance (m)", lambda effect: effect.terminal_distance_m),
+    ("least clearance (m)", lambda effect: effect.min_clearance_m),
+)
 
 
 def table_lines(record: DecisionRecord) -> tuple[tuple[str, ...], tuple[Line, ...]]:
@@ -46,11 +52,12 @@ def table_lines(record: DecisionRecord) -> tuple[tuple[str, ...], tuple[Line, ..
         row("Pairs (void)", lambda e: f"{e.pairs} ({e.void_pairs})"),
         Line("Break-even fault frequency", None),
         Line("p* [interval]", tuple(breaks.get(name, "–") for name in names)),
-        Line(f"{asked.repair} minus {asked.baseline}, other outcomes", None),
-        row("Time on joint successes (s)", lambda e: _other(e.time_s)),
-        row("Terminal distance (m)", lambda e: _other(e.terminal_distance_m)),
-        row("Least clearance (m)", lambda e: _other(e.min_clearance_m)),
     ]
+    for label, pick in _OTHERS:
+        estimates = [pick(effects[name]) for name in names]
+        lines.append(Line(f"{asked.repair} minus {asked.baseline}, {label}", None))
+        lines.append(Line("Difference", tuple(map(_value, estimates))))
+        lines.append(Line(_interval_label(record), tuple(map(_range, estimates))))
     return tuple(titles[name] for name in names), tuple(lines)
 
 
@@ -87,7 +94,9 @@ def latex_table(record: DecisionRecord) -> str:
                 rf"\multicolumn{{{columns + 1}}}{{@{{}}l}}{{\emph{{{_tex(line.label)}:}}}} \\",
             ]
         else:
-            body.append(f"{_tex(line.label)} & {' & '.join(map(_tex_value, line.values))} \\\\")
+            body.append(
+                f"{_tex_value(line.label)} & {' & '.join(map(_tex_value, line.values))} \\\\"
+            )
     caption = (
         f"{_tex(asked.repair)} against {_tex(asked.baseline)} on {_tex(asked.system)}, fault "
         f"{_tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {_tex(asked.library)}, "
@@ -125,8 +134,12 @@ def _or_dash(value: float | None) -> str:
     return "–" if value is None else wording.plain(value)
 
 
-def _other(estimate: Estimate | None) -> str:
-    return wording.with_interval(estimate, 2)
+def _value(estimate: Estimate | None) -> str:
+    return "–" if estimate is None else wording.signed(estimate.value, 2)
+
+
+def _range(estimate: Estimate | None) -> str:
+    return (wording.interval(estimate, 2) if estimate is not None else "") or "–"
 
 
 _MARKDOWN = str.maketrans(
@@ -166,6 +179,6 @@ def _tex(text: str) -> str:
 
 
 def _tex_value(text: str) -> str:
-    """Braces keep a leading bracket from being read as the optional argument of `\\\\`."""
-    escaped = _tex(text).replace("< ", r"\textless{} ")
-    return "{" + escaped + "}" if escaped.startswith("[") else escaped
+    # Braces keep a leading bracket or star from being read as an argument of the row end before it.
+    escaped = _tex(text)
+    return "{" + escaped + "}" if escaped.startswith(("[", "*")) else escaped

@@ -2,11 +2,13 @@
 
 How scenes are chosen. A *showing* is one scene with one seed, and its *pattern* is who alone
 succeeded there, path by path. Scenes with a void pair and flights without a track are left out. The
-rest is ranked: first those where the winner changes between paths, then those where one arm alone
-succeeds under the fault that strikes most consumers, then those where one arm alone succeeds on
-any path, then the others; within a rank by the largest difference in terminal distance, then by
-scene index and seed. From that list the first showing of every pattern is taken, then the list
-is filled up in order, never with a scene twice. They are examples, not a sample.
+rest is ranked: first those where the arm that alone succeeds under the shared fault (the one that
+strikes most consumers) is not the one that alone succeeds on another path; then those where the
+winner changes between other paths; then those where one arm alone succeeds under the shared fault;
+then those where one does on any path; then the others. Within a rank the largest difference in
+terminal distance comes first, then the scene index and the seed. From that list the first showing
+of every pattern is taken, then the list is filled up in order, never with a scene twice. They are
+examples, not a sample.
 """
 
 from collections.abc import Iterator, Sequence
@@ -143,11 +145,14 @@ def _widest(record: DecisionRecord) -> str:
 
 def _rank(group: dict[str, Pair], widest: str) -> int:
     signs = {path: pair.sign for path, pair in group.items()}
-    if {1, -1} <= set(signs.values()):
+    shared = signs.get(widest, 0)
+    if shared and -shared in signs.values():
         return 0
-    if signs.get(widest):
+    if {1, -1} <= set(signs.values()):
         return 1
-    return 2 if any(signs.values()) else 3
+    if shared:
+        return 2
+    return 3 if any(signs.values()) else 4
 
 
 def _order(showing: Showing) -> tuple[int, float, int, int]:
@@ -156,8 +161,12 @@ def _order(showing: Showing) -> tuple[int, float, int, int]:
 
 
 def _distance_gap(pair: Pair) -> float:
-    ends = [t.terminal_distance_m for t in (pair.baseline, pair.repair) if t is not None]
-    return abs(ends[0] - ends[1]) if len(ends) == 2 and None not in ends else 0.0  # type: ignore[operator]
+    ends = [
+        trial.terminal_distance_m
+        for trial in (pair.baseline, pair.repair)
+        if trial is not None and trial.terminal_distance_m is not None
+    ]
+    return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
 
 
 def _flown(source: ReportInput, pair: Pair) -> bool:
@@ -169,8 +178,9 @@ def _flown(source: ReportInput, pair: Pair) -> bool:
 
 
 _WHY = (
+    "The winner changes when the fault strikes all taps of its source.",
     "The winner changes with the path of the fault.",
-    "Only one arm succeeds when the fault is shared.",
+    "Only one arm succeeds when the fault strikes all taps of its source.",
     "Only one arm succeeds on at least one path.",
     "Both arms end alike; the distance at the end differs most.",
 )

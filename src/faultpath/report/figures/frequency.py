@@ -1,6 +1,7 @@
 """What the repair is worth at each fault frequency, and where it breaks even."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from faultpath.record.model import PathBreakEven
 from faultpath.report import wording
@@ -55,7 +56,7 @@ def _sides(curve: Sequence[Point]) -> list[tuple[list[Point], str]]:
     """Cut the curve at its zeros, so that each piece can be drawn by who is better on it."""
     pieces: list[tuple[list[Point], str]] = []
     piece = [curve[0]]
-    for (p0, v0), (p1, v1) in zip(curve, curve[1:], strict=False):
+    for (p0, v0), (p1, v1) in pairwise(curve):
         if v0 * v1 < 0:
             zero = (p0 + (p1 - p0) * v0 / (v0 - v1), 0.0)
             pieces.append(([*piece, zero], _side(piece)))

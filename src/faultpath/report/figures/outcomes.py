@@ -6,6 +6,7 @@ from faultpath.record.model import Cell
 from faultpath.report import wording
 from faultpath.report.svg import Svg, shortened, text_width
 
+_WIDTH = 390.0
 _STATUSES = ("success", "crash", "timeout", "failed")
 
 
@@ -17,13 +18,13 @@ def outcome_bars(title: str, cells: Sequence[Cell]) -> str:
     told = "; ".join(
         f"{c.variant}: " + ", ".join(f"{getattr(c, s)} {s}" for s in _STATUSES) for c in cells
     )
-    svg = Svg(430, 34 + 50 * len(cells), f"{title}: how the trials ended", told)
+    svg = Svg(_WIDTH, 34 + 50 * len(cells), f"{title}: how the trials ended", told)
     hatch = svg.hatch("crash", "crash-line")
-    svg.text(0, 14, shortened(title, 425, 13), "head", tip=title)
+    svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
     for i, cell in enumerate(cells):
         y = 38.0 + 50 * i
-        svg.text(0, y, shortened(cell.variant, 220, 12), tip=cell.variant)
-        svg.text(430, y, _beside(cell), "small soft", "end")
+        svg.text(0, y, shortened(cell.variant, _WIDTH - 250, 12), tip=cell.variant)
+        svg.text(_WIDTH, y, _beside(cell), "small soft", "end")
         _bar(svg, cell, y + 6, hatch)
     return svg.render()
 
@@ -36,13 +37,21 @@ def _beside(cell: Cell) -> str:
 
 
 def _bar(svg: Svg, cell: Cell, y: float, hatch: str) -> None:
-    x, scale = 0.0, 430.0 / max(cell.trials, 1)
+    x, scale = 0.0, _WIDTH / max(cell.trials, 1)
     for status in _STATUSES:
         n: int = getattr(cell, status)
         width = n * scale
         if not n:
             continue
-        svg.rect(x, y, width - 1.5, 20, status, 1.5, tip=f"{wording.counted(n, 'trial')}: {status}")
+        svg.rect(
+            x,
+            y,
+            max(width - 1.5, 2),
+            20,
+            status,
+            1.5,
+            tip=f"{wording.counted(n, 'trial')}: {status}",
+        )
         if status == "crash":
             svg.filled(x, y, width - 1.5, 20, hatch)
         _count(svg, f"{n} {status}", str(n), x, width, y, status)

@@ -6,7 +6,7 @@ from itertools import groupby
 from faultpath.report.pairing import WORDS, Kind, Pair
 from faultpath.report.svg import Svg, shortened, text_width
 
-_WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 430.0, 15.0, 2.0, 25
+_WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
 _SHORT = {
     Kind.BOTH: "both",
     Kind.REPAIR_ONLY: "repair only",
@@ -51,17 +51,16 @@ def pair_grid(title: str, pairs: Sequence[Pair]) -> str:
     return svg.render()
 
 
-def pair_key(pairs: Sequence[Pair]) -> str:
-    """Return the legend of the grids, with the kinds that occur in them."""
+def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
+    """Return the key of the grids: a small picture and its word, for each kind that occurs."""
     kinds = [k for k in Kind if k in _ALWAYS or any(p.kind is k for p in pairs)]
-    rooms = [_SIDE + 24 + text_width(_SHORT[kind], 12) for kind in kinds]
-    svg = Svg(sum(rooms), 20, "Key of the grid of pairs", "; ".join(WORDS[k] for k in kinds))
-    x = 0.0
-    for kind, room in zip(kinds, rooms, strict=True):
-        svg.rect(x, 2, _SIDE, _SIDE, "void-cell" if kind is Kind.VOID else "cell", 2)
-        _glyph(svg, kind, x + _SIDE / 2, 2 + _SIDE / 2)
-        svg.text(x + _SIDE + 6, 14, _SHORT[kind])
-        x += room
+    return [(_sign(kind), _SHORT[kind]) for kind in kinds]
+
+
+def _sign(kind: Kind) -> str:
+    svg = Svg(_SIDE, _SIDE, WORDS[kind])
+    svg.rect(0.5, 0.5, _SIDE - 1, _SIDE - 1, "void-cell" if kind is Kind.VOID else "cell", 2)
+    _glyph(svg, kind, _SIDE / 2, _SIDE / 2)
     return svg.render()
 
 

@@ -47,7 +47,7 @@ const Draw = {
     const taken = avoid.map(([x, y]) => [x - 3, y - 3, x + 3, y + 3]);
     return (text, [x, y], cls = "") => {
       const room = text.length * 6.4 + 4;
-      const spots = [[9, 4], [-9 - room, 4], [-room / 2, -10], [-room / 2, 20], [9, -10], [9, 20], [-9 - room, -10], [-9 - room, 20]];
+      const spots = [[9, 4], [-room / 2, -10], [-room / 2, 20], [9, -8], [9, 18], [-9 - room, 4], [-9 - room, -8], [-9 - room, 18]];
       const box = ([dx, dy]) => [x + dx, y + dy - 12, x + dx + room, y + dy + 4];
       const free = (b) => b[0] > 2 && b[2] < w - 2 && b[1] > 2 && b[3] < h - 2
         && !taken.some((t) => b[0] < t[2] && t[0] < b[2] && b[1] < t[3] && t[1] < b[3]);

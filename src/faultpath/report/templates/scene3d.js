@@ -72,6 +72,7 @@ class Scene3D {
     const view = this.frame();
     this.ground(view);
     if (this.content.scene.plan) this.solids(view);
+    if (this.content.scene.plan) this.ends(view);
     this.flights(view);
   }
 
@@ -108,8 +109,19 @@ class Scene3D {
     }
   }
 
+  // Start and goal; the ring has the radius within which the goal counts as reached.
+  ends({ project }) {
+    const { start, goal } = this.content.scene.plan;
+    const ring = Array.from({ length: 25 }, (_, i) => project([goal[0] + 0.5 * Math.cos((i * Math.PI) / 12), goal[1] + 0.5 * Math.sin((i * Math.PI) / 12), goal[2]]));
+    const [from, to] = [project(start), project(goal)];
+    this.line(ring, this.ink("ink"), 1.5);
+    this.dot(from, 4, this.ink("ink"));
+    this.word("start", from, from[0] < to[0] ? -9 : 9);
+    this.word("goal", to, (from[0] < to[0] ? 1 : -1) * (9 + Math.max(...ring.map((p) => Math.abs(p[0] - to[0])))));
+  }
+
   flights({ low, project }) {
-    const { scene, pair, step, data } = this.content;
+    const { pair, step } = this.content;
     const floor = Math.min(0, low[2]);
     for (const arm of Flight.arms) {
       const track = pair[arm].track_cm, n = Flight.steps(track), now = Math.min(step, n - 1);
@@ -122,14 +134,6 @@ class Scene3D {
       this.line([here, [here[0], here[1], floor]].map(project), this.ink(arm), 0.8);
       this.end(pair[arm].status, points[n - 1], this.ink(arm));
       if (step < n - 1) this.dot(points[now], 5, this.ink(arm));
-    }
-    if (scene.plan) {
-      this.dot(project(scene.plan.start), 4, this.ink("ink"));
-      this.word("start", project(scene.plan.start));
-      const [x, y] = project(scene.plan.goal);
-      this.line([[x - 5, y], [x + 5, y]], this.ink("ink"), 1.5);
-      this.line([[x, y - 5], [x, y + 5]], this.ink("ink"), 1.5);
-      this.word("goal", [x, y]);
     }
     if (pair.parting_step !== null) {
       const [x, y] = project(Flight.point(pair.repair.track_cm, pair.parting_step));
@@ -160,9 +164,11 @@ class Scene3D {
     }
   }
 
-  word(text, [x, y]) {
+  // Writes beside a point: to its right where `aside` is positive, else to its left.
+  word(text, [x, y], aside) {
     this.pen.font = `12px ${getComputedStyle(document.body).fontFamily}`;
-    this.pen.lineWidth = 3; this.pen.strokeStyle = this.ink("wash"); this.pen.strokeText(text, x + 9, y + 4);
-    this.pen.fillStyle = this.ink("ink"); this.pen.fillText(text, x + 9, y + 4);
+    this.pen.textAlign = aside > 0 ? "left" : "right";
+    this.pen.lineWidth = 3; this.pen.strokeStyle = this.ink("wash"); this.pen.strokeText(text, x + aside, y + 4);
+    this.pen.fillStyle = this.ink("ink"); this.pen.fillText(text, x + aside, y + 4);
   }
 }

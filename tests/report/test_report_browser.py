@@ -1,0 +1,168 @@
+"""The page in a real browser, without a network: it draws, answers and stays quiet.
+
+Skipped only where there is no Chromium and `CI` is not set.
+"""
+
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from faultpath.report import ReportInput, wording, write_report
+
+pytestmark = pytest.mark.browser
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    if CHROMIUM is None:
+        if os.environ.get("CI"):
+            pytest.fail("there is no Chromium, and CI must run the browser test")
+        pytest.skip("there is no Chromium on this machine")
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        yield running
+        running.close()
+
+
+@pytest.fixture(scope="module")
+def address(three_seeds: ReportInput, tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("report")
+    return write_report(three_seeds, folder)[0].as_uri()
+
+
+@pytest.fixture(params=[(1280, "light"), (390, "dark")], ids=["desktop", "telephone"])
+def page(request: pytest.FixtureRequest, browser: Browser, address: str) -> Iterator[Page]:
+    width, scheme = request.param
+    context = browser.new_context(
+        viewport={"width": width, "height": 900},
+        color_scheme=scheme,
+        offline=True,
+        reduced_motion="reduce",
+    )
+    opened = context.new_page()
+    troubles: list[str] = []
+    opened.on("console", lambda message: troubles.append(message.text))
+    opened.on("pageerror", lambda error: troubles.append(str(error)))
+    opened.on("dialog", lambda dialog: troubles.append(f"dialog: {dialog.message}"))
+    opened.on(
+        "request", lambda sent: None if sent.url.startswith(address) else troubles.append(sent.url)
+    )
+    opened.goto(address)
+    yield opened
+    context.close()
+    assert [trouble for trouble in troubles if not trouble.startswith("data:,")] == []
+
+
+def test_pictures_have_a_size_and_nothing_sticks_out(page: Page) -> None:
+    sizes = page.evaluate(
+        """() => [...document.querySelectorAll("svg.fig, #viewer svg, canvas")]
+          .filter((e) => getComputedStyle(e.closest("figure, li") ?? e).display !== "none")
+          .map((e) => e.getBoundingClientRect()).map((r) => [r.width, r.height])"""
+    )
+    assert len(sizes) > 15
+    assert all(width > 8 and height > 8 for width, height in sizes)
+    sideways = page.evaluate(
+        "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+    )
+    assert sideways <= 0
+
+
+def test_key_numbers_are_visible(page: Page, three_seeds: ReportInput) -> None:
+    record = three_seeds.record
+    assert page.get_by_role("heading", level=1).inner_text() == record.verdict.headline
+    tiles = page.locator(".tiles li")
+    for i, effect in enumerate(record.effects):
+        text = tiles.nth(i).inner_text()
+        assert wording.signed(effect.success.value) in text
+        assert wording.interval(effect.success) in text
+    assert page.get_by_text("1 of 960 pairs is void.").is_visible()
+    for item in record.break_even:
+        words = wording.break_even_sentence(item.result)
+        assert page.locator("svg text", has_text=words).first.is_visible()
+
+
+def test_forest_plot_fits_the_screen(page: Page) -> None:
+    visible = [page.locator(which).is_visible() for which in (".for-wide", ".for-narrow")]
+    wide = (page.viewport_size or {"width": 0})["width"] > 800
+    assert visible == [wide, not wide]
+
+
+def test_selectors_change_the_flights(page: Page) -> None:
+    plan = page.locator("#viewer-plan")
+    before = plan.inner_html()
+    page.locator("#viewer-scene").select_option(index=1)
+    second = plan.inner_html()
+    assert second != before
+    page.locator("#viewer-paths button").first.click()
+    assert plan.inner_html() != second
+    assert page.locator("#viewer-paths button").first.get_attribute("aria-pressed") == "true"
+    assert "gru-dcc" in page.locator("#viewer-ends").inner_text()
+
+
+def test_time_moves_the_vehicles(page: Page) -> None:
+    before = page.locator("#viewer-plan").inner_html()
+    page.locator("#viewer-time").fill("10")
+    assert page.locator("#viewer-clock").inner_text() == "0.50 s"
+    assert page.locator("#viewer-plan").inner_html() != before
+    assert page.locator("#viewer-plan .v-dot").count() == 2
+    page.locator("#viewer-play").click()
+    page.wait_for_function("document.getElementById('viewer-clock').textContent !== '0.50 s'")
+    page.locator("#viewer-play").click()
+
+
+def test_canvas_turns_by_drag_and_by_key(page: Page) -> None:
+    canvas = page.locator("#viewer-3d")
+    canvas.scroll_into_view_if_needed()
+    pixels = "document.getElementById('viewer-3d').toDataURL()"
+    view, image = canvas.get_attribute("data-view"), page.evaluate(pixels)
+    box = canvas.bounding_box()
+    assert box is not None
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y + 10, steps=4)
+    page.mouse.up()
+    turned = canvas.get_attribute("data-view")
+    assert turned != view
+    assert page.evaluate(pixels) != image
+    canvas.focus()
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("+")
+    assert canvas.get_attribute("data-view") != turned
+
+
+def test_struck_taps_can_be_shown_one_path_at_a_time(page: Page) -> None:
+    hit = page.locator("[data-interface] .tap.hit")
+    everything = hit.count()
+    page.locator("[data-struck-choice] button").nth(2).click()
+    assert 0 < hit.count() < everything
+    page.locator("[data-struck-choice] button").first.click()
+    assert hit.count() == everything
+
+
+def test_a_scene_lights_up_in_every_grid(page: Page, three_seeds: ReportInput) -> None:
+    cell = page.locator("[data-pairs] .pair").first
+    cell.scroll_into_view_if_needed()
+    cell.hover()
+    record = three_seeds.record
+    expected = len(record.paths) * len(record.question.seeds)
+    assert page.locator("[data-pairs] .pair.lit").count() == expected
+
+
+def test_page_prints(page: Page, tmp_path: Path) -> None:
+    printed = page.pdf(path=tmp_path / "report.pdf", format="A4")
+    assert len(printed) > 20_000

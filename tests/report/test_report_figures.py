@@ -1,0 +1,144 @@
+"""Pictures: well-formed, nothing overlaps, and what is marked is what was struck."""
+
+from itertools import combinations, pairwise
+from xml.etree import ElementTree
+
+import pytest
+
+from faultpath.interface import Interface
+from faultpath.report import ReportInput, draw_interface, figures, struck_paths, wording
+from faultpath.report.interface_layout import CHANNEL_HEIGHT, SOURCE_HEIGHT, lay_out
+from faultpath.report.pairing import read_pairs
+from faultpath.report.scale import Axis, covering
+from faultpath.report.svg import Svg, number, shortened, text_width, wrapped
+from faultpath.statistics import BreakEven, Estimate
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def _apart(centres: list[float], least: float) -> bool:
+    ordered = sorted(centres)
+    return all(b - a >= least - 1e-9 for a, b in pairwise(ordered))
+
+
+def test_nothing_in_the_interface_overlaps(drawn_interface: Interface) -> None:
+    layout = lay_out(drawn_interface)
+    assert _apart(list(layout.sources.values()), SOURCE_HEIGHT + 4)
+    assert _apart(list(layout.channels.values()), CHANNEL_HEIGHT + 4)
+    assert _apart(list(layout.taps.values()), 16)
+    for a, b in combinations(layout.modules, 2):
+        assert a.bottom < b.top or b.bottom < a.top
+    assert max(m.bottom for m in layout.modules) <= layout.bottom
+
+
+def test_every_read_is_one_tap(drawn_interface: Interface) -> None:
+    reads = {(c.name, consumer) for c in drawn_interface.channels for consumer in c.consumers}
+    assert set(lay_out(drawn_interface).taps) == reads
+
+
+def test_struck_taps_follow_the_fault(one_seed: ReportInput) -> None:
+    struck = {p.name: p.taps for p in struck_paths(one_seed.interface, one_seed.record)}
+    assert set(struck) == {"predictor", "reconstruction", "shared"}
+    head = {("mass", "reconstruction.head"), ("thrust_scale", "reconstruction.head")}
+    assert struck["reconstruction"] == head
+    # The wind map also reads the wind, which the fault on the calibration leaves alone.
+    assert ("wind", "predictor.wind_map") not in struck["predictor"]
+    assert struck["shared"] == struck["predictor"] | struck["reconstruction"]
+
+
+def test_standalone_drawing_is_xml_with_every_name(one_seed: ReportInput) -> None:
+    struck = struck_paths(one_seed.interface, one_seed.record)
+    root = ElementTree.fromstring(draw_interface(one_seed.interface, struck, standalone=True))
+    words = [t.text or "" for t in root.iter(f"{SVG}text")]
+    for source in one_seed.interface.sources:
+        assert source.name in words
+    for channel in one_seed.interface.channels:
+        assert channel.name in words
+    assert root.find(f"{SVG}style") is not None
+    hits = [p for p in root.iter(f"{SVG}polygon") if p.get("class") == "tap hit"]
+    assert len(hits) == len({tap for path in struck for tap in path.taps}) + len(struck)
+
+
+def test_labels_of_the_drawing_stay_inside(drawn_interface: Interface) -> None:
+    root = ElementTree.fromstring(draw_interface(drawn_interface))
+    width = float(root.get("width", "0"))
+    for text in root.iter(f"{SVG}text"):
+        if text.get("text-anchor") is None:
+            start = float(text.get("x", "0"))
+            assert start + 0.9 * text_width(text.text or "", 11) <= width
+
+
+def test_empty_interface_can_be_drawn() -> None:
+    ElementTree.fromstring(draw_interface(Interface(name="empty", sources=(), channels=())))
+
+
+def test_all_figures_are_xml(one_seed: ReportInput) -> None:
+    record = one_seed.record
+    pairs = read_pairs(one_seed.outcomes, record.question)
+    rows = figures.effect_rows(record)
+    drawn = [
+        figures.forest(rows, "a<b", "c&d"),
+        figures.forest(rows, "a<b", "c&d", narrow=True),
+        figures.pair_grid('"<title>"', pairs),
+        figures.pair_grid("nothing", ()),
+        figures.outcome_bars("<x>", record.cells),
+        *(sign for sign, _ in figures.pair_key(pairs)),
+        *(
+            figures.frequency_panel(b, "<&>", figures.shared_range(record.break_even))
+            for b in record.break_even
+        ),
+    ]
+    for picture in drawn:
+        ElementTree.fromstring(picture)
+
+
+def test_less_can_be_better() -> None:
+    e = Estimate(
+        value=0.9, low=0.5, high=1.4, unit="m", method="m", estimand="e", n_scenes=9, n_seeds=1
+    )
+    more = figures.interval_panel("distance", "m", [("shared", e), ("none", None)], good=-1)
+    assert 'class="dot baseline"' in more
+    assert 'class="dot repair"' in figures.interval_panel("x", "m", [("shared", e)], good=1)
+
+
+def test_axes_cover_and_ticks_are_round() -> None:
+    axis = covering([-13.9, 19.0]).at(0.0, 330.0)
+    assert axis.low < -13.9
+    assert axis.high > 19.0
+    assert [t for t in axis.ticks(5) if t % 10] == []
+    assert Axis(0, 1, 10, 20)(0.5) == 15
+    assert covering([]).low < 0 < covering([]).high
+
+
+@pytest.mark.parametrize("value", [0.0, -0.001, 0.5, -0.5, 10, 100.25, -7])
+def test_coordinates_survive_shortening(value: float) -> None:
+    assert float(number(value)) == pytest.approx(value, abs=0.005)
+
+
+def test_long_labels_are_cut_or_wrapped() -> None:
+    assert shortened("short", 100, 12) == "short"
+    cut = shortened("a_very_long_name_indeed", 60, 12)
+    assert cut.endswith("…")
+    assert text_width(cut, 12) <= 60
+    assert len(wrapped("one two three four five six", 40, 12, 2)) == 2
+
+
+def test_text_is_escaped() -> None:
+    svg = Svg(10, 10, "<t>", "&")
+    svg.text(0, 0, "<script>", tip='"')
+    with svg.group("g", "<tip>", data_scene='"x"'):
+        svg.rect(0, 0, 1, 1, '"')
+    assert "<script>" not in svg.render()
+    ElementTree.fromstring(svg.render())
+
+
+def test_words_of_numbers() -> None:
+    assert wording.signed(-9.66) == "−9.7"
+    assert wording.signed(-0.01) == "0.0"
+    assert wording.plain(-0.01) == "0.0"
+    assert wording.p_value(0.0004) == "< 0.001"
+    assert wording.typeset("from -6.3 pp [-13.9, 1.3] at gru-2, 1-3") == (
+        "from −6.3 pp [−13.9, 1.3] at gru-2, 1-3"
+    )
+    never = BreakEven(p_star=None, direction="never", words="", method="", estimand="")
+    assert wording.break_even(never) == "no crossing"

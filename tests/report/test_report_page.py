@@ -1,0 +1,224 @@
+"""The page: whole, closed to the network, escaped, and with the record's own numbers."""
+
+import json
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.report import ReportInput, Traces, report_page
+from faultpath.report.pairing import Kind, read_pairs
+
+MINUS = "−"
+FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
+
+
+class Page(HTMLParser):
+    """Tags with attributes, cells of tables, and the text that a reader sees."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.rows: list[list[str]] = []
+        self.words: list[str] = []
+        self._inside: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+        if tag in ("script", "style", "title"):
+            self._inside.append(tag)
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+            self._inside.append("cell")
+
+    def handle_endtag(self, tag: str) -> None:
+        if tag in ("script", "style", "title", "td", "th"):
+            self._inside.pop()
+
+    def handle_data(self, data: str) -> None:
+        if self._inside and self._inside[-1] == "cell":
+            self.rows[-1][-1] += data
+        if not self._inside or self._inside[-1] == "cell":
+            self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return re.sub(r"\s+", " ", " ".join(self.words))
+
+
+@pytest.fixture(scope="module", params=[(0,), (0, 1, 2)], ids=["one seed", "three seeds"])
+def source(request: pytest.FixtureRequest, make: Callable[..., ReportInput]) -> ReportInput:
+    return make(seeds=request.param)
+
+
+@pytest.fixture(scope="module")
+def html(source: ReportInput) -> str:
+    return report_page(source)
+
+
+@pytest.fixture(scope="module")
+def page(html: str) -> Page:
+    return Page(html)
+
+
+def signed(value: float, digits: int = 1) -> str:
+    return f"{value:+.{digits}f}".replace("-", MINUS)
+
+
+def plain(value: float, digits: int = 1) -> str:
+    return f"{value:.{digits}f}".replace("-", MINUS)
+
+
+def test_page_loads_nothing(html: str, page: Page) -> None:
+    for _, attributes in page.tags:
+        assert attributes.get("src") is None
+        target = attributes.get("href") or "#"
+        assert target.startswith(("#", "data:,"))
+    assert set(re.findall(r"https?://[^\s\"'<>)]+", html)) <= {FIGURE_NAMESPACE}
+    assert "@import" not in html
+    assert set(re.findall(r"url\(([^)]*)\)", html)) <= set(re.findall(r"url\((#fig-[^)]*)\)", html))
+
+
+def test_page_is_small(html: str) -> None:
+    assert len(html.encode()) < 3_000_000
+
+
+def test_page_is_the_same_every_time(source: ReportInput, html: str) -> None:
+    assert report_page(source) == html
+
+
+def test_names_of_users_are_escaped(html: str, page: Page) -> None:
+    assert "<script>alert" not in html
+    assert "&lt;script&gt;alert" in html
+    assert "<b>no</b>" not in html
+    assert [tag for tag, _ in page.tags].count("script") == 2
+
+
+def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page: Page) -> None:
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert all(b - a <= 1 for a, b in pairwise(levels))
+    assert source.record.verdict.headline in page.text
+    assert page.text.index(source.record.verdict.headline) < page.text.index(
+        "What the fault strikes"
+    )
+
+
+def test_ids_are_unique_and_links_lead_somewhere(page: Page) -> None:
+    ids = [a["id"] for _, a in page.tags if a.get("id")]
+    assert len(ids) == len(set(ids))
+    links = [a["href"] for tag, a in page.tags if tag == "a" and a.get("href")]
+    assert {link.removeprefix("#") for link in links if link} <= set(ids)
+
+
+def test_every_figure_is_named(page: Page) -> None:
+    figures = [a for tag, a in page.tags if tag == "svg"]
+    assert len(figures) > 15
+    ids = {a.get("id") for _, a in page.tags}
+    for attributes in figures:
+        assert set((attributes["aria-labelledby"] or "").split()) <= ids
+
+
+def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) -> None:
+    record = source.record
+    titles = {path.title: path.name for path in record.paths}
+    rows = {titles[row[0]]: row for row in page.rows if row[0] in titles}
+    breaks = {b.path: b.result for b in record.break_even}
+    rates = {(c.path, c.variant): plain(c.success_percent) for c in record.cells}
+    for effect in record.effects:
+        row = rows[effect.path]
+        low, high = effect.success.interval or (0.0, 0.0)
+        assert row[1] == rates[effect.path, "gru"]
+        assert row[2] == rates[effect.path, "gru-dcc"]
+        assert row[3] == signed(effect.success.value)
+        assert row[4] == f"[{plain(low)}, {plain(high)}]"
+        assert row[5] == "/".join(
+            f"{w}:{n}" for w, n in zip(effect.wins, effect.losses, strict=True)
+        )
+        assert row[6] == ("< 0.001" if effect.p_value < 0.001 else f"{effect.p_value:.3f}")
+        assert row[7] == plain(effect.minimum_detectable_pp or 0.0)
+        assert row[8:10] == [str(effect.pairs), str(effect.void_pairs)]
+        result = breaks.get(effect.path)
+        if result is None:
+            assert row[10] == "–"
+        elif result.p_star is None:
+            assert row[10] == "no crossing"
+        else:
+            ends = f"[{100 * (result.low or 0):.0f}, {100 * (result.high or 0):.0f}]"
+            assert row[10] == f"{100 * result.p_star:.0f} % {ends}"
+
+
+def test_secondary_outcomes_and_cells_are_shown(source: ReportInput, html: str) -> None:
+    for effect in source.record.effects:
+        for estimate in (effect.time_s, effect.terminal_distance_m, effect.min_clearance_m):
+            assert estimate is not None
+            low, high = estimate.interval or (0.0, 0.0)
+            value = signed(estimate.value, 2)
+            value = value[1:] if float(f"{estimate.value:.2f}") == 0 else value
+            assert f"{value} [{_zero(plain(low, 2))}, {_zero(plain(high, 2))}]" in html
+    for cell in source.record.cells:
+        assert f"median time of successes {cell.median_time_s:.2f} s" in html
+        assert f"{cell.variant}: {cell.success} success, {cell.crash} crash" in html
+
+
+def _zero(text: str) -> str:
+    return text.removeprefix(MINUS) if float(text.replace(MINUS, "-")) == 0 else text
+
+
+def test_fixture_has_a_reversal_a_path_without_crossing_and_a_void_pair(
+    source: ReportInput, page: Page
+) -> None:
+    record = source.record
+    assert any(reversal.reversed for reversal in record.reversals)
+    assert any(b.result.direction == "never" for b in record.break_even)
+    n_pairs = len(record.paths) * record.question.n_scenes * len(record.question.seeds)
+    assert f"1 of {n_pairs} pairs is void." in page.text
+    assert "doorways-017" in page.text
+
+
+def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
+    pairs = read_pairs(source.outcomes, source.record.question)
+    for effect in source.record.effects:
+        for seed, won, lost in zip(
+            source.record.question.seeds, effect.wins, effect.losses, strict=True
+        ):
+            kinds = [p.kind for p in pairs if (p.path, p.seed) == (effect.path, seed)]
+            assert kinds.count(Kind.REPAIR_ONLY) == won
+            assert kinds.count(Kind.BASELINE_ONLY) == lost
+        kinds = [p.kind for p in pairs if p.path == effect.path]
+        assert kinds.count(Kind.VOID) == effect.void_pairs
+        assert len(kinds) - kinds.count(Kind.VOID) - kinds.count(Kind.LEFT_OUT) == effect.pairs
+
+
+def test_viewer_data_cannot_close_its_element(html: str) -> None:
+    found = re.search(r'id="viewer-data">(.*?)</script>', html, re.DOTALL)
+    assert found is not None
+    assert "<" not in found[1]
+    data = json.loads(found[1])
+    assert 1 <= len(data["scenes"]) <= 6
+
+
+def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -> None:
+    source = make(void=False, n_scenes=60)
+    bare = replace(source, traces=Traces({}, dt_s=0.05), plans={})
+    page = Page(report_page(bare))
+    assert "Some flights" not in page.text
+    assert "A void pair" not in page.text
+
+
+def test_flights_without_floor_plans(make: Callable[..., ReportInput]) -> None:
+    source = replace(make(n_scenes=60), plans={})
+    assert '"plan": null' in report_page(source)
+
+
+def test_outcomes_without_a_column_are_refused(one_seed: ReportInput) -> None:
+    with pytest.raises(UserError, match="lacks the column 'topology'"):
+        replace(one_seed, outcomes=one_seed.outcomes.drop_columns(["topology"]))

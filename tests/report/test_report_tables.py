@@ -1,0 +1,142 @@
+"""LaTeX, Markdown and terminal tables: escaped, complete, and with the record's numbers."""
+
+import io
+import re
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from faultpath.errors import UserError
+from faultpath.record import DecisionRecord
+from faultpath.report import ReportInput, decision, latex_table, markdown_table, write_report
+
+
+def _expected(record: DecisionRecord) -> dict[str, list[str]]:
+    effects = record.effects
+    breaks = {b.path: b.result for b in record.break_even}
+
+    def frequency(path: str) -> str:
+        if path not in breaks:
+            return "-"
+        result = breaks[path]
+        if result.p_star is None:
+            return "no crossing"
+        return (
+            f"{100 * result.p_star:.0f} % "
+            f"[{100 * (result.low or 0):.0f}, {100 * (result.high or 0):.0f}]"
+        )
+
+    return {
+        "gru": [f"{c.success_percent:.1f}" for c in record.cells if c.variant == "gru"],
+        "gru-dcc": [f"{c.success_percent:.1f}" for c in record.cells if c.variant == "gru-dcc"],
+        "Difference": [f"{e.success.value:+.1f}" for e in effects],
+        "95% interval": [f"[{e.success.low:.1f}, {e.success.high:.1f}]" for e in effects],
+        "Wins:losses": [
+            "/".join(f"{w}:{n}" for w, n in zip(e.wins, e.losses, strict=True)) for e in effects
+        ],
+        "p": ["< 0.001" if e.p_value < 0.001 else f"{e.p_value:.3f}" for e in effects],
+        "Least detectable effect": [f"{e.minimum_detectable_pp:.1f}" for e in effects],
+        "Pairs (void)": [f"{e.pairs} ({e.void_pairs})" for e in effects],
+        "p* [interval]": [frequency(e.path) for e in effects],
+    }
+
+
+def _rows(lines: list[list[str]]) -> dict[str, list[str]]:
+    """Keep the first row of each label: the rows on success."""
+    rows: dict[str, list[str]] = {}
+    for line in lines:
+        rows.setdefault(line[0], line[1:])
+    return rows
+
+
+@pytest.fixture(params=["one_seed", "three_seeds"])
+def source(request: pytest.FixtureRequest) -> ReportInput:
+    return request.getfixturevalue(request.param)
+
+
+def test_markdown_has_the_numbers_of_the_record(source: ReportInput) -> None:
+    text = markdown_table(source.record)
+    for escaped, plain in (("\\", ""), ("&lt;", "<"), ("&gt;", ">"), ("−", "-"), ("–", "-")):
+        text = text.replace(escaped, plain)
+    table = [line.strip("| ").split(" | ") for line in text.splitlines() if line.startswith("|")]
+    rows = _rows(table)
+    for label, values in _expected(source.record).items():
+        assert rows[label] == values
+
+
+def test_latex_has_the_numbers_of_the_record(source: ReportInput) -> None:
+    text = latex_table(source.record)
+    swaps = {r"$p^\star$": "p*", "$-$": "-", "--": "-", r"\textless{}": "<", r"\%": "%"}
+    swaps |= {"{[": "[", "]}": "]"}
+    for mark, plain in swaps.items():
+        text = text.replace(mark, plain)
+    table = [
+        line.removesuffix(" \\\\").split(" & ")
+        for line in text.splitlines()
+        if line.endswith("\\\\")
+    ]
+    rows = _rows(table)
+    for label, values in _expected(source.record).items():
+        assert rows[label] == values
+
+
+def test_latex_is_well_formed(source: ReportInput) -> None:
+    text = latex_table(source.record)
+    assert text.isascii()
+    unescaped = re.sub(r"\\[{}&%$#_]", "", text)
+    assert unescaped.count("{") == unescaped.count("}")
+    assert unescaped.count("$") % 2 == 0
+    columns = len(source.record.paths) + 1
+    for line in unescaped.splitlines():
+        if line.endswith("\\\\") and "multicolumn" not in line:
+            assert line.count("&") == columns - 1
+    assert re.findall(r"\\begin\{(\w+)\}", text) == re.findall(r"\\end\{(\w+)\}", text)[::-1]
+
+
+def test_names_are_escaped_in_latex_and_markdown(one_seed: ReportInput) -> None:
+    tex, md = latex_table(one_seed.record), markdown_table(one_seed.record)
+    assert r"100 \% of \_it\_" in tex
+    assert r"\textless{}script\textgreater{}" in tex
+    assert "<script>" not in md
+    assert r"100 % of \_it\_" in md
+
+
+def test_strange_names_do_not_break_latex(one_seed: ReportInput) -> None:
+    question = one_seed.record.question.model_copy(update={"library": "[a] ~^\\{}\n\n 中"})
+    text = latex_table(one_seed.record.model_copy(update={"question": question}))
+    assert r"[a] \textasciitilde{}\textasciicircum{}\textbackslash{}\{\}" in text
+    assert "[U+4E2D]" in text
+
+
+def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportInput) -> None:
+    record = one_seed.record
+    paths = tuple(
+        p.model_copy(update={"title": "[red]Shared[/]"}) if p.name == "shared" else p
+        for p in record.paths
+    )
+    console = Console(file=io.StringIO(), width=160, force_terminal=False)
+    console.print(decision(record.model_copy(update={"paths": paths})))
+    text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined]
+    assert "[red]Shared[/]" in text
+    for effect in record.effects:
+        assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
+    for cell in record.cells:
+        assert f"{cell.success_percent:.1f}" in text
+
+
+def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
+    folder = tmp_path / "deep" / "report"
+    written = write_report(one_seed, folder)
+    assert [p.name for p in written] == ["report.html", "table.tex", "table.md"]
+    assert sorted(p.name for p in folder.iterdir()) == sorted(p.name for p in written)
+    before = written[0].read_bytes()
+    write_report(one_seed, folder)
+    assert written[0].read_bytes() == before
+    assert len(list(folder.iterdir())) == 3
+
+
+def test_a_folder_that_is_a_file_is_a_users_mistake(one_seed: ReportInput, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(UserError, match=r"cannot write report\.html"):
+        write_report(one_seed, tmp_path / "taken")

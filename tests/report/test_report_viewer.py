@@ -1,0 +1,79 @@
+"""Which scenes are shown in detail, and where two flights part."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from faultpath.report import ReportInput
+from faultpath.report.pairing import Pair, Trial, read_pairs
+from faultpath.report.viewer import choose, parting_step, viewer_data
+
+
+def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
+    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    chosen = choose(one_seed, pairs)
+    assert len(chosen) == 6
+    assert [s.rank for s in chosen] == sorted(s.rank for s in chosen)
+    first = chosen[0]
+    shared = first.pairs["shared"].sign
+    assert shared != 0
+    assert -shared in first.pattern
+
+
+def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> None:
+    pairs = read_pairs(three_seeds.outcomes, three_seeds.record.question)
+    chosen = choose(three_seeds, pairs)
+    scenes = [s.any_pair.scene for s in chosen]
+    assert len(set(scenes)) == len(scenes) == 6
+    assert [s.any_pair.scene for s in choose(three_seeds, pairs[::-1])] == scenes
+    assert "doorways-017" not in scenes
+
+
+def test_patterns_differ_where_they_can(one_seed: ReportInput) -> None:
+    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    patterns = [s.pattern for s in choose(one_seed, pairs)]
+    assert len(set(patterns)) == len(patterns)
+
+
+def test_without_disagreement_the_distance_decides(one_seed: ReportInput) -> None:
+    pairs = [_concordant(p) for p in read_pairs(one_seed.outcomes, one_seed.record.question)]
+    chosen = choose(one_seed, pairs)
+    assert {s.rank for s in chosen} == {4}
+    gaps = [s.gap_m for s in chosen]
+    assert gaps == sorted(gaps, reverse=True)
+
+
+def _concordant(pair: Pair) -> Pair:
+    def failing(trial: Trial | None) -> Trial | None:
+        return None if trial is None else replace(trial, status="crash")
+
+    if pair.void_reason is not None:
+        return pair
+    return replace(pair, baseline=failing(pair.baseline), repair=failing(pair.repair))
+
+
+def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
+    source = make(n_scenes=4, void=False)
+    pairs = read_pairs(source.outcomes, source.record.question)
+    assert len(choose(source, pairs)) == 4
+
+
+def test_tracks_are_kept_to_the_centimetre(one_seed: ReportInput) -> None:
+    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    chosen = choose(one_seed, pairs, count=1)
+    shown = viewer_data(one_seed, chosen)["scenes"][0]
+    pair = shown["pairs"][0]
+    flown = one_seed.traces["gru", pair["path"], shown["seed"], shown["scene"]]
+    kept = np.array(pair["baseline"]["track_cm"]).reshape(-1, 3) / 100
+    assert np.abs(kept - flown).max() < 0.0051
+
+
+def test_parting_is_the_first_step_beyond_half_a_metre() -> None:
+    a = np.zeros((10, 3), dtype=np.float32)
+    b = a.copy()
+    b[4, 0] = 0.5
+    b[6:, 0] = 0.51
+    assert parting_step(a, b) == 6
+    assert parting_step(a, b[:6]) is None
+    assert parting_step(a, a) is None
