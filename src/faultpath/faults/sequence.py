@@ -16,8 +16,8 @@ class Sequence(Intervention):
     """Apply interventions in turn: each acts on what the one before delivers.
 
     Each part begins at the onset, so a delay after a scale still delivers what came unscaled
-    before it, just as two faults with one window do. Parts draw independently of each other. Interventions that follow each other in time are
-    several faults, each with its window.
+    before it, just as two faults with one window do. Parts draw independently of each other.
+    Interventions that follow each other in time are several faults, each with its window.
     """
 
     kind: Literal["sequence"] = "sequence"
