@@ -25,6 +25,7 @@ class RateLoop:
         self._gain = column(RATE_GAIN_PER_S, like)
         self._roll, self._pitch = per_acceleration[0], per_acceleration[1]
         self._yaw = per_acceleration[2, 0]
+        self._ceiling = column((MOTOR_THRUST_MAX_N,), like)
         self._spin = column(WRENCH_PER_THRUST[3], like).sign()
 
     def target(self, rate_command: Tensor) -> Tensor:
@@ -44,6 +45,6 @@ class RateLoop:
         roll, pitch, yaw = wanted.unbind(0)
         thrusts = torch.addcmul(level, self._roll, roll).addcmul_(self._pitch, pitch)
         thrusts = thrusts.clamp_(0.0, MOTOR_THRUST_MAX_N)
-        room = torch.minimum(thrusts, MOTOR_THRUST_MAX_N - thrusts).amin(0)
+        room = torch.minimum(thrusts, self._ceiling - thrusts).amin(0)
         stroke = torch.clamp(self._yaw * yaw, -room, room)
         return thrusts.addcmul_(self._spin, stroke)

@@ -1,0 +1,196 @@
+"""What flying vehicles do: hover, saturate, scale, and nothing that their neighbours change."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.state import State, padded_lanes
+from faultpath.quadrotor.vehicle import (
+    COLLECTIVE_MAX_N,
+    GRAVITY_MPS2,
+    MOTOR_THRUST_MAX_N,
+    RATE_GAIN_PER_S,
+    Vehicle,
+    VehicleParameters,
+    draw,
+)
+
+F64 = torch.float64
+
+
+def drawn_vehicles(count: int) -> Vehicle:
+    return Vehicle.stack([draw(np.random.default_rng(seed)) for seed in range(count)])
+
+
+def hovering(count: int) -> State:
+    return State.hover(torch.zeros(3, count, dtype=F64), torch.linspace(0, 3, count, dtype=F64))
+
+
+def calm(steps: int, count: int) -> Tensor:
+    return torch.zeros(steps, 3, count, dtype=F64)
+
+
+def moving(count: int, seed: int) -> State:
+    generator = torch.Generator().manual_seed(seed)
+    position, velocity, turn, rate = torch.randn(4, 3, count, dtype=F64, generator=generator)
+    return State(position, velocity, so3.exp(turn), rate)
+
+
+def test_hover_trim_stays_put():
+    vehicle = drawn_vehicles(32)
+    plant = Plant(vehicle)
+    start = plant.start(hovering(32))
+    end = plant.advance(start, vehicle.hover_command(), calm(250, 32))
+    assert end.state.position.abs().max() < 1e-12
+    assert end.state.velocity.abs().max() < 1e-12
+    assert torch.equal(end.state.rate, start.state.rate)
+    assert torch.allclose(end.thrusts, start.thrusts, rtol=1e-14)
+
+
+def test_a_hovering_vehicle_drifts_to_the_wind_s_speed():
+    vehicle = Vehicle.stack([VehicleParameters(mass_kg=0.5, drag_kgps=(0.5, 0.4, 0.3))])
+    wind_mps = torch.tensor([[2.0], [-1.0], [0.5]], dtype=F64)
+    plant = Plant(vehicle)
+    start = plant.start(State.hover(torch.zeros(3, 1, dtype=F64), torch.zeros(1, dtype=F64)))
+    end = plant.advance(start, vehicle.hover_command(), wind_mps.expand(1000, 3, 1))
+    gained = 1 - torch.exp(-vehicle.drag_kgps * 2.0 / vehicle.mass_kg)
+    assert torch.allclose(end.state.velocity, wind_mps * gained, rtol=1e-12)
+
+
+@pytest.mark.parametrize("scale", [0.6, 1.0, 1.4])
+def test_thrust_scale_multiplies_realised_thrust(scale):
+    parameters = VehicleParameters(
+        mass_kg=0.8, thrust_scale=scale, motor_time_constant_s=1e-9, drag_kgps=(1e-12,) * 3
+    )
+    plant = Plant(Vehicle.stack([parameters]))
+    command = torch.tensor([[12.0], [0.0], [0.0], [0.0]], dtype=F64)
+    end = plant.advance(plant.start(hovering(1)), command, calm(50, 1))
+    expected = (scale * 12.0 / 0.8 - GRAVITY_MPS2) * 0.1
+    assert end.state.velocity[2].item() == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("scale", [0.5, 1.0, 1.5])
+def test_torque_scale_multiplies_the_rate_loop_s_gain(axis, scale):
+    parameters = VehicleParameters(torque_scale=scale, motor_time_constant_s=1e-9)
+    vehicle = Vehicle.stack([parameters])
+    command = vehicle.hover_command()
+    command[1 + axis] = 0.8
+    plant = Plant(vehicle)
+    end = plant.advance(plant.start(hovering(1)), command, calm(20, 1))
+    # Sampled proportional control of an integrator: each 2 ms takes the same part of the error.
+    left = (1 - scale * RATE_GAIN_PER_S[axis] * 0.002) ** 20
+    expected = [0.8 * (1 - left) if i == axis else 0.0 for i in range(3)]
+    assert end.state.rate[:, 0].tolist() == pytest.approx(expected, rel=1e-5, abs=1e-12)
+
+
+def test_commands_are_clipped_to_the_vehicle_s_limits():
+    plant = Plant(drawn_vehicles(2))
+    start = plant.start(moving(2, 0))
+    wild = torch.tensor([[900.0, -5.0], [70.0, -70.0], [-9.0, 9.0], [30.0, -4.0]], dtype=F64)
+    limit = torch.tensor(
+        [[COLLECTIVE_MAX_N, 0.0], [6.0, -6.0], [-6.0, 6.0], [3.0, -3.0]], dtype=F64
+    )
+    clipped = plant.advance(start, wild, calm(25, 2))
+    assert torch.equal(clipped.state.rate, plant.advance(start, limit, calm(25, 2)).state.rate)
+    inside = plant.advance(start, 0.9 * limit, calm(25, 2))
+    assert not torch.allclose(inside.state.rate, clipped.state.rate, rtol=1e-3)
+
+
+def test_motors_stay_within_their_limits_and_reach_them():
+    plant = Plant(drawn_vehicles(32))
+    now = plant.start(moving(32, 1))
+    generator = torch.Generator().manual_seed(2)
+    low, high = torch.inf, -torch.inf
+    for _ in range(20):
+        command = torch.randn(4, 32, dtype=F64, generator=generator) * 40
+        now = plant.advance(now, command, calm(25, 32))
+        low, high = min(low, now.thrusts.min().item()), max(high, now.thrusts.max().item())
+    assert 0.0 <= low < 0.1
+    assert 0.97 * MOTOR_THRUST_MAX_N < high <= MOTOR_THRUST_MAX_N
+
+
+def test_yaw_gives_way_before_collective_thrust_does():
+    vehicle = Vehicle.nominal(1)
+    command = vehicle.hover_command()
+    command[3] = 3.0
+    plant = Plant(vehicle)
+    now = plant.start(State.hover(torch.zeros(3, 1, dtype=F64), torch.zeros(1, dtype=F64)))
+    now = dataclasses.replace(
+        now, state=dataclasses.replace(now.state, rate=now.state.rate - 3.0 * (command[1:] > 0))
+    )
+    end = plant.advance(now, command, calm(10, 1))
+    assert end.thrusts.min() < 1.5  # the stroke is long, yet ...
+    assert end.thrusts.sum().item() == pytest.approx(GRAVITY_MPS2, rel=1e-12)
+    assert end.state.velocity[2].abs() < 1e-9
+    assert end.state.rate[2] > now.state.rate[2] + 0.05
+
+
+def test_advance_is_its_steps_and_observe_sees_each():
+    vehicle = drawn_vehicles(32)
+    plant = Plant(vehicle)
+    start = plant.start(moving(32, 3))
+    command = vehicle.hover_command() * 1.1
+    command[1] = 1.0
+    winds = torch.randn(10, 3, 32, dtype=F64, generator=torch.Generator().manual_seed(4))
+    seen: list[tuple[int, State]] = []
+    end = plant.advance(start, command, winds, lambda count, state: seen.append((count, state)))
+    now = start
+    assert [count for count, _ in seen] == list(range(1, 11))
+    for (_, state), wind_mps in zip(seen, winds, strict=True):
+        now = plant.step(now, command, wind_mps)
+        assert torch.equal(state.position, now.state.position)
+    assert bits(now) == bits(end)
+    halves = plant.advance(plant.advance(start, command, winds[:4]), command, winds[4:])
+    assert bits(halves) == bits(end)
+
+
+def test_stepping_leaves_its_input_alone():
+    vehicle = drawn_vehicles(32)
+    plant = Plant(vehicle)
+    start = plant.start(moving(32, 5))
+    command, winds = vehicle.hover_command(), calm(5, 32) + 3.0
+    before = [x.clone() for x in (*tensors(start), command, winds)]
+    plant.advance(start, command, winds)
+    after = [*tensors(start), command, winds]
+    assert all(torch.equal(a, b) for a, b in zip(before, after, strict=True))
+
+
+def tensors(state: PlantState) -> list[Tensor]:
+    inner = state.state
+    return [inner.position, inner.velocity, inner.rotation, inner.rate, state.thrusts]
+
+
+def bits(state: PlantState) -> list[bytes]:
+    return [x.contiguous().numpy().tobytes() for x in tensors(state)]
+
+
+def fly(lanes: Tensor) -> PlantState:
+    """Fly the given ones of 70 vehicles as the application does: padded to whole groups."""
+    pick = lanes[padded_lanes(len(lanes))]
+    generator = torch.Generator().manual_seed(6)
+    winds = 3 * torch.randn(50, 3, 70, dtype=F64, generator=generator)
+    commands = torch.randn(2, 4, 70, dtype=F64, generator=generator)
+    vehicle = drawn_vehicles(70)
+    plant = Plant(vehicle.take(pick))
+    now = PlantState(moving(70, 7), torch.rand(4, 70, dtype=F64, generator=generator)).take(pick)
+    for k in range(2):
+        command = vehicle.hover_command() * 1.2 + commands[k] * 4
+        now = plant.advance(now, command[:, pick], winds[25 * k : 25 * k + 25, :, pick])
+    return now.take(torch.arange(len(lanes)))
+
+
+def test_neighbours_and_order_change_no_bit():
+    everyone = torch.arange(70)
+    together = fly(everyone)
+    assert len({bytes(x) for x in together.state.position.T.numpy()}) == 70
+    order = torch.randperm(70, generator=torch.Generator().manual_seed(8))
+    assert bits(fly(order)) == bits(together.take(order))
+    for lane in (0, 31, 37, 64, 69):
+        one = torch.tensor([lane])
+        assert bits(fly(one)) == bits(together.take(one))

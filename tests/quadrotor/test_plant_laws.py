@@ -1,0 +1,136 @@
+"""Laws of motion with exact answers."""
+
+import math
+
+import pytest
+import torch
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.plant import Plant, PlantState, rigid_body
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2, Vehicle, VehicleParameters
+
+F64 = torch.float64
+NO_DRAG = (1e-12,) * 3
+
+
+def column(*values: float) -> torch.Tensor:
+    return torch.tensor(values, dtype=F64)[:, None]
+
+
+def falling(parameters: VehicleParameters, steps: int) -> State:
+    """Let a level vehicle with stopped motors go."""
+    plant = Plant(Vehicle.stack([parameters]))
+    start = State.hover(column(0.0, 0.0, 0.0), torch.zeros(1, dtype=F64))
+    stopped = PlantState(start, torch.zeros(4, 1, dtype=F64))
+    zero = torch.zeros(4, 1, dtype=F64)
+    return plant.advance(stopped, zero, torch.zeros(steps, 3, 1, dtype=F64)).state
+
+
+def test_free_fall():
+    end = falling(VehicleParameters(drag_kgps=NO_DRAG), 500)
+    assert end.position[:, 0].tolist() == pytest.approx([0, 0, -GRAVITY_MPS2 / 2], rel=1e-10)
+    assert end.velocity[:, 0].tolist() == pytest.approx([0, 0, -GRAVITY_MPS2], rel=1e-10)
+
+
+@pytest.mark.parametrize("mass", [0.5, 1.5])
+def test_terminal_velocity(mass):
+    parameters = VehicleParameters(mass_kg=mass, drag_kgps=(0.1, 0.2, 2.0))
+    terminal = mass * GRAVITY_MPS2 / 2.0
+    for steps in (250, 2000):
+        speed = -falling(parameters, steps).velocity[2].item()
+        expected = terminal * -math.expm1(-2.0 * steps / 500 / mass)
+        assert speed == pytest.approx(expected, rel=1e-5)
+    assert speed == pytest.approx(terminal, rel=0.006)
+
+
+def test_drag_acts_along_body_axes():
+    vehicle = Vehicle.stack([VehicleParameters(drag_kgps=(0.1, 0.5, 0.3))])
+    start = State.hover(column(0.0, 0.0, 0.0), torch.tensor([math.pi / 2], dtype=F64))
+    start = State(start.position, column(1.0, 0.0, 0.0), start.rotation, start.rate)
+    plant = Plant(vehicle)
+    command = vehicle.hover_command()
+    end = plant.advance(plant.start(start), command, torch.zeros(500, 3, 1, dtype=F64)).state
+    # World x is the vehicle's right side at a quarter turn of yaw.
+    assert end.velocity[:, 0].tolist() == pytest.approx([math.exp(-0.5), 0, 0], abs=1e-9)
+
+
+def spinning(dt_s: float) -> tuple[State, torch.Tensor]:
+    """Turn three free bodies for a second; return the end state and the inertia."""
+    inertias = [(0.010, 0.010, 0.018), (0.008, 0.012, 0.018), (0.013, 0.009, 0.014)]
+    vehicle = Vehicle.stack([VehicleParameters(inertia_kgm2=i) for i in inertias])
+    coupling = rigid_body.gyroscopic_coupling(vehicle)
+    rate = column(4.0, -3.0, 5.0).expand(3, 3).clone()
+    rotation = so3.exp(column(0.3, 0.2, -0.5)).expand(3, 3, 3).clone()
+    for _ in range(round(1 / dt_s)):
+        free = rigid_body.gyroscopic(coupling, rate)
+        still = torch.zeros_like(rate)
+        rotation, rate = rigid_body.turn(rotation, rate, still, coupling, free, dt_s)
+    return State(rate, rate, rotation, rate), vehicle.inertia_kgm2
+
+
+def test_torque_free_rotation_conserves_momentum_and_energy():
+    end, inertia = spinning(0.002)
+    rate0 = column(4.0, -3.0, 5.0)
+    momentum0 = so3.rotate(so3.exp(column(0.3, 0.2, -0.5)), inertia * rate0)
+    momentum = so3.rotate(end.rotation, inertia * end.rate)
+    energy0, energy = ((inertia * w * w).sum(0) for w in (rate0, end.rate))
+    assert (end.rate - rate0).abs().max() > 1.0  # they tumble
+    assert torch.allclose(energy, energy0, rtol=1e-4)
+    assert torch.allclose(momentum, momentum0, rtol=0, atol=5e-4 * momentum0.norm(dim=0).max())
+    assert torch.allclose(
+        so3.compose(end.rotation.transpose(0, 1), end.rotation),
+        torch.eye(3, dtype=F64)[..., None].expand(3, 3, 3),
+        atol=1e-12,
+    )
+
+
+def test_rotation_is_second_order():
+    reference, _ = spinning(0.00025)
+    errors = [(spinning(dt)[0].rotation - reference.rotation).abs().max() for dt in (0.004, 0.002)]
+    assert 3.5 < errors[0] / errors[1] < 4.6
+
+
+def test_motor_lag_and_its_impulse_are_exact():
+    tau, mass, scale = 0.05, 0.9, 1.2
+    parameters = VehicleParameters(
+        mass_kg=mass, thrust_scale=scale, motor_time_constant_s=tau, drag_kgps=NO_DRAG
+    )
+    vehicle = Vehicle.stack([parameters])
+    plant = Plant(vehicle)
+    now = plant.start(State.hover(column(0.0, 0.0, 0.0), torch.zeros(1, dtype=F64)))
+    hover, target = mass * GRAVITY_MPS2 / scale, 16.0
+    command = column(target, 0.0, 0.0, 0.0)
+    for step in range(1, 51):
+        now = plant.step(now, command, torch.zeros(3, 1, dtype=F64))
+        left = math.exp(-step * 0.002 / tau)
+        expected = target + (hover - target) * left
+        assert now.thrusts.sum().item() == pytest.approx(expected, rel=1e-12)
+    impulse = target * 0.1 + (hover - target) * tau * (1 - left)
+    velocity = scale * impulse / mass - GRAVITY_MPS2 * 0.1
+    assert now.state.velocity[2].item() == pytest.approx(velocity, rel=1e-9)
+
+
+def test_the_plant_is_second_order():
+    # Without torque, as the sampled rate loop is another controller at another step size.
+    vehicle = Vehicle.stack([VehicleParameters(torque_scale=1e-12)])
+    turning = State(
+        position=column(0.0, 0.0, 0.0),
+        velocity=column(2.0, 1.0, -1.0),
+        rotation=so3.exp(column(0.4, 0.1, 0.0)),
+        rate=column(1.0, -2.0, 1.5),
+    )
+
+    def end(dt_s: float) -> State:
+        plant = Plant(vehicle, dt_s)
+        winds = column(3.0, 0.0, 1.0).expand(round(0.4 / dt_s), 3, 1)
+        start = PlantState(turning, torch.full((4, 1), 4.0, dtype=F64))
+        return plant.advance(start, column(20.0, 0.0, 0.0, 0.0), winds).state
+
+    reference = end(0.0005)
+    for name in ("position", "velocity"):
+        errors = [
+            (getattr(end(dt), name) - getattr(reference, name)).norm() for dt in (0.016, 0.008)
+        ]
+        assert errors[0] > 1e-5
+        assert 3.6 < errors[0] / errors[1] < 4.4

@@ -1,0 +1,142 @@
+import math
+
+import numpy as np
+import pytest
+import scipy.linalg
+import torch
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+
+F64 = torch.float64
+axis_component = st.floats(-1, 1)
+angles = st.one_of(st.floats(0, math.pi - 1e-6), st.sampled_from([0.0, 1e-9, 1e-5, 1e-3, 3.14159]))
+
+
+@st.composite
+def rotation_vectors(draw) -> Tensor:
+    """Vectors [3, 1] of norm below pi in any direction."""
+    axis = torch.tensor([draw(axis_component) for _ in range(3)], dtype=F64)
+    if axis.norm() < 1e-3:
+        axis = torch.tensor([1.0, 0.0, 0.0], dtype=F64)
+    return (axis / axis.norm() * draw(angles))[:, None]
+
+
+def close(a: Tensor, b: Tensor, atol: float = 1e-12) -> bool:
+    return torch.allclose(a, b, rtol=0, atol=atol)
+
+
+def as_batch(rotation: Tensor) -> Tensor:
+    return rotation.movedim((0, 1), (-2, -1))
+
+
+@given(rotation_vectors())
+def test_exp_is_a_rotation_and_the_matrix_exponential(phi):
+    x, y, z = phi[:, 0].tolist()
+    # SciPy's: torch.linalg.matrix_exp is off by 2e-11 at small angles.
+    expected = torch.from_numpy(scipy.linalg.expm(np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])))
+    rotation = so3.exp(phi)[..., 0]
+    assert close(rotation, expected)
+    assert close(rotation.T @ rotation, torch.eye(3, dtype=F64))
+    assert torch.linalg.det(rotation) > 0
+
+
+@given(rotation_vectors())
+def test_log_inverts_exp(phi):
+    assert close(so3.log(so3.exp(phi)), phi, atol=1e-9)
+
+
+@given(rotation_vectors())
+def test_exp_inverts_log_up_to_half_turns(phi):
+    half_turn = phi / phi.norm().clamp_min(1e-12) * math.pi
+    for rotation in (so3.exp(phi), so3.exp(half_turn)):
+        assert close(so3.exp(so3.log(rotation)), rotation)
+
+
+@given(rotation_vectors(), st.floats(-1, 1), st.floats(-1, 1))
+def test_turns_about_one_axis_add(phi, s, t):
+    assert close(so3.compose(so3.exp(s * phi), so3.exp(t * phi)), so3.exp((s + t) * phi))
+
+
+@given(rotation_vectors(), rotation_vectors(), rotation_vectors())
+def test_compose_is_the_matrix_product_and_acts_on_vectors(a, b, v):
+    first, second = so3.exp(a), so3.exp(b)
+    product = so3.compose(first, second)
+    assert close(as_batch(product), as_batch(first) @ as_batch(second))
+    assert close(so3.rotate(product, v), so3.rotate(first, so3.rotate(second, v)))
+    assert close(so3.rotate_back(first, so3.rotate(first, v)), v)
+    assert close(so3.rotate(first, v)[:, 0], first[..., 0] @ v[:, 0])
+
+
+@given(st.floats(-3.1, 3.1))
+def test_yaw_turns_about_the_vertical(yaw):
+    heading = torch.tensor([yaw], dtype=F64)
+    expected = torch.stack([0 * heading, 0 * heading, heading])
+    assert close(so3.log(so3.from_yaw(heading)), expected)
+
+
+@pytest.mark.parametrize("scale", [1e-12, 1e-7, 1e-4, 1e-2])
+def test_single_precision_keeps_small_angles(scale):
+    phi = torch.tensor([[0.3], [-0.5], [0.8]], dtype=torch.float32) * scale
+    assert torch.allclose(so3.log(so3.exp(phi)), phi, rtol=1e-6, atol=0)
+    # The second-order part must not drown either: x and y only meet in it.
+    planar = torch.tensor([[0.6], [0.8], [0.0]], dtype=torch.float32) * scale
+    cross_term = so3.exp(planar)[0, 1]
+    assert torch.allclose(cross_term, planar[0] * planar[1] / 2, rtol=1e-4, atol=0)
+
+
+def test_batch_shapes_broadcast():
+    one, many = so3.exp(torch.randn(3, 1, dtype=F64)), so3.exp(torch.randn(3, 4, 5, dtype=F64))
+    product = so3.compose(one[..., None], many)
+    assert product.shape == (3, 3, 4, 5)
+    assert close(product[..., 2, 3], one[..., 0] @ many[..., 2, 3])
+
+
+@pytest.mark.parametrize("dtype", [torch.float32, F64])
+def test_bits_do_not_depend_on_the_batch(dtype):
+    generator = torch.Generator().manual_seed(0)
+    phi = torch.randn(3, 2048, dtype=dtype, generator=generator)
+    vector = torch.randn(3, 2048, dtype=dtype, generator=generator)
+    part = slice(96, 128)
+
+    def everything(phi: Tensor, vector: Tensor) -> list[Tensor]:
+        rotation = so3.exp(phi)
+        product = so3.compose(rotation, so3.exp(vector))
+        return [product, so3.rotate(product, vector), so3.rotate_back(product, phi)]
+
+    whole = everything(phi, vector)
+    alone = everything(phi[:, part].contiguous(), vector[:, part].contiguous())
+    for a, b in zip(whole, alone, strict=True):
+        assert torch.equal(a[..., part], b)
+
+
+@settings(deadline=None, max_examples=20)
+@given(rotation_vectors())
+def test_gradients_are_right_everywhere_and_finite_at_the_identity(phi):
+    variable = phi.clone().requires_grad_()
+    assert torch.autograd.gradcheck(so3.exp, variable, atol=1e-5)
+    moved = so3.log(so3.exp(variable))
+    if phi.norm() < 3.0:
+        (gradient,) = torch.autograd.grad(moved.sum(), variable)
+        assert close(gradient, torch.ones_like(phi), atol=1e-6)
+
+
+def test_project_returns_the_nearest_rotation():
+    generator = torch.Generator().manual_seed(1)
+    rotation = so3.exp(torch.randn(3, 64, dtype=F64, generator=generator))
+    noise = 0.1 * torch.randn(3, 3, 64, dtype=F64, generator=generator)
+    matrix = rotation + noise
+    nearest = so3.project(matrix)
+    assert close(so3.project(rotation), rotation)
+    assert close(so3.compose(nearest.transpose(0, 1), nearest)[..., 0], torch.eye(3, dtype=F64))
+    # Optimality: the polar factor R^T M is symmetric.
+    polar = so3.compose(nearest.transpose(0, 1), matrix)
+    assert close(polar, polar.transpose(0, 1))
+    assert not close(matrix, nearest, atol=1e-2)
+
+
+def test_project_never_returns_a_reflection():
+    mirror = torch.diag(torch.tensor([1.0, 1.0, -0.9], dtype=F64))[..., None]
+    assert torch.linalg.det(so3.project(mirror)[..., 0]) > 0

@@ -1,0 +1,122 @@
+import numpy as np
+import pytest
+
+from faultpath.quadrotor import wind
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+
+LEVELS = ["L0", "L1", "L2", "L3"]
+
+
+def draws(seed: int = 0) -> np.random.Generator:
+    return np.random.default_rng(seed)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_scene_s_wind_depends_on_level_and_scene_alone(level):
+    alone = wind.series(level, "scene-7", 2.0)
+    for other in ("scene-6", "scene-8"):
+        assert np.array_equal(wind.series(level, other, 2.0), alone) == (level == "L0")
+    assert alone.shape == (1000, 3)
+    assert alone.dtype == np.float64
+    assert np.array_equal(wind.series(level, "scene-7", 2.0), alone)
+
+
+def test_levels_are_not_scaled_copies_of_each_other():
+    calm, strong = wind.series("L1", "a", 1.0), wind.series("L3", "a", 1.0)
+    assert np.linalg.matrix_rank(np.stack([calm.ravel(), strong.ravel()])) == 2
+
+
+def test_a_longer_series_begins_with_the_shorter_one():
+    assert np.array_equal(wind.series("L2", "a", 3.0)[:500], wind.series("L2", "a", 1.0))
+
+
+def test_the_still_level_is_still():
+    assert not wind.series("L0", "a", 1.0).any()
+
+
+@pytest.mark.parametrize(
+    ("level", "target_mps2"), [("L1", 0.65), ("L2", 1.4), ("L3", 2.5)], ids=str
+)
+def test_levels_cause_the_accelerations_that_define_them(level, target_mps2):
+    speeds = [np.linalg.norm(wind.series(level, str(i), 5.0, 50), axis=1) for i in range(300)]
+    assert NOMINAL_DRAG_KGPS[0] * np.median(speeds) == pytest.approx(target_mps2, rel=0.03)
+
+
+def test_evaluation_flow_is_near_horizontal_and_goes_everywhere():
+    means = np.array([wind.series("L3", str(i), 6.0, 20).mean(0) for i in range(400)])
+    elevation = np.degrees(np.arcsin(means[:, 2] / np.linalg.norm(means, axis=1)))
+    azimuth = np.degrees(np.arctan2(means[:, 1], means[:, 0]))
+    assert np.abs(elevation).max() < 35
+    assert elevation.std() == pytest.approx(20 / np.sqrt(3), rel=0.25)
+    assert (np.histogram(azimuth, bins=8, range=(-180, 180))[0] > 25).all()
+
+
+def test_the_pool_holds_strong_vertical_winds():
+    pool = [wind.pool_series(0, episode, 6.0, 20).mean(0) for episode in range(400)]
+    vertical = np.array(pool)[:, 2]
+    assert np.quantile(vertical, 0.98) > 6
+    assert np.quantile(vertical, 0.02) < -6
+
+
+def test_pool_winds_belong_to_seed_and_episode():
+    one = wind.pool_series(0, 1, 0.5)
+    assert np.array_equal(one, wind.pool_series(0, 1, 0.5))
+    assert not np.array_equal(one, wind.pool_series(1, 1, 0.5))
+    assert not np.array_equal(one, wind.pool_series(0, 2, 0.5))
+
+
+@pytest.mark.parametrize("rate_hz", [20, 500])
+def test_turbulence_has_its_standard_deviation_from_the_first_sample(rate_hz):
+    runs = np.stack([wind.dryden(draws(i), 60, rate_hz, 8.0) for i in range(2500)])
+    # 2,500 independent runs: the standard error of a deviation is 1.4 %.
+    for sample in (0, 1, 30, 59):
+        assert runs[:, sample].std(0) == pytest.approx([1, 1, 1], rel=0.05)
+        assert runs[:, sample].mean(0) == pytest.approx([0, 0, 0], abs=0.07)
+
+
+def test_turbulence_has_dryden_s_correlations():
+    rate, airspeed = 100, 8.0
+    runs = np.stack([wind.dryden(draws(i), 101, rate, airspeed) for i in range(3000)])
+    for lag in (5, 25, 50, 100):
+        distance = airspeed * lag / rate / wind.LENGTH_SCALE_M
+        along = np.exp(-distance)
+        across = (1 - distance / 2) * np.exp(-distance)
+        seen = (runs[:, 0] * runs[:, lag]).mean(0)
+        assert seen == pytest.approx([along, across, across], abs=0.06)
+    cross = np.einsum("ri,rj->ij", runs[:, 50], runs[:, 50]) / len(runs)
+    assert cross == pytest.approx(np.eye(3), abs=0.07)
+
+
+def test_turbulence_does_not_depend_on_its_sampling_rate():
+    # Mean square increments over 0.1 s, from series at three rates.
+    increments = []
+    for rate in (20, 100, 500):
+        lag = rate // 10
+        runs = np.stack([wind.dryden(draws(i), lag + 1, rate, 8.0) for i in range(2000)])
+        increments.append(((runs[:, lag] - runs[:, 0]) ** 2).mean(0))
+    assert increments[0] == pytest.approx(increments[2], rel=0.12)
+    assert increments[1] == pytest.approx(increments[2], rel=0.12)
+
+
+def test_gust_shape():
+    time = np.arange(0, 5, 0.01)
+    gust = wind.one_minus_cosine(time, onset_s=1.0, duration_s=2.0, peak=3.0)
+    assert gust.max() == pytest.approx(3.0)
+    assert time[gust.argmax()] == pytest.approx(2.0)
+    assert not gust[time <= 1.0].any()
+    assert np.abs(gust[time >= 3.0]).max() < 1e-12
+    assert gust[time.searchsorted(1.5)] == pytest.approx(1.5)
+    assert np.trapezoid(gust, time) == pytest.approx(3.0, rel=1e-3)
+
+
+def test_gusts_come_within_their_window_and_along_the_flow():
+    level = wind.WindLevel(mean_mps=10.0, turbulence_mps=0.0, elevation_deg=20.0)
+    for seed in range(100):
+        flow = wind.sample(draws(seed), level, 7.0, 100)
+        speed = np.linalg.norm(flow, axis=1)
+        assert np.allclose(flow / speed[:, None], flow[0] / speed[0])
+        gusty = np.flatnonzero(speed > 10.0 + 1e-9) / 100
+        assert gusty[0] >= 0.5
+        assert gusty[0] <= 4.02
+        assert 0.75 <= gusty[-1] - gusty[0] <= 2.0
+        assert 13.9 < speed.max() < 16.0
