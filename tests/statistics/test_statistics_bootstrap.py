@@ -171,6 +171,11 @@ def test_reversal_needs_opposite_signs_and_a_detected_change():
     weaker = reversal(against(helps, never), against(helps_less, never))
     assert weaker.change.detected_sign == -1
     assert not weaker.detected
+    slight_gain, slight_loss = np.zeros((2, N, 2))
+    slight_gain[0], slight_loss[0] = 1, 1
+    slight = reversal(against(slight_gain, never), against(never, slight_loss))
+    assert slight.in_every_seed
+    assert not slight.detected
     mixed = helps.copy()
     mixed[:, 1] = 0
     other = np.zeros((N, 2))

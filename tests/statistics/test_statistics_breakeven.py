@@ -102,6 +102,11 @@ def test_resamples_without_crossing_count_as_the_nearer_end():
     mirrored = break_even(effect(20, 0, first_scene=10), effect(0, 1))
     assert mirrored.low < mirrored.p_star < mirrored.high == 1.0
     assert mirrored.shares.always == rare.shares.never
+    # A rare gain at p = 0 that most losses at p = 1 outweigh: never favoured counts as 0.
+    lost = break_even(effect(1, 0), effect(0, 20, first_scene=10))
+    assert (lost.direction, lost.low) == ("below", 0.0)
+    assert lost.high < 0.5
+    assert lost.shares.never == rare.shares.never
 
 
 def test_always_never_and_no_difference():

@@ -43,7 +43,6 @@ def mcnemar_power(
     favour = 0.5 * (1.0 + abs(difference) / discordant_rate)
     rejects = binomial_cdf(critical, discordants, favour)
     rejects = rejects + binomial_cdf(critical, discordants, 1.0 - favour)
-    rejects = np.where(critical < 0, 0.0, rejects)
     return float(binomial_pmf(discordants, n_scenes, discordant_rate) @ rejects)
 
 
