@@ -60,6 +60,9 @@ def number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
+_FILE_MARGIN = 16
+
+
 class Svg:
     """One picture. Its size is in pixels at scale 1; on a page it scales with its column."""
 
@@ -139,10 +142,13 @@ class Svg:
 
     def render(self, standalone: bool = False) -> str:
         """Return the markup; `standalone` carries its own style and opens as a file."""
-        style = ""
+        style, margin = "", 0
         if standalone:
+            margin = _FILE_MARGIN
             css = template("tokens.css") + template("svg.css")
-            style = f'<style>{css}</style><rect class="paper" width="100%" height="100%"/>'
+            ground = f'<rect class="paper" x="-{margin}" y="-{margin}" width="100%" height="100%"/>'
+            style = f"<style>{css}</style>{ground}"
+        width, height = number(self.width + 2 * margin), number(self.height + 2 * margin)
         ids = f"{self.uid}-t {self.uid}-d" if self._description else f"{self.uid}-t"
         described = (
             f'<desc id="{self.uid}-d">{escape(self._description)}</desc>'
@@ -151,8 +157,8 @@ class Svg:
         )
         head = (
             f'<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" '
-            f'aria-labelledby="{ids}" viewBox="0 0 {number(self.width)} {number(self.height)}" '
-            f'width="{number(self.width)}" height="{number(self.height)}">'
+            f'aria-labelledby="{ids}" viewBox="{-margin} {-margin} {width} {height}" '
+            f'width="{width}" height="{height}">'
             f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'
         )
         return head + "".join(self._parts) + "</svg>"
