@@ -95,9 +95,17 @@ def draw(generator: np.random.Generator, ranges: VehicleRanges | None = None) ->
             mass_kg=about(NOMINAL_MASS_KG, ranges.mass),
             thrust_scale=about(1.0, ranges.thrust_scale),
             torque_scale=about(1.0, ranges.torque_scale),
-            inertia_kgm2=tuple(about(moment, ranges.inertia) for moment in NOMINAL_INERTIA_KGM2),
+            inertia_kgm2=(
+                about(NOMINAL_INERTIA_KGM2[0], ranges.inertia),
+                about(NOMINAL_INERTIA_KGM2[1], ranges.inertia),
+                about(NOMINAL_INERTIA_KGM2[2], ranges.inertia),
+            ),
             motor_time_constant_s=generator.uniform(*ranges.motor_time_constant_s),
-            drag_kgps=tuple(generator.uniform(*ranges.drag_kgps) for _ in range(3)),
+            drag_kgps=(
+                generator.uniform(*ranges.drag_kgps),
+                generator.uniform(*ranges.drag_kgps),
+                generator.uniform(*ranges.drag_kgps),
+            ),
         )
         if parameters.thrust_to_weight >= MIN_THRUST_TO_WEIGHT and parameters.is_rigid:
             return parameters

@@ -7,11 +7,15 @@ mixer are written again here, from force balance at the motors' places. MuJoCo's
 different fluid model and stays off.
 """
 
+# MuJoCo is a compiled module whose names pyright cannot see.
+# pyright: reportAttributeAccessIssue=false, reportUnknownMemberType=false
+# pyright: reportUnknownVariableType=false
+
 import math
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from faultpath.quadrotor.vehicle import (
     ARM_LENGTH_M,
@@ -41,7 +45,7 @@ def _wrenches() -> Array:
     return np.array(rows)
 
 
-def _numbers(values: object) -> str:
+def _numbers(values: ArrayLike) -> str:
     return " ".join(repr(float(x)) for x in np.atleast_1d(values))
 
 
