@@ -8,8 +8,16 @@ import pytest
 from rich.console import Console
 
 from faultpath.errors import UserError
+from faultpath.interface import Interface
 from faultpath.record import DecisionRecord
-from faultpath.report import ReportInput, decision, latex_table, markdown_table, write_report
+from faultpath.report import (
+    ReportInput,
+    latex_table,
+    markdown_table,
+    terminal_interface,
+    terminal_record,
+    write_report,
+)
 
 
 def _expected(record: DecisionRecord) -> dict[str, list[str]]:
@@ -116,13 +124,24 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
         for p in record.paths
     )
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
-    console.print(decision(record.model_copy(update={"paths": paths})))
+    console.print(terminal_record(record.model_copy(update={"paths": paths})))
     text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined]
     assert "[red]Shared[/]" in text
     for effect in record.effects:
         assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
     for cell in record.cells:
         assert f"{cell.success_percent:.1f}" in text
+
+
+def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:
+    console = Console(file=io.StringIO(), width=120, force_terminal=False)
+    console.print(terminal_interface(drawn_interface))
+    text = console.file.getvalue()  # type: ignore[attr-defined]
+    for channel in drawn_interface.channels:
+        assert channel.name in text
+    for source in drawn_interface.sources:
+        assert source.name in text
+    assert "reconstruction reconstructs reconstructed_wind" in text
 
 
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:

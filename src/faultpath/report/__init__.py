@@ -3,8 +3,14 @@
 from faultpath.report.html import report_page
 from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Traces
 from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
+from faultpath.report.interface_terminal import interface_table
 from faultpath.report.tables import latex_table, markdown_table
-from faultpath.report.terminal import decision, effect_table, success_table
+from faultpath.report.terminal import (
+    effect_table,
+    success_table,
+    terminal_interface,
+    terminal_record,
+)
 from faultpath.report.write import write_report
 
 __all__ = [
@@ -13,13 +19,15 @@ __all__ = [
     "StruckPath",
     "TraceKey",
     "Traces",
-    "decision",
     "draw_interface",
     "effect_table",
+    "interface_table",
     "latex_table",
     "markdown_table",
     "report_page",
     "struck_paths",
     "success_table",
+    "terminal_interface",
+    "terminal_record",
     "write_report",
 ]

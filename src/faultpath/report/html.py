@@ -89,7 +89,7 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
     axis = figures.shared_range(record.break_even)
     struck = struck_paths(source.interface, record)
     return {
-        "interface": Markup(draw_interface(source.interface, struck)),
+        "interface": Markup(draw_interface(source.interface, struck, standalone=False)),
         "forest": Markup(figures.forest(rows, asked.baseline, asked.repair)),
         "forest_narrow": Markup(figures.forest(rows, asked.baseline, asked.repair, narrow=True)),
         "frequency": [

@@ -48,9 +48,9 @@ def struck_paths(interface: Interface, record: DecisionRecord) -> tuple[StruckPa
 
 
 def draw_interface(
-    interface: Interface, struck: Sequence[StruckPath] = (), standalone: bool = False
+    interface: Interface, struck: Sequence[StruckPath] = (), standalone: bool = True
 ) -> str:
-    """Return the drawing as SVG markup; `standalone` makes it a file of its own.
+    """Return the drawing as SVG markup: a file of its own, or a part of a page with its styles.
 
     Every struck tap carries the numbers of the paths that strike it; the key stands below.
     """

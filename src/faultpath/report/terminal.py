@@ -1,10 +1,11 @@
-"""What the command line prints: the success table and the decision record."""
+"""What the command line prints: the decision record and an interface, as rich renderables."""
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from faultpath.interface import Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
 from faultpath.report import wording
 
@@ -58,7 +59,7 @@ def effect_table(record: DecisionRecord) -> Table:
     return table
 
 
-def decision(record: DecisionRecord) -> RenderableType:
+def terminal_record(record: DecisionRecord) -> RenderableType:
     """Return the decision record as text and tables: verdict, effects, what would change it."""
     parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
     parts += [Text(sentence) for sentence in record.verdict.sentences]
@@ -66,6 +67,37 @@ def decision(record: DecisionRecord) -> RenderableType:
     if record.verdict.would_change:
         parts += [Text(""), Text("What would change this", style="bold")]
         parts += [Padding(Text(f"- {item}"), (0, 0, 0, 2)) for item in record.verdict.would_change]
+    return Group(*parts)
+
+
+def terminal_interface(interface: Interface) -> RenderableType:
+    """Return sources, channels in the order in which to audit them, and reconstructions."""
+    sources = _table("Sources")
+    for head in ("source", "provenance", "unit", "errors shared in"):
+        sources.add_column(head)
+    for source in interface.sources:
+        group = source.correlation_group or ""
+        sources.add_row(source.name, source.provenance.value, Text(source.unit), group)
+    channels = _table("Channels, the one to audit first in front")
+    for head in ("channel", "gap", "sources", "consumers"):
+        channels.add_column(head, overflow="fold")
+    channels.add_column("a fault reaches", justify="right")
+    for ranked in rank(interface):
+        channel = interface.channel(ranked.channel)
+        channels.add_row(
+            channel.name,
+            channel.gap.value,
+            ", ".join(channel.sources),
+            ", ".join(channel.consumers),
+            wording.counted(len(transitive_consumers(interface, channel.name)), "tap"),
+        )
+    parts: list[RenderableType] = [sources, Text(""), channels]
+    if interface.reconstructs:
+        parts.append(Text(""))
+    parts += [
+        Text(f"{module} reconstructs {source}: its own reads are part of that path.")
+        for module, source in interface.reconstructs.items()
+    ]
     return Group(*parts)
 
 

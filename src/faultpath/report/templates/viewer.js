@@ -33,6 +33,7 @@ if (document.getElementById("viewer-data")) {
     state.step = last();
     get("time").max = String(last());
     get("time").value = String(state.step);
+    get("name").textContent = `${current().scene}, ${data.paths.find((p) => p.name === shown.path).title}`;
     get("why").textContent = `${current().why} ${words[shown.kind] ?? ""}`;
     for (const button of get("paths").querySelectorAll("button")) {
       button.setAttribute("aria-pressed", String(button.dataset.path === shown.path));
