@@ -12,10 +12,10 @@ from faultpath.interface import Interface
 from faultpath.record import DecisionRecord
 from faultpath.report import (
     ReportInput,
+    decision,
+    interface_table,
     latex_table,
     markdown_table,
-    terminal_interface,
-    terminal_record,
     write_report,
 )
 
@@ -124,7 +124,7 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
         for p in record.paths
     )
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
-    console.print(terminal_record(record.model_copy(update={"paths": paths})))
+    console.print(decision(record.model_copy(update={"paths": paths})))
     text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined]
     assert "[red]Shared[/]" in text
     for effect in record.effects:
@@ -135,7 +135,7 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
 
 def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:
     console = Console(file=io.StringIO(), width=120, force_terminal=False)
-    console.print(terminal_interface(drawn_interface))
+    console.print(interface_table(drawn_interface))
     text = console.file.getvalue()  # type: ignore[attr-defined]
     for channel in drawn_interface.channels:
         assert channel.name in text

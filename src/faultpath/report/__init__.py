@@ -6,10 +6,10 @@ from faultpath.report.interface_drawing import StruckPath, draw_interface, struc
 from faultpath.report.interface_terminal import interface_table
 from faultpath.report.tables import latex_table, markdown_table
 from faultpath.report.terminal import (
+    decision,
     effect_table,
+    interface_table,
     success_table,
-    terminal_interface,
-    terminal_record,
 )
 from faultpath.report.write import write_report
 
@@ -19,6 +19,7 @@ __all__ = [
     "StruckPath",
     "TraceKey",
     "Traces",
+    "decision",
     "draw_interface",
     "effect_table",
     "interface_table",
@@ -27,7 +28,5 @@ __all__ = [
     "report_page",
     "struck_paths",
     "success_table",
-    "terminal_interface",
-    "terminal_record",
     "write_report",
 ]

@@ -59,7 +59,7 @@ def effect_table(record: DecisionRecord) -> Table:
     return table
 
 
-def terminal_record(record: DecisionRecord) -> RenderableType:
+def decision(record: DecisionRecord) -> RenderableType:
     """Return the decision record as text and tables: verdict, effects, what would change it."""
     parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
     parts += [Text(sentence) for sentence in record.verdict.sentences]
@@ -70,7 +70,7 @@ def terminal_record(record: DecisionRecord) -> RenderableType:
     return Group(*parts)
 
 
-def terminal_interface(interface: Interface) -> RenderableType:
+def interface_table(interface: Interface) -> RenderableType:
     """Return sources, channels in the order in which to audit them, and reconstructions."""
     sources = _table("Sources")
     for head in ("source", "provenance", "unit", "errors shared in"):
