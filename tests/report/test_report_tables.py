@@ -141,7 +141,7 @@ def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:
         assert channel.name in text
     for source in drawn_interface.sources:
         assert source.name in text
-    assert "reconstruction reconstructs reconstructed_wind" in text
+    assert "reconstruction reconstructs reconstructed_wind." in text
 
 
 def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:

@@ -5,12 +5,7 @@ from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Trac
 from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
 from faultpath.report.interface_terminal import interface_table
 from faultpath.report.tables import latex_table, markdown_table
-from faultpath.report.terminal import (
-    decision,
-    effect_table,
-    interface_table,
-    success_table,
-)
+from faultpath.report.terminal import decision, effect_table, success_table
 from faultpath.report.write import write_report
 
 __all__ = [

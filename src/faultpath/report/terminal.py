@@ -1,11 +1,10 @@
-"""What the command line prints: the decision record and an interface, as rich renderables."""
+"""What the command line prints of a decision record, as rich renderables."""
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from faultpath.interface import Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
 from faultpath.report import wording
 
@@ -34,26 +33,18 @@ def effect_table(record: DecisionRecord) -> Table:
     asked = record.question
     table = _table(f"{asked.repair} minus {asked.baseline}")
     table.add_column("path")
-    for head in (
-        "difference, pp",
-        "won:lost",
-        "p",
-        "detectable, pp",
-        "pairs",
-        "void",
-        "break-even",
-    ):
-        table.add_column(head, justify="right")
+    for head in ("difference, pp", "won:lost", "p", "pairs", "break-even"):
+        table.add_column(head, justify="right", no_wrap=True)
     for effect in record.effects:
-        detectable = effect.minimum_detectable_pp
+        pairs = Text(str(effect.pairs))
+        if effect.void_pairs:
+            pairs.append(f", {effect.void_pairs} void", style="bold red")
         table.add_row(
             Text(titles.get(effect.path, effect.path)),
             Text(wording.with_interval(effect.success), style="bold" if effect.detected else ""),
             wording.wins_losses(effect.wins, effect.losses),
             wording.p_value(effect.p_value),
-            "–" if detectable is None else wording.plain(detectable),
-            str(effect.pairs),
-            Text(str(effect.void_pairs), style="bold red" if effect.void_pairs else ""),
+            pairs,
             breaks.get(effect.path, "–"),
         )
     return table
@@ -67,37 +58,6 @@ def decision(record: DecisionRecord) -> RenderableType:
     if record.verdict.would_change:
         parts += [Text(""), Text("What would change this", style="bold")]
         parts += [Padding(Text(f"- {item}"), (0, 0, 0, 2)) for item in record.verdict.would_change]
-    return Group(*parts)
-
-
-def interface_table(interface: Interface) -> RenderableType:
-    """Return sources, channels in the order in which to audit them, and reconstructions."""
-    sources = _table("Sources")
-    for head in ("source", "provenance", "unit", "errors shared in"):
-        sources.add_column(head)
-    for source in interface.sources:
-        group = source.correlation_group or ""
-        sources.add_row(source.name, source.provenance.value, Text(source.unit), group)
-    channels = _table("Channels, the one to audit first in front")
-    for head in ("channel", "gap", "sources", "consumers"):
-        channels.add_column(head, overflow="fold")
-    channels.add_column("a fault reaches", justify="right")
-    for ranked in rank(interface):
-        channel = interface.channel(ranked.channel)
-        channels.add_row(
-            channel.name,
-            channel.gap.value,
-            ", ".join(channel.sources),
-            ", ".join(channel.consumers),
-            wording.counted(len(transitive_consumers(interface, channel.name)), "tap"),
-        )
-    parts: list[RenderableType] = [sources, Text(""), channels]
-    if interface.reconstructs:
-        parts.append(Text(""))
-    parts += [
-        Text(f"{module} reconstructs {source}: its own reads are part of that path.")
-        for module, source in interface.reconstructs.items()
-    ]
     return Group(*parts)
 
 

@@ -21,8 +21,10 @@ class EffectRow:
     repair_percent: float
     effect: Estimate
     wins_losses: str
+    detected: bool
+    """By test and interval together, as the record has it."""
     band_pp: float | None
-    """Minimum detectable effect, where the test detects nothing."""
+    """Minimum detectable effect, where nothing is detected."""
 
 
 def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
@@ -37,6 +39,7 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
             repair_percent=rate[asked.repair, effect.path],
             effect=effect.success,
             wins_losses=wording.wins_losses(effect.wins, effect.losses),
+            detected=effect.detected,
             band_pp=None if effect.detected else effect.minimum_detectable_pp,
         )
         for effect in record.effects
@@ -78,7 +81,7 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
             svg.text(0, y + 4 + 15 * (k - (len(lines) - 1) / 2), line, "bold", tip=row.label)
         svg.text(214, y + 4, wording.plain(row.baseline_percent), "", "end")
         svg.text(266, y + 4, wording.plain(row.repair_percent), "", "end")
-        _mark(svg, plot, row.effect, y, row.band_pp)
+        _mark(svg, plot, row.effect, y, _winner(row), row.band_pp)
         _numbers(svg, 612, y + 4, row.effect)
         svg.text(768, y + 4, row.wins_losses)
     _footnote(svg, rows, bottom + 40, 292)
@@ -98,7 +101,7 @@ def _narrow(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg
             svg.rect(0, y + 2, 350, 20, "paper")
             svg.text(0, y + 16, shortened(row.label, 195, 12), "bold", tip=row.label)
             svg.text(350, y + 16, wording.with_interval(row.effect), "", "end")
-        _mark(svg, plot, row.effect, y + 38, row.band_pp)
+        _mark(svg, plot, row.effect, y + 38, _winner(row), row.band_pp)
         rates = f"{wording.plain(row.baseline_percent)} → {wording.plain(row.repair_percent)} %"
         svg.rect(0, y + 54, 350, 18, "paper")
         svg.text(0, y + 67, rates, "small soft")
@@ -130,8 +133,14 @@ def interval_panel(
         svg.text(0, y + 18, shortened(label, _PANEL - 140, 12), tip=label)
         svg.text(_PANEL, y + 18, wording.with_interval(estimate, digits), "", "end")
         if estimate is not None:
-            _mark(svg, plot, estimate, y + 35, None, good)
+            _mark(svg, plot, estimate, y + 35, good * estimate.detected_sign, None)
     return svg.render()
+
+
+def _winner(row: EffectRow) -> int:
+    if not row.detected or row.effect.value == 0:
+        return 0
+    return 1 if row.effect.value > 0 else -1
 
 
 def _extent(rows: Sequence[EffectRow]) -> list[float]:
@@ -161,14 +170,13 @@ def _directions(svg: Svg, plot: Axis, y: float) -> None:
         svg.text(zero + 8, y, "repair better →", "small repair", "start")
 
 
-def _mark(
-    svg: Svg, plot: Axis, e: Estimate, y: float, band_pp: float | None, good: int = 1
-) -> None:
+def _mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: float | None) -> None:
     """Draw one interval in the colour of the arm that it speaks for.
 
-    Dot, whiskers, a tick for each seed, and the undetectable band where one is given.
+    Dot, whiskers, a tick for each seed, and the undetectable band where one is given. `winner` is
+    1 for the repair, -1 for the baseline, 0 where it is open.
     """
-    side = {1: " repair", -1: " baseline", 0: ""}[good * e.detected_sign]
+    side = {1: " repair", -1: " baseline", 0: ""}[winner]
     if band_pp:
         svg.rect(plot(-band_pp), y - 11, plot(band_pp) - plot(-band_pp), 22, "band", 2)
         for edge in (-band_pp, band_pp):
