@@ -8,6 +8,8 @@ from faultpath.report import wording
 from faultpath.report.scale import Axis, covering, tick_label
 from faultpath.report.svg import Point, Svg, shortened
 
+_ROOM = 26.0  # pixels beside zero that a label of a side needs
+
 
 def shared_range(paths: Sequence[PathBreakEven]) -> Axis:
     """Return one vertical axis that all panels share, so that they can be compared by eye."""
@@ -35,8 +37,10 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     for points, side in _sides([(p, value) for p, value, _, _ in path.curve]):
         svg.polyline([(x(p), y(v)) for p, v in points], f"curve {side}")
     _star(svg, path, x, y)
-    svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
-    svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
+    if y(0) - y.end > _ROOM:
+        svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
+    if y.start - y(0) > _ROOM:
+        svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
     return svg.render()
 
 
