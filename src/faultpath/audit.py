@@ -50,9 +50,7 @@ def plan_audit(
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")
     strikes = _strikes(system.interface, fault, variants)
-    paths = [
-        _path(name, system.interface, struck, variants) for name, struck in strikes.items()
-    ]
+    paths = [_path(name, system.interface, struck, variants) for name, struck in strikes.items()]
     rows = [
         Row(variant=variant.name, path=path, seed=seed, arm=_arm(system, variant, struck, seed))
         for path, struck in strikes.items()
@@ -124,9 +122,7 @@ def _struck(interface: Interface, fault: AnyFault | None, variant: Variant) -> t
     return tuple(dict.fromkeys(consumers))
 
 
-def _resolved(
-    interface: Interface, fault: AnyFault | None, variant: Variant
-) -> tuple[Fault, ...]:
+def _resolved(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[Fault, ...]:
     return () if fault is None else fault.resolved(interface, variant.consumers)
 
 

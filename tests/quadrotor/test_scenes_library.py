@@ -246,16 +246,16 @@ def test_the_hash_sees_every_field(libraries):
 def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):
     for scene in libraries["selection"].scenes[:10]:
         plan, empty = floor_plan(scene), floor_plan(scene, free_space=True)
-        assert (len(plan.polygons), len(plan.circles)) == (len(scene.boxes), len(scene.cylinders))
-        assert (empty.polygons, empty.circles) == ((), ())
-        assert (empty.start_m, empty.goal_m, empty.low_m) == (plan.start_m, plan.goal_m, plan.low_m)
-        assert all(low.low_m <= high.low_m for low, high in pairwise(plan.polygons))
+        assert (len(plan.prisms), len(plan.pillars)) == (len(scene.boxes), len(scene.cylinders))
+        assert (empty.prisms, empty.pillars) == ((), ())
+        assert (empty.start, empty.goal, empty.low) == (plan.start, plan.goal, plan.low)
+        assert all(low.bottom <= high.bottom for low, high in pairwise(plan.prisms))
         for box in scene.boxes:
-            shape = next(p for p in plan.polygons if p.corners_m == box.corners_m)
-            sides = [math.dist(a, b) for a, b in pairwise(shape.corners_m)]
+            shape = next(p for p in plan.prisms if p.corners == box.corners_m)
+            sides = [math.dist(a, b) for a, b in pairwise(shape.corners)]
             hx, hy, hz = box.half_extents_m
             assert sides == pytest.approx([2 * hx, 2 * hy, 2 * hx])
-            assert shape.high_m - shape.low_m == pytest.approx(2 * hz)
+            assert shape.top - shape.bottom == pytest.approx(2 * hz)
 
 
 def test_drawing_does_not_load_torch():

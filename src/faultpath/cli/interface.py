@@ -24,13 +24,13 @@ def command(
     from rich.console import Console
 
     from faultpath.interface import interface_yaml, json_schema
-    from faultpath.report import draw_interface, terminal_interface
+    from faultpath.report import draw_interface, interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
 
     built = load_system(SystemSpec(name=system, options=settings(set_ or [])))
     console = Console()
-    console.print(terminal_interface(built.interface))
+    console.print(interface_table(built.interface))
     writes = {
         svg: lambda: draw_interface(built.interface),
         yaml: lambda: interface_yaml(built.interface),

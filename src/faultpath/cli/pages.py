@@ -1,15 +1,19 @@
 """From a run folder to its pages."""
 
 from pathlib import Path
+from typing import TypeVar
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import ReportInput, write_report
+from faultpath.report import ReportInput, Traces, write_report
 from faultpath.store import read_traces
 from faultpath.trials import System
+
+_Model = TypeVar("_Model", DecisionRecord, RunProvenance)
 
 
 def read_record(folder: Path) -> DecisionRecord:
@@ -21,21 +25,32 @@ def save_pages(system: System, folder: Path) -> list[Path]:
     """Write report and tables from what the run folder holds; return their paths."""
     record = read_record(folder)
     provenance = _read(folder / "provenance.json", RunProvenance)
-    outcomes = pq.read_table(folder / "outcomes.parquet")
-    plans = {scene: system.floor_plan(scene) for scene in outcomes["scene"].unique().to_pylist()}
+    outcomes = _table(folder / "outcomes.parquet")
+    scenes = {str(scene) for scene in outcomes["scene"].to_pylist()}
+    plans = {scene: system.floor_plan(scene) for scene in sorted(scenes)}
+    traces = read_traces(folder / "traces.parquet")
+    flown = {(at.variant, at.path, at.seed, at.scene): trace for at, trace in traces.items()}
     report = ReportInput(
         record=record,
         provenance=provenance,
         interface=system.interface,
         outcomes=outcomes,
-        traces=read_traces(folder / "traces.parquet"),
+        traces=Traces(flown, system.control_dt_s),
         plans={scene: plan for scene, plan in plans.items() if plan is not None},
-        dt_s=system.control_dt_s,
     )
     return write_report(report, folder)
 
 
-def _read[Model: (DecisionRecord, RunProvenance)](path: Path, model: type[Model]) -> Model:
+def _table(path: Path) -> pa.Table:
+    try:
+        return pq.read_table(path)  # pyright: ignore[reportUnknownMemberType] - as its stubs are
+    except (OSError, pa.ArrowInvalid):
+        raise UserError(
+            f"{path} is missing or damaged: run the audit again with the same --out."
+        ) from None
+
+
+def _read(path: Path, model: type[_Model]) -> _Model:
     try:
         return model.model_validate_json(path.read_bytes())
     except FileNotFoundError:

@@ -13,7 +13,7 @@ from faultpath.errors import UserError
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.execution import Progress as RunProgress
 from faultpath.record import DecisionRecord
-from faultpath.report import terminal_record
+from faultpath.report import decision
 from faultpath.store import write_text
 from faultpath.trials import System
 
@@ -30,15 +30,13 @@ def run_audit(
     write_text(folder / "record.json", _json(record))
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
     save_pages(system, folder)
-    console.print(terminal_record(record))
+    console.print(decision(record))
     console.print(f"[bold]Report:[/bold] {folder / 'report.html'}", soft_wrap=True)
     _tell_failures(console, result)
     return len(result.failures)
 
 
-def _run(
-    console: Console, system: System, audit: Audit, folder: Path, workers: int
-) -> RunResult:
+def _run(console: Console, system: System, audit: Audit, folder: Path, workers: int) -> RunResult:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -58,10 +56,11 @@ def _run(
                 left=_left(now.seconds_left),
             )
 
+        def notice(text: str) -> None:
+            bar.console.print(text, markup=False)
+
         try:
-            return run_study(
-                audit.study, folder, workers, show, notice=bar.console.print, system=system
-            )
+            return run_study(audit.study, folder, workers, show, notice=notice, system=system)
         except Interrupted as stop:
             raise UserError(
                 f"interrupted with {stop.done} of {stop.total} blocks done and kept in {folder}; "

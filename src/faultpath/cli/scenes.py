@@ -15,7 +15,7 @@ def generate(
     count: Annotated[int, typer.Option(help="Number of scenes.")] = 100,
 ) -> None:
     """Generate a library from a seed; audits take the file as `--library`."""
-    from faultpath.quadrotor.scenes import write_library
+    from faultpath.quadrotor.scenes.library import write_library
 
     write_library(out, seed=seed, count=count, name=out.name.partition(".")[0])
     typer.echo(f"Written: {out}")
@@ -26,7 +26,7 @@ def show(
     library: Annotated[str, typer.Argument(help="Name or file of a library.")] = "held-out",
 ) -> None:
     """List the scenes of a library."""
-    from faultpath.quadrotor.scenes import load_library
+    from faultpath.quadrotor.scenes.library import load_library
 
     for scene in load_library(library).scenes:
         typer.echo(f"{scene.id}  {scene.topology}")

@@ -1,5 +1,6 @@
 """The modules under test, wired through taps: one control step from readings to command."""
 
+import hashlib
 from collections.abc import Sequence
 
 import torch
@@ -9,7 +10,7 @@ from faultpath.quadrotor import so3
 from faultpath.quadrotor.planner import MPPI, Proposal, shift
 from faultpath.quadrotor.predictors import Calibration, Physics, PredictorInputs
 from faultpath.quadrotor.reconstruction import Reconstruction, Sensed
-from faultpath.quadrotor.scenes import DistanceField
+from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.sensors import STATE_CHANNELS, Sensors, initial_state, lanes_last
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
@@ -49,7 +50,9 @@ class WindObserver:
             velocity_mps=take("velocity", "velocity_difference"),
             rotation=take("attitude", "nominal_model"),
             executed=take("action", "nominal_model"),
-            nominal=Calibration(take("mass", "nominal_model"), take("thrust_scale", "nominal_model")),
+            nominal=Calibration(
+                take("mass", "nominal_model"), take("thrust_scale", "nominal_model")
+            ),
             wind_map_mass_kg=take("mass", "wind_map"),
         )
 
@@ -66,6 +69,7 @@ class Navigator:
         scenes: Sequence[str],
         seed: int,
         lanes: Tensor,
+        wind_source: str,
         privileged_physics: bool,
     ) -> None:
         self._planner = planner
@@ -78,7 +82,7 @@ class Navigator:
         self._seed = seed
         self._lanes = lanes
         self._reads_physics = privileged_physics
-        self._wind_source = taps.bindings["wind"]
+        self._wind_source = wind_source
         self._plan: Tensor | None = None
         self._executed: Reading | None = None
 
@@ -100,6 +104,15 @@ class Navigator:
             command[:, chunk] = plan[0]
             self._plan[..., chunk] = shift(plan)
         return self._actuate(command, step)
+
+    def noise_hashes(self) -> tuple[str, ...]:
+        """Return, for each scene, a hash of the noise that its first replan drew."""
+        return tuple(
+            hashlib.sha256(
+                self._planner.sampler.noise([scene], self._seed, 0).numpy().tobytes()
+            ).hexdigest()[:16]
+            for scene in self._scenes
+        )
 
     def _inputs(self, sensors: Sensors, step: int) -> PredictorInputs:
         def take(channel: str, place: str) -> Tensor:
@@ -133,15 +146,10 @@ class Navigator:
 
     def _propose(self, inputs: PredictorInputs, chunk: list[int], step: int) -> Proposal:
         assert self._plan is not None
-        noise = self._planner.sampler.noise([self._id(i) for i in chunk], self._seed, step)
+        noise = self._planner.sampler.noise([self._scenes[i] for i in chunk], self._seed, step)
         return self._planner.propose(inputs.take(chunk), self._plan[..., chunk], noise)
 
-    def _id(self, lane: int) -> str:
-        return self._scenes[lane]
-
-    def _clearance(
-        self, chunks: list[list[int]], proposals: list[Proposal], step: int
-    ) -> Tensor:
+    def _clearance(self, chunks: list[list[int]], proposals: list[Proposal], step: int) -> Tensor:
         """Query the clearance along all rollouts and deliver it for the whole block at once."""
         first = proposals[0].rollout.positions
         clearance = first.new_zeros(len(self._scenes), *first.shape[2:])

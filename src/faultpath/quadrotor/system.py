@@ -2,12 +2,13 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Mapping, Sequence
-from functools import cache, cached_property
+from functools import cache
 from importlib.resources import files
 
-import numpy as np
 import torch
+from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
@@ -16,7 +17,10 @@ from faultpath.quadrotor.calibration import calibration
 from faultpath.quadrotor.navigator import Navigator, WindObserver
 from faultpath.quadrotor.options import Environment, PredictorName, QuadrotorOptions
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
-from faultpath.quadrotor.scenes import DistanceField, Scene, SceneLibrary, floor_plan, load_library
+from faultpath.quadrotor.scenes.draw import floor_plan
+from faultpath.quadrotor.scenes.field import DistanceField
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.wind import WIND_LEVELS
@@ -39,20 +43,22 @@ class Quadrotor(System):
 
     name = "quadrotor"
     control_dt_s = CONTROL_DT_S
-    block_size = 20
+    block_size = 25
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options
+        self._scenes: dict[str, Scene] = {}
+        self._variants = {v.name: v for v in _variants(_interface(), options)}
 
-    @cached_property
+    @property
     def interface(self) -> Interface:
         """See `System.interface`."""
         return _interface()
 
-    @cached_property
+    @property
     def variants(self) -> Mapping[str, Variant]:
         """Zero wind, observed wind and true wind, all with ground-truth clearance."""
-        return {variant.name: variant for variant in _variants(self.interface, self.options)}
+        return self._variants
 
     @property
     def fault_presets(self) -> Mapping[str, FaultPreset]:
@@ -79,6 +85,7 @@ class Quadrotor(System):
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
+    @torch.inference_mode()
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
         """See `System.run`; at most 32 scenes."""
         records = [self._scene(scene) for scene in scenes]
@@ -93,8 +100,7 @@ class Quadrotor(System):
             trace.append(world.state.position)
             if not world.progress.running[: world.count].any():
                 break
-        noise = navigator.noise_hashes()
-        return _outcomes(scenes, world, torch.stack(trace), taps, noise)
+        return _outcomes(scenes, world, torch.stack(trace), navigator.noise_hashes())
 
     def _navigator(
         self, variant: str, scenes: list[Scene], taps: Taps, seed: int, world: World
@@ -102,9 +108,7 @@ class Quadrotor(System):
         consumers = self.variants[variant].consumers
         observer = None
         if any(name.startswith("observer.") for name in consumers):
-            observer = WindObserver(
-                DisturbanceObserver(), taps.for_module("observer"), world.lanes
-            )
+            observer = WindObserver(DisturbanceObserver(), taps.for_module("observer"), world.lanes)
         return Navigator(
             planner=self.options.build_planner(),
             observer=observer,
@@ -113,6 +117,7 @@ class Quadrotor(System):
             scenes=[scene.id for scene in scenes],
             seed=seed,
             lanes=world.lanes,
+            wind_source=self.variants[variant].bindings["wind"],
             privileged_physics="predictor.physics" in consumers,
         )
 
@@ -120,17 +125,39 @@ class Quadrotor(System):
     def _free_space(self) -> bool:
         return self.options.environment is Environment.FREE_SPACE
 
-    @cached_property
-    def _scenes(self) -> dict[str, Scene]:
-        return {}
-
     def _scene(self, scene: str) -> Scene:
+        """Return a scene of a library that was asked for before, or of a frozen one."""
         if scene not in self._scenes:
             self.library(scene.rpartition("/")[0])
         if scene not in self._scenes:
-            raise UserError(f"there is no scene '{scene}' in its library; list them with "
-                            "`faultpath scenes list`.")
+            raise UserError(f"there is no scene '{scene}': `faultpath scenes list` shows them.")
         return self._scenes[scene]
+
+
+def _outcomes(
+    scenes: Sequence[str], world: World, positions: Tensor, noise: Sequence[str]
+) -> list[Outcome]:
+    """`positions` is `[T, 3, L]`, at the start and after each control step."""
+    end = world.progress
+    outcomes: list[Outcome] = []
+    for i, scene in enumerate(scenes):
+        time_s = float(end.time_s[i])
+        steps = math.ceil(time_s / CONTROL_DT_S - 1e-6)
+        status = Status.SUCCESS if end.succeeded[i] else Status.TIMEOUT
+        outcomes.append(
+            Outcome(
+                scene=scene,
+                status=Status.CRASH if end.crashed[i] else status,
+                time_s=time_s,
+                terminal_distance_m=float(end.terminal_distance_m[i]),
+                min_clearance_m=float(end.min_clearance_m[i]),
+                initial_hash=world.initial_hashes[i],
+                disturbance_hash=world.wind_hashes[i],
+                planner_noise_hash=noise[i],
+                trace=positions[: steps + 1, :, i].float().numpy(),
+            )
+        )
+    return outcomes
 
 
 @cache

@@ -10,7 +10,8 @@ from torch import Tensor
 
 from faultpath.quadrotor import wind as wind_model
 from faultpath.quadrotor.plant import Plant, PlantState
-from faultpath.quadrotor.scenes import Geometry, Scene
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import (
     COLLISION_RADIUS_M,

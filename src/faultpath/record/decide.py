@@ -15,6 +15,7 @@ from faultpath.record.model import (
     Reversal,
 )
 from faultpath.record.words import CORRECT, SHARED, effect_words, reversal_words, verdict
+from faultpath.statistics import Effect as Draws
 from faultpath.statistics import (
     Estimate,
     Resamples,
@@ -28,7 +29,6 @@ from faultpath.statistics import (
     success_effect,
     success_test,
 )
-from faultpath.statistics import Effect as Draws
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import Floats, Pairs, Side, pair
 from faultpath.trials.table import OutcomeTable
@@ -84,8 +84,10 @@ def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
 
 
 def _common(pairs: dict[str, Pairs]) -> dict[str, Pairs]:
-    kept = set.intersection(*(set(each.scenes) for each in pairs.values()))
-    return {name: each.only(tuple(kept)) for name, each in pairs.items()}
+    every = [set(each.scenes) for each in pairs.values()]
+    first = next(iter(pairs.values()))
+    kept = tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
+    return {name: each.only(kept) for name, each in pairs.items()}
 
 
 def _effect(
@@ -136,9 +138,7 @@ def _break_even(path: str, draws: dict[str, Draws]) -> PathBreakEven:
     return PathBreakEven(path=path, result=break_even(correct, faulty), curve=tuple(curve))
 
 
-def _reversal(
-    question: Question, isolated: Effect, shared: Effect, a: Draws, b: Draws
-) -> Reversal:
+def _reversal(question: Question, isolated: Effect, shared: Effect, a: Draws, b: Draws) -> Reversal:
     result = reversal(a, b)
     return Reversal(
         isolated=isolated.path,

@@ -68,9 +68,7 @@ def verdict(
     )
 
 
-def _headline(
-    question: Question, effects: Sequence[Effect], reversals: Sequence[Reversal]
-) -> str:
+def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence[Reversal]) -> str:
     repair, baseline = question.repair, question.baseline
     turned = [item.isolated for item in reversals if item.reversed]
     if turned:

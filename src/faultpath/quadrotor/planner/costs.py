@@ -25,6 +25,8 @@ class CostWeights(BaseModel):
     v_max_mps: float = 3.4  # paper, Table I
     heading: float = 0.5
     rate_effort: float = 0.05
+    thrust_effort: float = 0.0
+    """On the squared departure from hover thrust, as a fraction of it: the control cost of MPPI."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,8 @@ class Scored:
     """Clearance of the vehicle's centre along the rollout, `[S, H, K]`, metres."""
     goal: Tensor
     """`[3, S]`, metres, world frame."""
+    hover: Tensor
+    """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
 
 
 class GoalCost(ABC):
@@ -88,7 +92,9 @@ class NavigationCost:
         cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
         cost += self._heading(scored).mul_(w.heading)
         cost += scored.commands[:, 1:].square().sum(1).mean(0).mul_(w.rate_effort)
-        return cost
+        hover = scored.hover[:, None]
+        thrust = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
+        return cost.add_(thrust, alpha=w.thrust_effort)
 
     def _risk(self, clearance: Tensor) -> Tensor:
         w = self.weights

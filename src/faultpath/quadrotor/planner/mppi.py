@@ -54,6 +54,8 @@ class Proposal:
     commands: Tensor
     """`[H, 4, S, K]`."""
     rollout: Rollout
+    hover: Tensor
+    """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
 
 
 class MPPI:
@@ -81,7 +83,7 @@ class MPPI:
         """Roll candidates around `plan` `[H, 4, S]` out; `noise` `[H, 4, S, K]` is overwritten."""
         hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
         commands = self.sampler.candidates(plan, hover, noise)
-        return Proposal(commands, rollout(self.predictor, inputs, commands))
+        return Proposal(commands, rollout(self.predictor, inputs, commands), hover)
 
     def decide(self, proposal: Proposal, clearance: Tensor, goal: Tensor) -> Tensor:
         """Return the improved plan `[H, 4, S]`; its first row is the command to execute.
@@ -89,7 +91,7 @@ class MPPI:
         `clearance` is `[S, H, K]` along the proposal's positions, `goal` `[3, S]`.
         """
         commands = proposal.commands
-        cost = self._cost(Scored(proposal.rollout, commands, clearance, goal))
+        cost = self._cost(Scored(proposal.rollout, commands, clearance, goal, proposal.hover))
         weight = torch.softmax(-cost / self._temperature.of(cost), dim=1)
         return (commands * weight).sum(-1)
 

@@ -19,7 +19,8 @@ class _Memory:
     thrust_gain: Tensor
     inverse_mass: Tensor
     wind: Tensor
-    keep: Tensor  # exp(-h / motor time constant)
+    keep: Tensor  # share of a motor's lag left after a substep
+    mean: Tensor  # its mean share over the substep
     thrust: Tensor  # lagged collective thrust, N
     torque: Tensor  # lagged body torque, N m
 
@@ -41,12 +42,15 @@ class TrueParameter(Predictor):
         if physics is None:
             raise ValueError("the true-parameter predictor was given no physical parameters")
         inverse_mass = 1 / inputs.wind_map_mass_kg
+        lag = physics.motor_time_constant_s / self._h
+        keep = torch.exp(-1 / lag)
         return _Memory(
             physics=physics,
             thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
             inverse_mass=inverse_mass,
             wind=inputs.wind_mps,
-            keep=torch.exp(-self._h / physics.motor_time_constant_s),
+            keep=keep,
+            mean=lag * (1 - keep),
             thrust=physics.collective_thrust_n,
             torque=torch.zeros_like(inputs.state.rate),
         )
@@ -56,10 +60,19 @@ class TrueParameter(Predictor):
         now: _Memory = memory
         thrust, torque = now.thrust, now.torque
         for _ in range(SUBSTEPS):
-            thrust = torch.lerp(command[0], thrust, now.keep)
-            state, torque = self._substep(state, command[1:], thrust, torque, now)
+            lag = thrust - command[0]
+            average = torch.addcmul(command[0], lag, now.mean)  # over the substep: exact
+            thrust = torch.addcmul(command[0], lag, now.keep)
+            state, torque = self._substep(state, command[1:], average, torque, now)
         return state, _Memory(
-            now.physics, now.thrust_gain, now.inverse_mass, now.wind, now.keep, thrust, torque
+            now.physics,
+            now.thrust_gain,
+            now.inverse_mass,
+            now.wind,
+            now.keep,
+            now.mean,
+            thrust,
+            torque,
         )
 
     def _substep(

@@ -1,0 +1,127 @@
+"""The planner: noise, candidates, weights and the two goal costs."""
+
+import pytest
+import torch
+
+from faultpath.quadrotor.options import QuadrotorOptions
+from faultpath.quadrotor.planner import (
+    AutoregressiveSampler,
+    FixedTemperature,
+    RunningGoal,
+    SamplerSettings,
+    ScaledTemperature,
+    Scored,
+    TerminalGoal,
+    shift,
+)
+from faultpath.quadrotor.predictors import Calibration, PredictorInputs
+from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
+
+SCENES = ["s/0", "s/1", "s/2", "s/3"]
+
+
+def planner_inputs(scenes=4, mass=1.0):
+    state = State.hover(torch.zeros(3, scenes, 1), torch.zeros(scenes, 1))
+    column = torch.full((scenes, 1), mass)
+    calibration = Calibration(column, torch.ones_like(column))
+    return PredictorInputs(state, calibration, calibration, column, torch.zeros(3, scenes, 1))
+
+
+def test_noise_is_standard_and_correlated_along_the_horizon():
+    sampler = AutoregressiveSampler(SamplerSettings(candidates=4096))
+    noise = sampler.noise(SCENES, 0, 3)[..., 1:]
+    assert float(noise.std()) == pytest.approx(1, abs=0.01)
+    neighbours = (noise[1:] * noise[:-1]).mean()
+    assert float(neighbours) == pytest.approx(0.7, abs=0.01)
+
+
+def test_noise_belongs_to_scene_seed_and_step():
+    sampler = AutoregressiveSampler()
+    noise = sampler.noise(SCENES, 0, 3)
+    assert torch.equal(sampler.noise(["s/2"], 0, 3)[:, :, 0], noise[:, :, 2])
+    assert not torch.equal(sampler.noise(["s/2"], 1, 3)[:, :, 0], noise[:, :, 2])
+    assert not torch.equal(sampler.noise(["s/2"], 0, 4)[:, :, 0], noise[:, :, 2])
+
+
+def test_first_candidate_is_the_plan():
+    sampler = AutoregressiveSampler()
+    plan = torch.randn(20, 4, 4) * 0.1
+    plan[:, 0] += GRAVITY_MPS2
+    candidates = sampler.candidates(
+        plan, torch.full((4,), GRAVITY_MPS2), sampler.noise(SCENES, 0, 0)
+    )
+    assert torch.equal(candidates[..., 0], plan)
+
+
+def test_candidates_are_bounded_evenly_around_hover():
+    sampler = AutoregressiveSampler(SamplerSettings(thrust_sigma=1.0, rate_sigma_radps=(9, 9, 9)))
+    hover = torch.full((4,), 8.0)
+    plan = torch.zeros(20, 4, 4)
+    plan[:, 0] = 8.0
+    candidates = sampler.candidates(plan, hover, sampler.noise(SCENES, 0, 0))
+    assert float(candidates[:, 0].min()) == 0
+    assert float(candidates[:, 0].max()) == 16
+    assert float(candidates[:, 0].mean()) == pytest.approx(8, abs=0.1)
+    for axis, limit in enumerate(RATE_LIMIT_RADPS):
+        assert float(candidates[:, axis + 1].abs().max()) == limit
+
+
+def test_trim_follows_the_supplied_calibration():
+    """The hover centre moves with m~ and T~; nothing else of the sampler does."""
+    planner = QuadrotorOptions().build_planner()
+    wrong = planner_inputs(mass=1.1)
+    plan = planner.initial_plan(wrong.trim.hover_thrust(GRAVITY_MPS2)[:, 0])
+    assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
+
+
+def scored(positions, goal):
+    zero = torch.zeros_like(positions)
+    final = State(positions[:, :, -1], zero[:, :, -1], torch.zeros(3, 3, 1, 2), zero[:, :, -1])
+    return Scored(
+        Rollout(positions, zero, final), torch.zeros(3, 4, 1, 2), zero[0], goal, torch.ones(1)
+    )
+
+
+def test_goal_costs_differ_in_the_way_that_matters():
+    """A dip that is made good by the end is free for the terminal cost only."""
+    straight = torch.zeros(3, 1, 3)
+    dip = straight.clone()
+    dip[2, 0, 1] = -1.0
+    case = scored(torch.stack([straight, dip], dim=-1), torch.zeros(3, 1))
+    assert torch.equal(TerminalGoal().distance(case), torch.zeros(1, 2))
+    assert RunningGoal().distance(case)[0].tolist() == pytest.approx([0, 1 / 3])
+
+
+def test_temperatures():
+    cost = torch.tensor([[0.0, 1.0, 2.0, 3.0, 100.0, 100.0, 100.0, 100.0]])
+    assert FixedTemperature(2.0).of(cost).item() == 2
+    assert ScaledTemperature(0.5).of(cost).item() == pytest.approx(0.5 * cost[0, :4].std().item())
+    # What hits something does not change how the rest is weighed.
+    worse = cost.clone()
+    worse[0, 4:] = 1e6
+    assert torch.equal(ScaledTemperature(0.5).of(worse), ScaledTemperature(0.5).of(cost))
+
+
+def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
+    planner = QuadrotorOptions().build_planner()
+    given = planner_inputs()
+    plan = planner.initial_plan(torch.full((4,), GRAVITY_MPS2))
+    goal = torch.zeros(3, 4)
+    goal[2] = torch.tensor([3.0, -3.0, 3.0, -3.0])
+    proposal = planner.propose(given, plan, planner.sampler.noise(SCENES, 0, 0))
+    clear = torch.ones(4, 20, 512)
+    better = planner.decide(proposal, clear, goal)
+    change = better[:, 0].mean(0) - GRAVITY_MPS2
+    assert (change[[0, 2]] > 0.1).all()
+    assert (change[[1, 3]] < -0.1).all()
+    # A ceiling just above: the same goal no longer pulls the plan up.
+    ceiling = 0.3 - proposal.rollout.positions[2]
+    kept = planner.decide(proposal, ceiling, goal)
+    assert (kept[:, 0].mean(0)[[0, 2]] < better[:, 0].mean(0)[[0, 2]]).all()
+
+
+def test_shift_repeats_the_last_row():
+    plan = torch.arange(3.0).view(3, 1, 1).expand(3, 4, 1)
+    assert shift(plan)[:, 0, 0].tolist() == [1, 2, 2]

@@ -1,0 +1,153 @@
+"""The analytic predictors against closed forms, and their batches against themselves."""
+
+from dataclasses import replace
+
+import pytest
+import torch
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.predictors import (
+    Calibration,
+    KinematicIntegrator,
+    Physics,
+    PredictorInputs,
+    TrueParameter,
+)
+from faultpath.quadrotor.predictors.drag import LinearDrag
+from faultpath.quadrotor.rollout import rollout
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import (
+    GRAVITY_MPS2,
+    NOMINAL_DRAG_KGPS,
+    NOMINAL_INERTIA_KGM2,
+    NOMINAL_MOTOR_TIME_CONSTANT_S,
+)
+
+HORIZON = 20
+DT = 0.05
+
+
+def inputs(
+    scenes=1, mass=1.0, scale=1.0, wind=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), thrust=9.81
+):
+    column = torch.ones(scenes, 1, dtype=torch.float64)
+    state = State.hover(torch.zeros(3, scenes, 1, dtype=torch.float64), 0 * column)
+    state = State(
+        state.position,
+        torch.tensor(velocity, dtype=torch.float64).view(3, 1, 1).expand(3, scenes, 1),
+        state.rotation,
+        state.rate,
+    )
+    calibration = Calibration(mass * column, scale * column)
+
+    def three(values):
+        return torch.tensor(values, dtype=torch.float64).view(3, 1, 1).expand(3, scenes, 1)
+
+    return PredictorInputs(
+        state=state,
+        dynamics=calibration,
+        trim=calibration,
+        wind_map_mass_kg=mass * column,
+        wind_mps=three(wind),
+        physics=Physics(
+            three(NOMINAL_INERTIA_KGM2),
+            column,
+            NOMINAL_MOTOR_TIME_CONSTANT_S * column,
+            three(NOMINAL_DRAG_KGPS),
+            thrust * column,
+        ),
+    )
+
+
+def commands(thrust, rates=(0.0, 0.0, 0.0), scenes=1, candidates=4):
+    row = torch.tensor([thrust, *rates], dtype=torch.float64)
+    return row.view(1, 4, 1, 1).expand(HORIZON, 4, scenes, candidates).contiguous()
+
+
+PREDICTORS = [KinematicIntegrator(), KinematicIntegrator(drag=True), TrueParameter()]
+
+
+@pytest.mark.parametrize("predictor", PREDICTORS)
+def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
+    given = inputs(mass=1.3, scale=0.8, thrust=1.3 * GRAVITY_MPS2 / 0.8)
+    hover = float(given.trim.hover_thrust(GRAVITY_MPS2))
+    end = rollout(predictor, given, commands(hover)).final
+    assert end.position.abs().max() < 1e-9
+
+
+@pytest.mark.parametrize("error", [-0.1, 0.1])
+def test_calibration_error_scales_the_thrust_acceleration(error):
+    """The implied thrust acceleration scales by (1 - e)/(1 + e) (paper, Section IV-B)."""
+    given = inputs(mass=1 + error, scale=1 - error)
+    rolled = rollout(KinematicIntegrator(), given, commands(GRAVITY_MPS2))
+    expected = GRAVITY_MPS2 * ((1 - error) / (1 + error) - 1)
+    assert float(rolled.velocities[2, 0, -1, 0]) == pytest.approx(expected * HORIZON * DT)
+
+
+def test_wind_term_is_the_nominal_linear_map():
+    """R (c o R^T w)/m~ without drag: constant acceleration (paper, Section IV-A)."""
+    given = inputs(mass=1.5, wind=(2.0, -1.0, 4.0))
+    rolled = rollout(KinematicIntegrator(), given, commands(1.5 * GRAVITY_MPS2))
+    expected = 0.30 * torch.tensor([2.0, -1.0, 4.0], dtype=torch.float64) / 1.5
+    torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], expected * HORIZON * DT)
+
+
+def test_drag_slows_the_vehicle_as_the_closed_form_says():
+    given = inputs(velocity=(3.0, 0.0, 0.0))
+    rolled = rollout(KinematicIntegrator(drag=True), given, commands(GRAVITY_MPS2))
+    exact = 3.0 * torch.exp(torch.tensor(-0.30 * HORIZON * DT, dtype=torch.float64))
+    assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(float(exact), rel=0.01)
+
+
+def test_air_at_rest_with_the_vehicle_exerts_no_force():
+    given = inputs(wind=(3.0, 1.0, 0.0), velocity=(3.0, 1.0, 0.0))
+    rolled = rollout(KinematicIntegrator(drag=True), given, commands(GRAVITY_MPS2))
+    torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], given.state.velocity[:, 0, 0])
+
+
+def test_rate_lag_turns_by_its_closed_form():
+    given = inputs()
+    end = rollout(KinematicIntegrator(), given, commands(GRAVITY_MPS2, (0.0, 0.0, 1.0))).final
+    time = HORIZON * DT
+    lag = 0.05
+    angle = time - lag * (1 - torch.exp(torch.tensor(-time / lag, dtype=torch.float64)))
+    assert float(so3.log(end.rotation)[2, 0, 0]) == pytest.approx(float(angle))
+
+
+def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
+    given = inputs(thrust=0.0)
+    still_air = replace(given.physics, drag_kgps=torch.zeros_like(given.physics.drag_kgps))
+    given = replace(given, physics=still_air)
+    rolled = rollout(TrueParameter(), given, commands(GRAVITY_MPS2))
+    # From still motors, gravity acts until the thrust is there: the loss of speed tends to
+    # g times the motor time constant.
+    assert float(rolled.velocities[2, 0, 4, 0]) == pytest.approx(
+        -GRAVITY_MPS2 * NOMINAL_MOTOR_TIME_CONSTANT_S, rel=0.01
+    )
+
+
+@pytest.mark.parametrize("predictor", PREDICTORS)
+def test_a_scene_does_not_depend_on_its_neighbours(predictor):
+    generator = torch.Generator().manual_seed(1)
+    wind = torch.randn(3, 4, 1, generator=generator)
+    one = inputs(scenes=4)
+    state = State(
+        *(getattr(one.state, n).float() for n in ("position", "velocity", "rotation", "rate"))
+    )
+    calibration = Calibration(torch.full((4, 1), 1.1), torch.full((4, 1), 0.9))
+    physics = Physics(*(v.float() for v in vars(one.physics).values()))
+    given = PredictorInputs(state, calibration, calibration, torch.full((4, 1), 1.1), wind, physics)
+    noise = torch.randn(HORIZON, 4, 4, 512, generator=generator)
+    noise[:, 0] += GRAVITY_MPS2
+    whole = rollout(predictor, given, noise)
+    order = [2, 0, 3, 1]
+    moved = rollout(predictor, given.take(order), noise[:, :, order].contiguous())
+    assert torch.equal(moved.positions, whole.positions[:, order])
+    assert torch.equal(moved.velocities, whole.velocities[:, order])
+
+
+def test_anisotropic_drag_inverts_its_own_force():
+    air = LinearDrag((0.2, 0.3, 0.5))
+    rotation = so3.exp(torch.tensor([[0.3], [-0.8], [0.5]], dtype=torch.float64))
+    wind = torch.tensor([[1.0], [-2.0], [3.0]], dtype=torch.float64)
+    torch.testing.assert_close(air.inverse(rotation, air.force(rotation, wind)), wind)

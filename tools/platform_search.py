@@ -1,0 +1,122 @@
+"""Search for the planner settings of the quadrotor, on the selection library, baselines only.
+
+    python tools/platform_search.py --scenes 20 --out docs/design/platform-search.json
+
+The paper's planner weights are unreleased. What may be matched are quantities of the platform
+(the claims marked `platform`): success, time and how much the coupled calibration error hurts a
+baseline. No repair flies here, and no held-out scene. `docs/design/platform.md` says what was
+tried and why the frozen settings were chosen.
+"""
+
+import argparse
+import itertools
+import json
+import os
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from statistics import median
+
+import torch
+
+from faultpath.faults import parse_fault
+from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
+from faultpath.quadrotor.system import Quadrotor
+from faultpath.taps import Taps
+
+# name: (variant, options, fault). All are baselines: no wind is reconstructed.
+CELLS = {
+    "free-space": ("zero-wind", {"environment": "free-space"}, None),
+    "nominal": ("zero-wind", {}, None),
+    "e=+0.1": ("zero-wind", {}, "calibration=+0.1"),
+    "e=-0.1": ("zero-wind", {}, "calibration=-0.1"),
+    "zero-wind L3": ("zero-wind", {"wind": "L3"}, None),
+    "true-wind L3": ("true-wind", {"wind": "L3"}, None),
+}
+
+GRID = {
+    "temperature": [0.03, 0.06, 0.12],
+    "rate_sigma": [0.5, 1.0],
+    "rate_effort": [0.3, 1.0, 3.0],
+    "margin_m": [0.1, 0.25],
+}
+
+
+def settings(temperature: float, rate_sigma: float, rate_effort: float, margin_m: float, **fixed):
+    """Return planner settings of one grid point."""
+    base = PlannerSettings()
+    weights = {"rate_effort": rate_effort, "margin_m": margin_m, **fixed}
+    sigma = (rate_sigma, rate_sigma, 0.4 * rate_sigma)
+    return base.model_copy(
+        update={
+            "temperature": temperature,
+            "sampler": base.sampler.model_copy(update={"rate_sigma_radps": sigma}),
+            "terminal": base.terminal.model_copy(update=weights),
+            "running": base.running.model_copy(update=weights),
+        }
+    )
+
+
+def fly(job):
+    """Fly one cell of one grid point; return its counts."""
+    point, planner, cell, count = job
+    torch.set_num_threads(1)
+    variant, options, fault = CELLS[cell]
+    system = Quadrotor(QuadrotorOptions(planner=planner, settings=settings(**point), **options))
+    wiring = system.variants[variant]
+    scenes = [scene.id for scene in system.library("selection").scenes[:count]]
+    outcomes = []
+    for start in range(0, count, system.block_size):
+        block = scenes[start : start + system.block_size]
+        faults = ()
+        if fault:
+            parsed = parse_fault(fault, system.interface, system.fault_presets, 0.05)
+            faults = parsed.resolved(system.interface, wiring.consumers)
+        taps = Taps(
+            system.interface,
+            faults,
+            scenes=tuple(block),
+            dt_s=system.control_dt_s,
+            bindings=wiring.bindings,
+            consumers=wiring.consumers,
+            privileged=wiring.privileged,
+        )
+        outcomes += system.run(variant, block, taps, 0)
+    times = [o.time_s for o in outcomes if o.status == "success"]
+    return {
+        "point": point,
+        "planner": planner,
+        "cell": cell,
+        "scenes": count,
+        **{s: sum(o.status == s for o in outcomes) for s in ("success", "crash", "timeout")},
+        "median_time_s": round(median(times), 2) if times else None,
+    }
+
+
+def main() -> None:
+    """Fly the grid and write every count."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--scenes", type=int, default=20)
+    parser.add_argument("--planners", default="terminal")
+    parser.add_argument("--cells", default=",".join(CELLS))
+    parser.add_argument("--grid", type=json.loads, default=GRID, help="JSON: name to values")
+    parser.add_argument("--out", type=Path, required=True)
+    args = parser.parse_args()
+    points = [dict(zip(args.grid, v, strict=True)) for v in itertools.product(*args.grid.values())]
+    jobs = [
+        (point, planner, cell, args.scenes)
+        for point in points
+        for planner in args.planners.split(",")
+        for cell in args.cells.split(",")
+    ]
+    done = json.loads(args.out.read_text()) if args.out.exists() else []
+    known = {json.dumps([d["point"], d["planner"], d["cell"], d["scenes"]]) for d in done}
+    jobs = [job for job in jobs if json.dumps(list(job)) not in known]
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        for number, result in enumerate(pool.map(fly, jobs), 1):
+            done.append(result)
+            args.out.write_text(json.dumps(done, indent=1) + "\n")
+            print(f"{number}/{len(jobs)}", json.dumps(result), flush=True)
+
+
+if __name__ == "__main__":
+    main()
