@@ -18,8 +18,8 @@ def effect_words(question: Question, effect: Effect) -> str:
     if effect.minimum_detectable_pp is None:
         return f"{where}, no difference is detected ({shown})."
     return (
-        f"{where}, no difference is detected ({shown}); one of "
-        f"{effect.minimum_detectable_pp:.0f} pp would have been, four times in five."
+        f"{where}, no difference is detected ({shown}); a true one of "
+        f"{effect.minimum_detectable_pp:.0f} pp would be, in four audits of five."
     )
 
 
@@ -59,7 +59,7 @@ def verdict(
     sentences = [effect.words for effect in effects]
     if break_even:
         clauses = [f"{item.result.words} {_under(item.path)}" for item in break_even]
-        sentences.append(f"{question.repair} is {'; '.join(clauses)}.")
+        sentences.append(f"{question.repair} is, on the point estimates, {'; '.join(clauses)}.")
     sentences += [item.words for item in reversals]
     return Verdict(
         headline=_headline(question, effects, reversals),
@@ -119,8 +119,8 @@ def _would_change(
         firm = getattr(shares, item.result.direction)
         if firm < 0.975:
             lines.append(
-                f"Other scenes: in {100 * (1 - firm):.0f} % of the resampled libraries the "
-                f"repair is not '{item.result.direction}' favoured {_under(item.path)}."
+                f"Other scenes: {100 * (1 - firm):.0f} % of the resampled libraries give another "
+                f"answer than '{item.result.words}' {_under(item.path)}."
             )
     lines.append(
         "Another size or sign of the fault, another library or another wiring of the system: the "
