@@ -21,7 +21,9 @@ def command(
     repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
     fault: Annotated[
         str,
-        typer.Option(help="`calibration=+0.1`, or `CHANNEL:KIND=VALUE[@CONSUMERS][,onset=STEP]`."),
+        typer.Option(
+            help="`calibration=+0.1`, or as in `mass:scale=1.1`, `wind:delay=5@predictor,onset=20`."
+        ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
     scenes: Annotated[int | None, typer.Option(help="Run only the first so many scenes.")] = None,
@@ -39,7 +41,8 @@ def command(
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
     workers: Annotated[
-        int | None, typer.Option(help="Worker processes; default one a core.")
+        int | None,
+        typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
     ] = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
@@ -70,7 +73,8 @@ def command(
         seeds=numbers(seeds, "--seeds"),
     )
     folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
-    failed = run_audit(built, audit, folder, workers or os.cpu_count() or 1, tuple(sys.argv))
+    count = (os.cpu_count() or 1) if workers is None else workers
+    failed = run_audit(built, audit, folder, count, tuple(sys.argv))
     return FAILED_TRIALS if failed else 0
 
 

@@ -39,4 +39,4 @@ def command(
     for path, text in writes.items():
         if path is not None:
             write_text(path, text())
-            console.print(f"Written: {path}", soft_wrap=True)
+            console.print(f"Written: {path}", markup=False, soft_wrap=True)

@@ -5,11 +5,12 @@ Nothing heavy is imported here: torch and the statistics load when a verb needs 
 """
 
 import sys
+from typing import NoReturn
 
-import click
 import typer
 
 from faultpath.cli import audit, interface, report, scenes
+from faultpath.cli.options import Stopped
 from faultpath.errors import UserError
 
 app = typer.Typer(
@@ -27,19 +28,35 @@ app.add_typer(scenes.app, name="scenes")
 
 USER_ERROR = 2
 INTERRUPTED = 130
+"""What shells report for a program that Ctrl-C ended; typer returns it as well."""
 
 
 def main() -> None:
     """Run the command line; a user's mistake ends in one sentence and status 2."""
     try:
-        status = app(standalone_mode=False)
+        status = app(prog_name="faultpath", standalone_mode=False)
+    except Stopped as stop:
+        _end(str(stop), INTERRUPTED)
     except UserError as error:
-        typer.echo(f"faultpath: {error}", err=True)
-        sys.exit(USER_ERROR)
-    except click.ClickException as error:
-        error.show()
-        sys.exit(error.exit_code)
-    except (click.Abort, KeyboardInterrupt):
-        typer.echo("faultpath: interrupted.", err=True)
-        sys.exit(INTERRUPTED)
+        _end(str(error), USER_ERROR)
+    except typer.TyperException as error:
+        _end(_sentence(error), USER_ERROR)
+    if status == INTERRUPTED:
+        _end("interrupted; the same command goes on from what is stored.", INTERRUPTED)
     sys.exit(status if isinstance(status, int) else 0)
+
+
+def _end(sentence: str, status: int) -> NoReturn:
+    if sentence:
+        typer.echo(f"faultpath: {sentence}", err=True)
+    sys.exit(status)
+
+
+def _sentence(error: typer.TyperException) -> str:
+    """Say what the parser of the arguments found wrong; nothing where it has shown the help."""
+    said = error.format_message().strip().rstrip(".").replace(". ", ": ")
+    if not said:
+        return ""
+    context = getattr(error, "ctx", None)
+    command = getattr(context, "command_path", "faultpath")
+    return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."

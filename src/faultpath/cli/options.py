@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from faultpath.errors import UserError
 
 
+class Stopped(UserError):
+    """Ctrl-C ended the command; the sentence says what is kept and how to go on."""
+
+
 def settings(pairs: Sequence[str]) -> dict[str, str]:
     """Read `key=value` pairs; `UserError` for one without `=` or given twice."""
     found: dict[str, str] = {}

@@ -22,8 +22,18 @@ def read_record(folder: Path) -> DecisionRecord:
 
 
 def save_pages(system: System, folder: Path) -> list[Path]:
-    """Write report and tables from what the run folder holds; return their paths."""
+    """Write report and tables from what the run folder holds; return their paths.
+
+    `UserError` for a file of the folder that is missing or damaged, and for a library that is no
+    longer the one that was flown.
+    """
     record = read_record(folder)
+    asked = record.question
+    if system.library(asked.library).content_hash != asked.library_hash:
+        raise UserError(
+            f"library '{asked.library}' has changed since {folder} was made: run the audit again "
+            "into a new folder."
+        )
     provenance = _read(folder / "provenance.json", RunProvenance)
     outcomes = _table(folder / "outcomes.parquet")
     scenes = {str(scene) for scene in outcomes["scene"].to_pylist()}

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.audit import Audit
+from faultpath.cli.options import Stopped
 from faultpath.cli.pages import save_pages
-from faultpath.errors import UserError
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.execution import Progress as RunProgress
 from faultpath.record import DecisionRecord
@@ -21,18 +21,22 @@ from faultpath.trials import System
 def run_audit(
     system: System, audit: Audit, folder: Path, workers: int, command: Sequence[str]
 ) -> int:
-    """Run, decide and write the run folder; return the number of trials that failed."""
+    """Run, decide and write the run folder; return the number of trials that failed.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
+    compare.
+    """
     console = Console()
     stopwatch = Stopwatch()
     result = _run(console, system, audit, folder, workers)
+    _tell_failures(console, result)
     record = audit.conclude(result.outcomes)
     provenance = run_provenance(result, stopwatch, command, workers)
     write_text(folder / "record.json", _json(record))
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
     save_pages(system, folder)
     console.print(decision(record))
-    console.print(f"[bold]Report:[/bold] {folder / 'report.html'}", soft_wrap=True)
-    _tell_failures(console, result)
+    console.print(f"Report: {folder / 'report.html'}", markup=False, soft_wrap=True)
     return len(result.failures)
 
 
@@ -57,12 +61,12 @@ def _run(console: Console, system: System, audit: Audit, folder: Path, workers: 
             )
 
         def notice(text: str) -> None:
-            bar.console.print(text, markup=False)
+            bar.console.print(text, markup=False, soft_wrap=True)
 
         try:
             return run_study(audit.study, folder, workers, show, notice=notice, system=system)
         except Interrupted as stop:
-            raise UserError(
+            raise Stopped(
                 f"interrupted with {stop.done} of {stop.total} blocks done and kept in {folder}; "
                 "run the same command again to resume."
             ) from None
@@ -86,4 +90,5 @@ def _tell_failures(console: Console, result: RunResult) -> None:
         f"[bold red]{len(result.failures)} trials failed and void their pairs.[/bold red]"
     )
     for failure in result.failures:
-        console.print(f"  {failure.scene}: {failure.error} ({failure.details})", markup=False)
+        line = f"  {failure.scene}: {failure.error} ({failure.details})"
+        console.print(line, markup=False, soft_wrap=True)

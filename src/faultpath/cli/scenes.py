@@ -10,14 +10,23 @@ app = typer.Typer(help="Libraries of scenes for the quadrotor.", no_args_is_help
 
 @app.command("generate")
 def generate(
-    out: Annotated[Path, typer.Argument(help="File to write, for example mine.json.gz.")],
+    out: Annotated[Path, typer.Argument(help="File to write, for example mine.json.")],
     seed: Annotated[int, typer.Option(help="Seed of the library.")],
     count: Annotated[int, typer.Option(help="Number of scenes.")] = 100,
 ) -> None:
     """Generate a library from a seed; audits take the file as `--library`."""
+    from faultpath.errors import UserError
     from faultpath.quadrotor.scenes.library import write_library
 
-    write_library(out, seed=seed, count=count, name=out.name.partition(".")[0])
+    name = out.name.partition(".")[0]
+    if not name:
+        raise UserError(f"the file {str(out)!r} gives the library no name: call it mine.json, say.")
+    try:
+        write_library(out, seed=seed, count=count, name=name)
+    except OSError as error:
+        raise UserError(
+            f"cannot write {out} ({error.strerror}): choose a place that you may write to."
+        ) from error
     typer.echo(f"Written: {out}")
 
 

@@ -5,6 +5,7 @@ from statistics import median
 
 import numpy as np
 
+from faultpath.errors import UserError
 from faultpath.record.model import (
     Cell,
     DecisionRecord,
@@ -43,12 +44,15 @@ def decide(
 
     Scenes in which a pair is void on any path are left out of all of them, so that every effect
     speaks of the same scenes and shares one set of bootstrap resamples. `PairingRefused` when arms
-    did not meet the same conditions; `ValueError` when no scene is left.
+    did not meet the same conditions; `UserError` when no scene is left.
     """
     pairs = _common({path.name: _pair(question, path.name, table) for path in paths})
     n_scenes = len(next(iter(pairs.values())).scenes)
     if n_scenes == 0:
-        raise ValueError("every pair is void: no scene is left to compare")
+        raise UserError(
+            "no scene is left to compare, because in each of them a trial failed: mend what made "
+            "it fail, or choose other scenes."
+        )
     resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
     draws = {
         name: success_effect(each.first.success, each.second.success, resamples)
