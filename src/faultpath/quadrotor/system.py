@@ -66,11 +66,11 @@ class Quadrotor(System):
         return {"calibration": calibration}
 
     def library(self, name: str) -> Library:
-        """See `System.library`."""
+        """See `System.library`; a file's library keeps its path for a name, to be found again."""
         library = load_library(name)
         self._scenes.update({scene.id: scene for scene in library.scenes})
         refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
-        return Library(library.name, refs, library.content_hash)
+        return Library(name, refs, library.content_hash)
 
     def floor_plan(self, scene: str) -> FloorPlan:
         """See `System.floor_plan`."""
