@@ -58,8 +58,10 @@ class PlannerSettings(BaseModel):
 
     sampler: SamplerSettings = SamplerSettings()
     terminal: CostWeights = CostWeights()
-    running: CostWeights = CostWeights()
-    temperature: float = 0.3
+    running: CostWeights = CostWeights(thrust_effort=5.0)
+    """A mean distance gains less from a change of thrust than the distance at the end does, so
+    the same effort weight would weigh more."""
+    temperature: float = 0.08
     """Fraction of the spread of the better half of the candidates' costs."""
 
 

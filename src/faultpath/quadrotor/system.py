@@ -23,13 +23,9 @@ from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.wind import WIND_LEVELS
 from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, System, Variant
-
-PHYSICS_VERSION = 1
-"""Counted up when the plant, the planner or a module changes what a trial gives."""
 
 
 def create(**options: str) -> System:
@@ -79,9 +75,8 @@ class Quadrotor(System):
     def fingerprint(self) -> str:
         """See `System.fingerprint`."""
         content = {
-            "physics": PHYSICS_VERSION,
+            "code": _code_digest(),
             "options": self.options.model_dump(mode="json"),
-            "wind": repr(WIND_LEVELS[self.options.wind]),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
@@ -158,6 +153,21 @@ def _outcomes(
             )
         )
     return outcomes
+
+
+@cache
+def _code_digest() -> str:
+    """Hash of every file that decides a trial: results of two codes never mix in a folder."""
+    package = files("faultpath")
+    parts = [package / name for name in ("quadrotor", "taps", "faults", "arrays.py", "streams.py")]
+    digest = hashlib.sha256()
+    while parts:
+        part = parts.pop()
+        if part.is_dir():
+            parts += sorted(part.iterdir(), key=lambda child: child.name)
+        elif part.name.endswith((".py", ".yaml")):
+            digest.update(part.name.encode() + part.read_bytes())
+    return digest.hexdigest()
 
 
 @cache

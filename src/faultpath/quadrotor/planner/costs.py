@@ -12,20 +12,23 @@ from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
 
 class CostWeights(BaseModel):
-    """Weights of the terms, per replan. Goal, risk and speed are the paper's terms."""
+    """Weights of the terms, per replan. Goal, risk and speed are the paper's terms.
+
+    The values were matched on the selection library (`docs/design/platform.md`).
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     goal: float = 10.0
     risk: float = 40.0
     hit: float = 400.0
-    margin_m: float = 0.20
+    margin_m: float = 0.25
     """Clearance beyond the collision radius below which risk starts."""
     speed: float = 20.0
     v_max_mps: float = 3.4  # paper, Table I
     heading: float = 0.5
-    rate_effort: float = 0.05
-    thrust_effort: float = 0.0
+    rate_effort: float = 0.5
+    thrust_effort: float = 40.0
     """On the squared departure from hover thrust, as a fraction of it: the control cost of MPPI."""
 
 

@@ -1,0 +1,70 @@
+"""What a calibration error does to a hovering vehicle, with either goal cost.
+
+The vehicle settles where the planned acceleration makes up for the misjudged thrust. The terminal
+cost is soft in height, so the offset is large; the running cost is stiff and hides the error. At
+correct calibration the planner must not lean to either side, or one sign of the error would be
+hidden.
+"""
+
+import pytest
+import torch
+
+from faultpath.quadrotor.options import PlannerName, QuadrotorOptions
+from faultpath.quadrotor.planner import shift
+from faultpath.quadrotor.plant import Plant
+from faultpath.quadrotor.predictors import Calibration, PredictorInputs
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, Vehicle
+
+ERRORS = (0.0, 0.1, -0.1)
+SECONDS = 4.0
+
+
+def hover_heights(planner_name):
+    """Mean height offset over the second half of a hover, m, for each of `ERRORS`."""
+    planner = QuadrotorOptions(planner=planner_name).build_planner()
+    lanes = 32
+    plant = Plant(Vehicle.nominal(lanes))
+    rest = torch.zeros(3, lanes, dtype=torch.float64)
+    now = plant.start(State.hover(rest, rest[0]))
+    calm = torch.zeros(STEPS_PER_CONTROL, 3, lanes, dtype=torch.float64)
+    errors = torch.tensor([*ERRORS, 0.0])[:, None]
+    supplied = Calibration(1 + errors, 1 - errors)
+    plan = planner.initial_plan(supplied.hover_thrust(9.81)[:, 0])
+    steps = int(SECONDS * 20)
+    heights = []
+    for step in range(steps):
+        state = now.state.take(torch.arange(4)).to(torch.float32)
+        column = State(*(part[..., None] for part in vars(state).values()))
+        inputs = PredictorInputs(column, supplied, supplied, supplied.mass_kg, torch.zeros(3, 4, 1))
+        noise = planner.sampler.noise([f"hover/{i}" for i in range(4)], 0, step)
+        proposal = planner.propose(inputs, plan, noise)
+        plan = planner.decide(proposal, torch.ones(4, 20, 512), torch.zeros(3, 4))
+        command = plan[0].double()[:, torch.arange(lanes).clamp(max=3)]
+        now = plant.advance(now, command, calm)
+        plan = shift(plan)
+        heights.append(now.state.position[2, :3])
+    return torch.stack(heights[steps // 2 :]).mean(0).tolist()
+
+
+@pytest.fixture(scope="module")
+def heights():
+    with torch.inference_mode():
+        return {name: hover_heights(name) for name in PlannerName}
+
+
+def test_correct_calibration_leans_to_neither_side(heights):
+    assert abs(heights["terminal"][0]) < 0.1
+    assert abs(heights["running"][0]) < 0.1
+
+
+def test_terminal_cost_shows_both_signs_alike(heights):
+    _, high, low = heights["terminal"]
+    assert high > 0.5
+    assert low < -0.5
+    assert 0.5 < high / -low < 2
+
+
+def test_running_cost_is_stiffer(heights):
+    for error in (1, 2):
+        assert abs(heights["running"][error]) < 0.7 * abs(heights["terminal"][error])
