@@ -1,0 +1,199 @@
+"""What the marked blocks of the documents show of reference runs and of example files."""
+
+import re
+import shlex
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from io import StringIO
+from pathlib import Path
+
+from pydantic import ValidationError
+from rich.console import Console
+
+from faultpath.record import DecisionRecord, Effect, RunProvenance
+from faultpath.report import decision, wording
+
+ROOT = Path(__file__).resolve().parents[1]
+REFERENCE = ROOT / "docs" / "reference"
+
+
+class Wrong(Exception):
+    """Something that whoever edits the documents has to correct."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A reference run."""
+
+    name: str
+    record: DecisionRecord
+    provenance: RunProvenance
+
+    @property
+    def trials(self) -> int:
+        """Trials flown: an arm that a fault cannot reach is the one under correct inputs."""
+        paths = self.record.paths
+        arms = {("repair", p.consumers) for p in paths}
+        arms |= {("baseline", p.baseline_consumers) for p in paths}
+        return len(arms) * self.record.question.n_scenes * len(self.record.question.seeds)
+
+
+@cache
+def load(name: str) -> Run | None:
+    """Return a reference run, `None` where there is none; `Wrong` for a damaged one."""
+    folder = REFERENCE / name
+    if not (folder / "record.json").is_file():
+        return None
+    try:
+        record = DecisionRecord.model_validate_json((folder / "record.json").read_bytes())
+        origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    except (OSError, ValidationError) as error:
+        raise Wrong(f"docs/reference/{name} cannot be read; take the run again ({error})") from None
+    return Run(name, record, origin)
+
+
+def missing(name: str) -> str:
+    """Return what a block says while its reference run is not there."""
+    return f"*The reference run `docs/reference/{name}` has not been made yet.*"
+
+
+def table(run: Run) -> str:
+    """Return success of both variants and their difference, one path a column."""
+    record, asked = run.record, run.record.question
+    effects = record.effects
+    titles = {path.name: path.title for path in record.paths}
+    rate = {(cell.variant, cell.path): wording.plain(cell.success_percent) for cell in record.cells}
+    crossing = {each.path: wording.break_even(each.result) for each in record.break_even}
+
+    def row(label: str, text: Callable[[Effect], str]) -> str:
+        return f"| {label} | {' | '.join(map(text, effects))} |"
+
+    def difference(effect: Effect) -> str:
+        text = wording.signed(effect.success.value)
+        return f"**{text}**" if effect.detected else text
+
+    estimands = {effect.success.estimand for effect in effects}
+    return "\n".join(
+        [
+            row("Success, %", lambda e: titles[e.path]),
+            row(":--", lambda e: "--:"),
+            row(f"`{asked.baseline}` (baseline)", lambda e: rate[asked.baseline, e.path]),
+            row(f"`{asked.repair}` (repair)", lambda e: rate[asked.repair, e.path]),
+            row("difference, pp", difference),
+            row("95 % interval", lambda e: wording.interval(e.success) or "–"),
+            row("won:lost", lambda e: wording.wins_losses(e.wins, e.losses)),
+            row("break-even fault frequency", lambda e: crossing.get(e.path, "–")),
+            "",
+            f"{asked.n_scenes} scenes of `{asked.library}`, {wording.seeds(asked.seeds)}, fault "
+            f"`{asked.fault}`. Bold: a detected difference (interval and test agree). Intervals "
+            f"are for {' and '.join(sorted(estimands))}. "
+            f"Void pairs: {sum(effect.void_pairs for effect in effects)}.",
+        ]
+    )
+
+
+def verdict(run: Run) -> str:
+    """Return the record's headline and sentences as a quotation."""
+    said = run.record.verdict
+    lines = [f"**{said.headline}**", *said.sentences]
+    return "\n>\n".join(f"> {wording.typeset(line)}" for line in lines)
+
+
+def terminal(run: Run) -> str:
+    """Return what the command line prints of the record."""
+    console = Console(file=StringIO(), width=100, record=True, color_system=None)
+    console.print(decision(run.record))
+    lines = (line.rstrip() for line in console.export_text().splitlines())
+    return fence("text", "\n".join(lines).strip("\n"))
+
+
+def command(run: Run, *words: str) -> str:
+    """Return the command that made the run, where it goes left out; `words` follow the fence."""
+    given = list(run.provenance.command)
+    if "--out" in given:
+        at = given.index("--out")
+        del given[at : at + 2]
+    line = shlex.join([Path(given[0]).name, *given[1:]])
+    return fence(" ".join(["console", *words]), "$ " + line.replace(" --", " \\\n    --"))
+
+
+def origin(run: Run) -> str:
+    """Return where the run comes from."""
+    made = run.provenance
+    code = made.commit[:12] if made.commit else "unknown"
+    changed = ", with uncommitted changes" if made.dirty else ""
+    packages = ", ".join(
+        f"{n} {made.packages[n]}" for n in ("numpy", "torch") if n in made.packages
+    )
+    return (
+        f"Made on {made.finished[:10]} by faultpath {made.faultpath_version} (commit "
+        f"`{code}`{changed}) with Python {made.python}, {packages}. "
+        f"Everything that the run left in small files is in [`docs/reference/{run.name}`]"
+        f"({{reference}}/{run.name}): decision record, outcome table, provenance and report."
+    )
+
+
+def times(names: Sequence[str]) -> str:
+    """Return how long runs took, one a row; those that are not there have a line below."""
+    runs = [(name, load(name)) for name in names]
+    rows = [
+        f"| {run.record.question.n_scenes} | {run.trials} | {duration(run)} "
+        f"| {run.provenance.processor.replace('(R)', '')} | {run.provenance.workers} |"
+        for _, run in runs
+        if run is not None
+    ]
+    head = ["| Scenes | Trials | Time | Processor | Workers |", "| --: | --: | --: | :-- | --: |"]
+    absent = [missing(name) for name, run in runs if run is None]
+    return "\n\n".join(filter(None, ["\n".join(head + rows) if rows else "", *absent]))
+
+
+def duration(run: Run) -> str:
+    """Return the wall time of a run; `Wrong` for one that resumed and did not do it all."""
+    if run.provenance.blocks_kept:
+        raise Wrong(
+            f"docs/reference/{run.name} kept {run.provenance.blocks_kept} blocks of an earlier "
+            "invocation, so its wall time is not that of the run; run it in a new folder"
+        )
+    minutes, seconds = divmod(round(run.provenance.wall_s), 60)
+    return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
+
+
+def picture(run: Run, part: str) -> str:
+    """Return the picture of a part of the run's report."""
+    about = wording.typeset(run.record.verdict.headline)
+    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.png)"
+
+
+def code(place: str, part: str) -> str:
+    """Return the part of a Python file below the line `# --- PART ---`."""
+    pieces = re.split(r"^ *# --- (.+) ---\n", (ROOT / place).read_text("utf-8"), flags=re.MULTILINE)
+    found = dict(zip(pieces[1::2], pieces[2::2], strict=True))
+    if part not in found:
+        raise Wrong(f"{place} has no part '{part}'; it has {', '.join(found)}")
+    return fence("python", found[part].rstrip().strip("\n"))
+
+
+def fence(info: str, body: str) -> str:
+    """Return a fenced block."""
+    return f"```{info}\n{body}\n```"
+
+
+PARTS: dict[str, tuple[str, str]] = {
+    "verdict": ("Verdict", ".masthead, #verdict"),
+    "interface": ("What the fault strikes", "[aria-labelledby=interface]"),
+    "effects": ("Effects of the repair", "[aria-labelledby=effects] figure.for-wide"),
+    "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency]"),
+    "flights": ("Some flights", "[aria-labelledby=flights]"),
+}
+"""What may be pictured: its name in words, and where in the page it is."""
+
+FILLERS: dict[str, Callable[..., str]] = {
+    "table": table,
+    "verdict": verdict,
+    "terminal": terminal,
+    "command": command,
+    "origin": origin,
+    "picture": picture,
+}
+"""Kinds of blocks about one run; `times:RUN:RUN` and `code:FILE:PART` stand apart."""

@@ -1,0 +1,63 @@
+"""Pictures of the documents: parts of the pages of reference runs, as Chromium draws them."""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Sequence
+
+from blocks import PARTS, REFERENCE, ROOT, Wrong
+
+IMAGES = ROOT / "docs" / "images"
+MADE_FROM = IMAGES / "made-from.json"
+ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
+
+
+def digest(run: str) -> str:
+    """Return the hash of the report that a picture is made from."""
+    return hashlib.sha256((REFERENCE / run / "report.html").read_bytes()).hexdigest()
+
+
+def made_from() -> dict[str, str]:
+    """Return, by picture, the hash of the report that it was made from."""
+    return json.loads(MADE_FROM.read_text("utf-8")) if MADE_FROM.is_file() else {}
+
+
+def make_images(pictures: Sequence[tuple[str, str]]) -> None:
+    """Make every picture that documents show, and drop those that they no longer do."""
+    from playwright.sync_api import sync_playwright
+
+    found = shutil.which("chromium") or shutil.which("chromium-browser")
+    if found is None:
+        raise Wrong("there is no Chromium to make pictures with; install it")
+    IMAGES.mkdir(parents=True, exist_ok=True)
+    made: dict[str, str] = {}
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=ARGUMENTS)
+        for run, part in pictures:
+            context = browser.new_context(
+                viewport={"width": 1080, "height": 900},
+                color_scheme="light",
+                reduced_motion="reduce",
+                offline=True,
+                device_scale_factor=2,
+            )
+            page = context.new_page()
+            page.goto((REFERENCE / run / "report.html").as_uri())
+            boxes = [each.bounding_box() for each in page.query_selector_all(PARTS[part][1])]
+            areas = [box for box in boxes if box is not None]
+            if not areas:
+                raise Wrong(f"the report of {run} has no {part}")
+            top = min(box["y"] for box in areas)
+            bottom = max(box["y"] + box["height"] for box in areas)
+            left = max(0.0, min(box["x"] for box in areas) - 16)
+            right = max(box["x"] + box["width"] for box in areas) + 16
+            clip = {"x": left, "y": top, "width": right - left, "height": bottom - top}
+            name = f"{run}-{part}.png"
+            page.screenshot(path=IMAGES / name, full_page=True, clip=clip)
+            made[name] = digest(run)
+            context.close()
+        browser.close()
+    for old in IMAGES.glob("*.png"):
+        if old.name not in made:
+            old.unlink()
+    MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
