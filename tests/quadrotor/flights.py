@@ -1,0 +1,137 @@
+"""Short flights: what the tests of the system share."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from faultpath.arrays import Array
+from faultpath.faults import AnyFault, parse_fault
+from faultpath.quadrotor.scenes.library import Library, as_text
+from faultpath.quadrotor.scenes.scene import Bounds, Box, Scene, Topology
+from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.vehicle import VehicleParameters
+from faultpath.taps import Reading, Taps
+from faultpath.trials import Outcome
+
+STEPS = 12
+HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
+
+
+class LoggingTaps(Taps):
+    """Taps that keep each reading and what was delivered of it."""
+
+    def __init__(self, *args, **kwargs) -> None:
+        super().__init__(*args, **kwargs)
+        self.log: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
+        value = super().deliver(channel, consumer, reading, step)
+        pair = (reading.value.numpy().copy(), value.numpy().copy())
+        self.log.setdefault((channel, consumer), []).append(pair)
+        return value
+
+    def delivered(self, channel: str, consumer: str) -> np.ndarray:
+        """Return `[steps, scenes, ...]`."""
+        return np.stack([value for _, value in self.log[channel, consumer]])
+
+
+def quadrotor(**options: str) -> Quadrotor:
+    system = create(**options)
+    assert isinstance(system, Quadrotor)
+    return system
+
+
+def fault(text: str, system: Quadrotor | None = None) -> AnyFault:
+    system = quadrotor() if system is None else system
+    return parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
+
+
+def wire(
+    system: Quadrotor,
+    variant: str,
+    scenes: Sequence[str],
+    faults: Sequence[AnyFault] = (),
+    seed: int = 0,
+    without: frozenset[str] = frozenset(),
+) -> LoggingTaps:
+    """Return the taps as a runner makes them; `without` withholds privileges."""
+    parts = system.variants[variant]
+    return LoggingTaps(
+        system.interface,
+        faults,
+        scenes=tuple(scenes),
+        dt_s=system.control_dt_s,
+        seed=seed,
+        bindings=parts.bindings,
+        consumers=parts.consumers,
+        privileged=parts.privileged - without,
+    )
+
+
+def fly(
+    system: Quadrotor,
+    variant: str = "observer",
+    scenes: Sequence[str] = HELD_OUT[:1],
+    faults: Sequence[AnyFault] = (),
+    seed: int = 0,
+) -> tuple[list[Outcome], LoggingTaps]:
+    taps = wire(system, variant, scenes, faults, seed)
+    outcomes = system.run(variant, scenes, taps, seed)
+    steps = np.array([round(outcome.time_s / system.control_dt_s + 0.499) for outcome in outcomes])
+    taps.verify(steps - 1)
+    return outcomes, taps
+
+
+def bits(outcome: Outcome) -> tuple[object, ...]:
+    """Return everything of an outcome, so that equal means equal to the bit."""
+    assert outcome.trace is not None
+    return (
+        outcome.scene,
+        outcome.status,
+        outcome.time_s,
+        outcome.terminal_distance_m,
+        outcome.min_clearance_m,
+        outcome.initial_hash,
+        outcome.disturbance_hash,
+        outcome.planner_noise_hash,
+        outcome.trace.shape,
+        outcome.trace.tobytes(),
+    )
+
+
+def trace(outcome: Outcome) -> np.ndarray:
+    assert outcome.trace is not None
+    return outcome.trace
+
+
+def hall(
+    index: int,
+    start: tuple[float, float, float],
+    goal: tuple[float, float, float],
+    boxes: tuple[Box, ...] = (),
+    vehicle: VehicleParameters | None = None,
+) -> Scene:
+    """Return a scene of an empty hall, 10 x 6 x 3 m, with the nominal vehicle."""
+    return Scene(
+        id=f"halls/{index:03d}",
+        index=index,
+        library="halls",
+        topology=Topology.CLUTTER,
+        obstacles=bool(boxes),
+        occluded=False,
+        bounds=Bounds(low_m=(-5.0, -3.0, 0.0), high_m=(5.0, 3.0, 3.0)),
+        boxes=boxes,
+        cylinders=(),
+        start_m=start,
+        goal_m=goal,
+        start_yaw_rad=0.0,
+        vehicle=vehicle or VehicleParameters(),
+    )
+
+
+def with_halls(system: Quadrotor, folder: Path, *scenes: Scene) -> tuple[str, ...]:
+    """Write scenes to a library file, make them known to the system, and return their ids."""
+    path = folder / "halls.json"
+    path.write_text(as_text(Library.of("halls", scenes)))
+    return tuple(scene.id for scene in system.library(str(path)).scenes)

@@ -1,0 +1,88 @@
+"""A trial's result is its own: neither neighbours nor their order enter it, to the bit."""
+
+import pytest
+from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, with_halls
+
+from faultpath.faults import AnyFault
+
+STRONG_WIND = {"wind": "L3"}
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+
+
+FAULTS = (
+    "velocity:noise=0.2",
+    "attitude:noise=0.05",
+    "clearance:noise=0.1",
+    "action:dropout=0.3,onset=4",
+    "wind:delay=2",
+)
+
+
+@pytest.fixture(scope="module")
+def faults() -> tuple[AnyFault, ...]:
+    return tuple(fault(text) for text in FAULTS)
+
+
+@pytest.fixture(scope="module")
+def whole(faults) -> dict[str, tuple[object, ...]]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+        outcomes, _ = fly(quadrotor(**STRONG_WIND), "observer", HELD_OUT, faults, seed=3)
+    return {outcome.scene: bits(outcome) for outcome in outcomes}
+
+
+@pytest.mark.parametrize("chosen", [(0,), (4,), (1, 3), (2, 0, 4, 3, 1), (3, 2, 1, 0)])
+def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, whole, faults):
+    scenes = [HELD_OUT[i] for i in chosen]
+    outcomes, _ = fly(quadrotor(**STRONG_WIND), "observer", scenes, faults, seed=3)
+    assert [outcome.scene for outcome in outcomes] == scenes
+    assert {o.scene: bits(o) for o in outcomes} == {scene: whole[scene] for scene in scenes}
+
+
+def test_scenes_do_not_share_their_randomness(whole):
+    assert len({content[7] for content in whole.values()}) == len(HELD_OUT)
+
+
+@pytest.mark.parametrize("text", FAULTS)
+def test_each_of_these_faults_alone_changes_the_flight(text):
+    """Otherwise the law above would hold of nothing."""
+    system = quadrotor(**STRONG_WIND)
+    (plain,), _ = fly(system)
+    (struck,), taps = fly(system, faults=[fault(text, system)])
+    assert bits(struck) != bits(plain)
+    assert taps.receipts().steps_altered[0] > 0
+
+
+def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
+    """Scenes are planned four at a time, and who flies with whom changes when one ends."""
+    system = quadrotor(**STRONG_WIND)
+    near, under = with_halls(
+        system,
+        tmp_path,
+        hall(0, start=(0.0, 0.0, 1.5), goal=(0.3, 0.0, 1.5)),
+        hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
+    )
+    alone, _ = fly(system, "observer", HELD_OUT)
+    mixed, _ = fly(system, "observer", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]])
+    assert mixed[0].time_s == system.control_dt_s
+    assert bits(mixed[0]) == bits(fly(system, "observer", [near])[0][0])
+    assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]
+
+    falls = fault("action:erase@vehicle,onset=0,for=8", system)
+    alone, _ = fly(system, "observer", HELD_OUT, [falls])
+    mixed, _ = fly(system, "observer", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], [falls])
+    ends = {o.scene: o.time_s for o in mixed}
+    assert ends[near] < ends[under] < min(ends[scene] for scene in HELD_OUT)
+    assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]
+
+
+def test_a_system_that_flew_before_flies_the_same_again():
+    system = quadrotor(**STRONG_WIND)
+    first, _ = fly(system, "observer", HELD_OUT[:2])
+    fly(system, "zero-wind", HELD_OUT[1:3], seed=1)
+    again, _ = fly(system, "observer", HELD_OUT[:2])
+    assert [bits(o) for o in first] == [bits(o) for o in again]

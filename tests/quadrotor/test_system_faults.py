@@ -1,0 +1,198 @@
+"""Faults reach exactly the taps that they name, and the modules cope with what they get."""
+
+import numpy as np
+import pytest
+from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
+
+from faultpath.faults import Fault
+from faultpath.faults.values import Erase
+from faultpath.quadrotor.planner import MPPI
+from faultpath.taps import Receipts
+from faultpath.trials import Outcome
+
+ALTERED_BY_CALIBRATION = {
+    ("mass", "predictor.dynamics"): 1,
+    ("mass", "predictor.wind_map"): 1,
+    ("mass", "predictor.trim"): 1,
+    ("mass", "observer.nominal_model"): 1,
+    ("mass", "observer.wind_map"): 1,
+    ("thrust_scale", "predictor.dynamics"): -1,
+    ("thrust_scale", "predictor.trim"): -1,
+    ("thrust_scale", "observer.nominal_model"): -1,
+}
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+
+
+@pytest.fixture(scope="module")
+def plain() -> Outcome:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+        return fly(quadrotor(wind="L2"))[0][0]
+
+
+def _altered(receipts: Receipts) -> set[tuple[str, str]]:
+    return {(tap.channel, tap.consumer) for tap in receipts.taps if tap.steps_altered.any()}
+
+
+IDENTITIES = {
+    "scale": "scale=1",
+    "offset": "offset=0",
+    "noise": "noise=0",
+    "delay": "delay=0",
+    "dropout": "dropout=0",
+}
+
+
+@pytest.mark.parametrize("kind", IDENTITIES)
+def test_an_identity_on_every_channel_is_no_fault_to_the_bit(kind, plain):
+    system = quadrotor(wind="L2")
+    channels = [channel.name for channel in system.interface.channels]
+    channels.remove("physics")
+    faults = [fault(f"{channel}:{IDENTITIES[kind]}", system) for channel in channels]
+    (struck,), taps = fly(system, faults=faults)
+    assert bits(struck) == bits(plain)
+    receipts = taps.receipts()
+    assert _altered(receipts) == set()
+    assert all(tap.steps_struck.all() for tap in receipts.taps)
+
+
+@pytest.mark.parametrize("error", [0.1, -0.2])
+def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else(error):
+    system = quadrotor(wind="L2")
+    _, taps = fly(system, scenes=HELD_OUT[:2], faults=[fault(f"calibration={error}", system)])
+    assert _altered(taps.receipts()) == set(ALTERED_BY_CALIBRATION)
+    for (channel, consumer), deliveries in taps.log.items():
+        sign = ALTERED_BY_CALIBRATION.get((channel, consumer), 0)
+        for reading, value in deliveries:
+            assert np.array_equal(value, reading * (1 + sign * error)), (channel, consumer)
+
+
+def test_a_variant_without_an_observer_has_no_taps_of_it():
+    system = quadrotor(wind="L2")
+    _, taps = fly(system, "zero-wind", faults=[fault("calibration=0.1", system)])
+    struck = {key for key in ALTERED_BY_CALIBRATION if not key[1].startswith("observer.")}
+    assert _altered(taps.receipts()) == struck
+    assert not any(consumer.startswith("observer.") for _, consumer in taps.log)
+
+
+def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
+    system = quadrotor(wind="L2")
+    faults = [fault("calibration=0.2@observer", system)]
+    (struck,), taps = fly(system, faults=faults)
+    receipts = taps.receipts()
+    observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("observer.")}
+    assert _altered(receipts) == observer
+    assert all(receipts.at(*key).steps_altered[0] == STEPS for key in observer)
+    for consumer in ("predictor.dynamics", "predictor.wind_map", "predictor.trim"):
+        assert receipts.at("mass", consumer).deliveries == STEPS
+        for reading, value in taps.log["mass", consumer]:
+            assert np.array_equal(value, reading)
+    # The observer starts at zero wind whatever its calibration says: the fault needs a step.
+    assert np.array_equal(trace(struck)[1], trace(plain)[1])
+    assert not np.array_equal(trace(struck)[3:], trace(plain)[3:])
+
+
+def test_a_fault_at_the_predictor_leaves_the_observer_clean():
+    system = quadrotor(wind="L2")
+    _, clean = fly(system)
+    _, taps = fly(system, faults=[fault("calibration=0.2@predictor", system)])
+    predictor = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("predictor.")}
+    assert _altered(taps.receipts()) == predictor
+    # What the observer says first depends on nothing that the predictor got.
+    assert np.array_equal(*(t.delivered("wind", "predictor.wind_map")[0] for t in (clean, taps)))
+
+
+def test_the_observer_takes_thrust_that_it_was_not_told_of_for_an_updraught():
+    """A larger supplied mass and a smaller thrust scale explain less lift than there is."""
+    system = quadrotor(wind="L0")
+    seen = {
+        error: fly(system, faults=[fault(f"calibration={error}@observer", system)])[1].delivered(
+            "wind", "predictor.wind_map"
+        )[-1, 0, 2]
+        for error in (-0.2, 0.2)
+    }
+    assert seen[0.2] > 1.0
+    assert seen[-0.2] < -1.0
+
+
+TEXTS = (
+    "position:delay=3",
+    "position:noise=0.1",
+    "velocity:delay=2",
+    "velocity:freeze,onset=3,for=4",
+    "attitude:noise=0.05",
+    "attitude:freeze,onset=2",
+    "body_rate:noise=0.3",
+    "state:delay=2",
+    "state:freeze,onset=5",
+    "action:dropout=0.5",
+    "action:scale=0.6@vehicle",
+    "action:erase@vehicle,onset=4",
+    "action:delay=1@observer",
+    "clearance:offset=-0.3",
+    "clearance:erase",
+    "goal:offset=0/0.5/0",
+    "wind:offset=3/0/0",
+)
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_a_fault_of_any_channel_flies_and_tells(text, plain):
+    system = quadrotor(wind="L2")
+    declared = fault(text, system)
+    (struck,), taps = fly(system, faults=[declared])
+    assert np.isfinite(trace(struck)).all()
+    assert np.isfinite([struck.terminal_distance_m, struck.min_clearance_m]).all()
+    assert bits(struck)[-1] != bits(plain)[-1]
+    named = {
+        (each.channel, consumer)
+        for each in declared.resolved(system.interface)
+        for consumer in each.consumers
+    }
+    assert set() < _altered(taps.receipts()) <= named
+    for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
+        assert getattr(struck, hashes) == getattr(plain, hashes)
+
+
+def test_a_noisy_attitude_is_a_rotation_again_before_it_is_rolled_out(monkeypatch):
+    seen = []
+    propose = MPPI.propose
+
+    def watched(self, inputs, plan, noise):
+        seen.append(inputs.state.rotation[..., 0].double())
+        return propose(self, inputs, plan, noise)
+
+    monkeypatch.setattr(MPPI, "propose", watched)
+    system = quadrotor()
+    (outcome,), taps = fly(system, faults=[fault("attitude:noise=0.1", system)])
+    delivered = taps.delivered("attitude", "predictor.initial_state")[:, 0]
+    gram = delivered.swapaxes(-1, -2) @ delivered
+    assert np.abs(gram - np.eye(3)).max() > 0.05
+    for step, rotations in enumerate(seen):
+        matrix = rotations.movedim(-1, 0).numpy()
+        assert np.allclose(matrix.swapaxes(-1, -2) @ matrix, np.eye(3), atol=1e-5)
+        assert np.allclose(np.linalg.det(matrix), 1.0, atol=1e-5)
+        left, _, right = np.linalg.svd(delivered[step])
+        assert np.allclose(matrix[0], left @ right, atol=1e-5)
+    assert np.isfinite(trace(outcome)).all()
+
+
+def test_what_reaches_the_motors_is_the_struck_command_and_the_observer_hears_the_other():
+    """An erased actuator is not an erased copy of the command."""
+    system = quadrotor()
+    declared = Fault(
+        channel="action",
+        consumers=("vehicle.actuators",),
+        intervention=Erase(default=(12.0, 0.0, 0.0, 0.0)),
+    )
+    _, taps = fly(system, faults=[declared])
+    actuated = taps.delivered("action", "vehicle.actuators")[:, 0]
+    assert np.array_equal(actuated, np.tile([12.0, 0.0, 0.0, 0.0], (STEPS, 1)))
+    commanded = np.stack([reading for reading, _ in taps.log["action", "vehicle.actuators"]])
+    heard = taps.delivered("action", "observer.nominal_model")
+    assert np.array_equal(heard[1:], commanded[:-1])
+    assert not np.array_equal(heard[1:, 0], actuated[1:])

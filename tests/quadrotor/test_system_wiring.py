@@ -1,0 +1,164 @@
+"""What each variant may know, and what arms of a contrast share."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
+
+from faultpath.quadrotor.sensors import Sensors
+from faultpath.taps import IllegalRead, Reading
+
+VARIANTS = ("zero-wind", "observer", "true-wind")
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+
+
+class _NoWind:
+    """Sensors whose true wind is a hole; who reads it shows."""
+
+    @classmethod
+    def read(cls, world):
+        sensors = Sensors.read(world)
+        hole = torch.full_like(sensors.true_wind.value, torch.nan)
+        return replace(sensors, true_wind=Reading(hole, "true_wind", sensors.true_wind.step))
+
+
+class _NoPhysics:
+    @classmethod
+    def read(cls, world):
+        sensors = Sensors.read(world)
+        old = sensors.readings["physics"]
+        hole = Reading(torch.full_like(old.value, torch.nan), old.source, old.step)
+        return replace(sensors, readings=sensors.readings | {"physics": hole})
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch):
+    system = quadrotor(wind="L3")
+    (plain,), _ = fly(system, variant)
+    monkeypatch.setattr("faultpath.quadrotor.system.Sensors", _NoWind)
+    (blind,), taps = fly(system, variant)
+    assert (bits(blind) == bits(plain)) == (variant != "true-wind")
+    source = taps.receipts().at("wind", "predictor.wind_map").source
+    assert source == {"zero-wind": "zero_wind", "observer": "observed_wind"}.get(
+        variant, "true_wind"
+    )
+
+
+@pytest.mark.parametrize("predictor", ["dki", "dki-drag", "true-parameter"])
+def test_only_the_true_parameter_predictor_reads_the_physics(predictor, monkeypatch):
+    system = quadrotor(predictor=predictor)
+    (plain,), _ = fly(system)
+    monkeypatch.setattr("faultpath.quadrotor.system.Sensors", _NoPhysics)
+    (blind,), _ = fly(system)
+    assert (bits(blind) == bits(plain)) == (predictor != "true-parameter")
+
+
+@pytest.mark.parametrize(
+    ("variant", "predictor", "source"),
+    [
+        ("true-wind", "dki", "true_wind"),
+        ("observer", "true-parameter", "true_physics"),
+        ("zero-wind", "dki", "true_clearance"),
+    ],
+)
+def test_a_privileged_source_needs_its_permission(variant, predictor, source):
+    system = quadrotor(predictor=predictor)
+    taps = wire(system, variant, HELD_OUT[:1], without=frozenset({source}))
+    with pytest.raises(IllegalRead, match=source):
+        system.run(variant, HELD_OUT[:1], taps, 0)
+
+
+def test_permissions_are_those_that_are_used():
+    for predictor in ("dki", "true-parameter"):
+        for variant in quadrotor(predictor=predictor).variants.values():
+            expected = {"true_clearance"}
+            expected |= {"true_physics"} if predictor == "true-parameter" else set()
+            expected |= {"true_wind"} if variant.name == "true-wind" else set()
+            assert variant.privileged == expected
+
+
+def test_a_declared_tap_is_a_read_tap():
+    """A consumer that never reads would let a fault miss it in silence."""
+    for predictor in ("dki-drag", "true-parameter"):
+        system = quadrotor(predictor=predictor)
+        for name, variant in system.variants.items():
+            _, taps = fly(system, name)
+            assert {consumer for _, consumer in taps.log} == variant.consumers
+            assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+
+
+def test_arms_of_a_contrast_meet_the_same_conditions():
+    system = quadrotor(wind="L2")
+    ends = [fly(system, variant, HELD_OUT[:2])[0] for variant in VARIANTS]
+    for first, *rest in zip(*ends, strict=True):
+        for other in rest:
+            assert other.disturbance_hash == first.disturbance_hash
+            assert other.initial_hash == first.initial_hash
+            assert other.planner_noise_hash == first.planner_noise_hash
+            assert bits(other)[-1] != bits(first)[-1]
+
+
+def test_seeds_change_the_noise_of_the_planner_and_nothing_else():
+    system = quadrotor(wind="L2")
+    ends = [fly(system, seed=seed)[0][0] for seed in (0, 1, 0)]
+    assert len({end.planner_noise_hash for end in ends}) == 2
+    assert len({end.initial_hash for end in ends}) == 1
+    assert len({end.disturbance_hash for end in ends}) == 1
+    assert bits(ends[0]) == bits(ends[2]) != bits(ends[1])
+
+
+def test_levels_of_wind_differ_in_the_disturbance():
+    hashes = {fly(quadrotor(wind=f"L{i}"))[0][0].disturbance_hash for i in range(4)}
+    assert len(hashes) == 4
+
+
+def test_the_observer_sees_most_of_a_steady_wind(monkeypatch):
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 30)
+    system = quadrotor(wind="L2")
+    _, truth = fly(system, "true-wind", HELD_OUT)
+    _, seen = fly(system, "observer", HELD_OUT)
+    real = truth.delivered("wind", "predictor.wind_map")[-5:].mean(0)
+    guess = seen.delivered("wind", "predictor.wind_map")[-5:].mean(0)
+    assert np.linalg.norm(guess - real, axis=1).mean() < 0.6 * np.linalg.norm(real, axis=1).mean()
+
+
+CHOICES = [
+    {"planner": "terminal"},
+    {"planner": "running"},
+    {"predictor": "dki"},
+    {"predictor": "true-parameter"},
+    {"environment": "free-space"},
+    {"wind": "L3"},
+]
+
+
+def test_every_option_flies_its_own_way(monkeypatch):
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 4)
+    flights = {}
+    for choice in CHOICES:
+        system = quadrotor(**choice)
+        (outcome,), _ = fly(system)
+        assert np.isfinite(trace(outcome)).all()
+        flights[str(choice)] = (bits(outcome)[-1], system.fingerprint())
+    # The clearance that is asked for along the way differs in free space, if not the path yet.
+    assert len({prints for _, prints in flights.values()}) == len(CHOICES)
+    paths = [path for choice, (path, _) in flights.items() if "free-space" not in choice]
+    assert len(set(paths)) == len(paths)
+
+
+def test_free_space_has_the_same_start_and_more_clearance():
+    (walled,), _ = fly(quadrotor(), scenes=HELD_OUT[:1])
+    (free,), taps = fly(quadrotor(environment="free-space"), scenes=HELD_OUT[:1])
+    assert free.initial_hash == walled.initial_hash
+    assert np.array_equal(trace(free)[0], trace(walled)[0])
+    _, other = fly(quadrotor(), scenes=HELD_OUT[:1])
+    open_space = taps.delivered("clearance", "planner.risk_cost")[0]
+    obstacles = other.delivered("clearance", "planner.risk_cost")[0]
+    assert (open_space >= obstacles - 1e-6).all()
+    assert (open_space > obstacles + 0.1).any()
