@@ -100,6 +100,11 @@ def verdict(run: Run) -> str:
     return "\n>\n".join(f"> {wording.typeset(line)}" for line in lines)
 
 
+def headline(run: Run) -> str:
+    """Return the record's headline as a quotation."""
+    return f"> **{wording.typeset(run.record.verdict.headline)}**"
+
+
 def terminal(run: Run) -> str:
     """Return what the command line prints of the record."""
     console = Console(file=StringIO(), width=100, record=True, color_system=None)
@@ -180,16 +185,17 @@ def fence(info: str, body: str) -> str:
 
 
 PARTS: dict[str, tuple[str, str]] = {
-    "verdict": ("Verdict", ".masthead, #verdict"),
-    "interface": ("What the fault strikes", "[aria-labelledby=interface]"),
+    "verdict": ("Verdict", ".masthead, #verdict > *"),
+    "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure.for-wide"),
-    "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency]"),
-    "flights": ("Some flights", "[aria-labelledby=flights]"),
+    "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency] > *"),
+    "flights": ("Some flights", "[aria-labelledby=flights] > *"),
 }
 """What may be pictured: its name in words, and where in the page it is."""
 
 FILLERS: dict[str, Callable[..., str]] = {
     "table": table,
+    "headline": headline,
     "verdict": verdict,
     "terminal": terminal,
     "command": command,

@@ -3,10 +3,11 @@
 import hashlib
 import json
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from blocks import PARTS, REFERENCE, ROOT, Wrong
 
+MARGIN = 12.0
 IMAGES = ROOT / "docs" / "images"
 MADE_FROM = IMAGES / "made-from.json"
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
@@ -44,14 +45,10 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
             page = context.new_page()
             page.goto((REFERENCE / run / "report.html").as_uri())
             boxes = [each.bounding_box() for each in page.query_selector_all(PARTS[part][1])]
-            areas = [box for box in boxes if box is not None]
+            areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
-            top = min(box["y"] for box in areas)
-            bottom = max(box["y"] + box["height"] for box in areas)
-            left = max(0.0, min(box["x"] for box in areas) - 16)
-            right = max(box["x"] + box["width"] for box in areas) + 16
-            clip = {"x": left, "y": top, "width": right - left, "height": bottom - top}
+            clip = _around(areas)
             name = f"{run}-{part}.png"
             page.screenshot(path=IMAGES / name, full_page=True, clip=clip)
             made[name] = digest(run)
@@ -61,3 +58,12 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
         if old.name not in made:
             old.unlink()
     MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
+
+
+def _around(areas: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Return the rectangle around all areas, with a margin."""
+    left = max(0.0, min(area["x"] for area in areas) - MARGIN)
+    top = max(0.0, min(area["y"] for area in areas) - MARGIN)
+    right = max(area["x"] + area["width"] for area in areas) + MARGIN
+    bottom = max(area["y"] + area["height"] for area in areas) + MARGIN
+    return {"x": left, "y": top, "width": right - left, "height": bottom - top}

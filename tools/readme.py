@@ -44,7 +44,9 @@ def fill(name: str, document: Path) -> str:
         text = times(arguments)
     elif kind in FILLERS:
         run = load(arguments[0])
-        text = missing(arguments[0]) if run is None else FILLERS[kind](run, *arguments[1:])
+        text = FILLERS[kind](run, *arguments[1:]) if run else ""
+        if run is None and kind == "table":  # once is enough
+            text = missing(arguments[0])
     else:
         raise Wrong(f"there is no kind of block '{kind}': use {', '.join(FILLERS)}, times or code")
     for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):

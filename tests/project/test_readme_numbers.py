@@ -1,0 +1,166 @@
+"""The numbers of README and docs are those of the reference runs, and those are what runs give."""
+
+import os
+import re
+import shlex
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from faultpath.audit import Audit, plan_audit
+from faultpath.execution import run_study
+from faultpath.faults import parse_fault
+from faultpath.record import DecisionRecord, RunProvenance, decide
+from faultpath.store import read_outcomes
+from faultpath.trials import SystemSpec, load_system
+
+ROOT = Path(__file__).resolve().parents[2]
+REFERENCE = ROOT / "docs" / "reference"
+RUNS = sorted(path.parent for path in REFERENCE.glob("*/record.json"))
+QUICK = ["toy", "dock"]
+
+# What the prose says about each run, path by path: who is ahead.
+SAID = {
+    "toy": {"correct": -1, "observer": 1, "shared": -1},
+    "dock": {"correct": 1, "speedometer": -1, "shared": 1},
+}
+
+
+def record_of(run: str) -> DecisionRecord:
+    return DecisionRecord.model_validate_json((REFERENCE / run / "record.json").read_bytes())
+
+
+def numbers(record: DecisionRecord) -> object:
+    """Everything of a record that is no sentence, without the last digits of one processor."""
+    content = record.model_dump(exclude={"verdict": True, "question": {"system"}})
+    for part in (*content["effects"], *content["reversals"]):
+        del part["words"]
+    for part in content["break_even"]:
+        del part["result"]["words"]
+    return rounded(content)
+
+
+def rounded(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: rounded(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(part) for part in value]
+    return round(value, 6) + 0.0 if isinstance(value, float) else value
+
+
+def test_no_block_or_picture_is_stale(run: Callable[..., CompletedProcess[str]]) -> None:
+    done = run(str(ROOT / "tools" / "readme.py"), "--check")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("folder", RUNS, ids=lambda path: path.name)
+def test_a_reference_record_follows_from_its_outcomes(folder: Path) -> None:
+    record = record_of(folder.name)
+    table = read_outcomes(folder / "outcomes.parquet")
+    assert numbers(decide(record.question, record.paths, table)) == numbers(record)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_the_examples_still_give_their_reference(name: str, tmp_path: Path) -> None:
+    record = record_of(name)
+    audit = plan(record)
+    done = run_study(audit.study, tmp_path, workers=0)
+    assert numbers(audit.conclude(done.outcomes)) == numbers(record)
+
+
+def plan(record: DecisionRecord) -> Audit:
+    asked = record.question
+    place = asked.system if ".py:" not in asked.system else str(ROOT / asked.system)
+    spec = SystemSpec(name=place, options=asked.options)
+    system = load_system(spec)
+    return plan_audit(
+        system,
+        spec,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=parse_fault(asked.fault, system.interface, system.fault_presets, system.control_dt_s),
+        fault_text=asked.fault,
+        library=system.library(asked.library),
+        scenes=asked.n_scenes,
+        seeds=asked.seeds,
+    )
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_the_prose_about_the_examples_holds(name: str) -> None:
+    effects = {effect.path: effect for effect in record_of(name).effects}
+    assert {path: effects[path].success.detected_sign for path in SAID[name]} == SAID[name]
+
+
+@pytest.mark.parametrize(("name", "scenes"), [("quadrotor-L3", None), ("quadrotor-L3-20", 20)])
+def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | None) -> None:
+    if not (REFERENCE / name).is_dir():
+        pytest.skip(f"there is no reference run {name} yet")
+    recipe = re.search(r"faultpath (audit .*?) \$\(ARGS\)", (ROOT / "Makefile").read_text(), re.S)
+    assert recipe is not None
+    words = shlex.split(recipe[1].replace("\\\n", " "))
+    given = dict(zip(words[2::2], words[3::2], strict=True))
+    asked = record_of(name).question
+    assert words[1] == asked.system
+    assert given.pop("--wind") == asked.options["wind"]
+    assert given == {
+        "--baseline": asked.baseline,
+        "--repair": asked.repair,
+        "--fault": asked.fault,
+        "--library": asked.library,
+    }
+    assert asked.seeds == (0,)
+    assert scenes is None or asked.n_scenes == scenes
+
+
+@pytest.mark.parametrize("folder", RUNS, ids=lambda path: path.name)
+def test_a_reference_run_was_made_in_one_go(folder: Path) -> None:
+    made = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    assert made.blocks_kept == 0, "its wall time is not that of the whole run"
+    assert not os.path.isabs(made.command[0]), (
+        "run it with a relative path: this one names a machine"
+    )
+
+
+@pytest.fixture
+def readme(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    sys.modules.pop("readme", None)
+    import readme
+
+    return readme
+
+
+def test_a_block_is_filled_from_a_run_and_says_when_there_is_none(readme) -> None:
+    empty = "a\n<!-- begin:{0} -->\nold 1.0\n<!-- end:{0} -->\nb\n"
+    page = ROOT / "docs" / "page.md"
+    text = readme.filled(empty.format("table:toy"), page)
+    assert text.startswith("a\n<!-- begin:table:toy -->\n| Success, % |")
+    assert text.endswith("\nb\n")
+    assert "old 1.0" not in text
+    assert "| `calibrated` (baseline) |" in text
+    assert "has not been made yet" in readme.filled(empty.format("table:nowhere"), page)
+    assert readme.filled(text, page) == text
+
+
+def test_pictures_and_runs_are_linked_from_where_the_document_is(readme) -> None:
+    block = "<!-- begin:picture:toy:effects -->\n<!-- end:picture:toy:effects -->"
+    assert "(docs/images/toy-effects.png)" in readme.filled(block, ROOT / "README.md")
+    assert "(images/toy-effects.png)" in readme.filled(block, ROOT / "docs" / "page.md")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("<!-- begin:table:toy -->\n", "stands alone"),
+        ("<!-- begin:table:toy -->\n<!-- end:table:dock -->", "stands alone"),
+        ("<!-- begin:tabel:toy -->\n<!-- end:tabel:toy -->", "no kind of block 'tabel'"),
+        ("<!-- begin:code:examples/dock.py:x -->\n<!-- end:code:examples/dock.py:x -->", "no part"),
+    ],
+)
+def test_a_wrong_block_is_refused(readme, text: str, said: str) -> None:
+    with pytest.raises(readme.Wrong, match=said):
+        readme.filled(text, ROOT / "README.md")
