@@ -16,9 +16,9 @@ from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import ModuleTaps, Reading, Taps
 
-CHUNK = 4
-"""Scenes planned at once. Four times 512 candidates stay in cache, and a fixed shape keeps a
-scene's result free of its neighbours."""
+CHUNKS = (8, 4, 2, 1)
+"""How many scenes are planned at once, the most first. Eight times 512 candidates share the cost
+of each kernel's start and still stay in cache. A scene's result is the same in any of them."""
 
 
 class WindObserver:
@@ -168,9 +168,14 @@ class Navigator:
 
 
 def _chunks(running: Sequence[int]) -> list[list[int]]:
-    """Split scenes into fours; the last four is filled up with its own first scene."""
-    groups = [list(running[i : i + CHUNK]) for i in range(0, len(running), CHUNK)]
-    return [group + group[:1] * (CHUNK - len(group)) for group in groups]
+    """Split scenes into chunks of the allowed sizes, without filling any up."""
+    left = list(running)
+    chunks: list[list[int]] = []
+    for size in CHUNKS:
+        while len(left) >= size:
+            chunks.append(left[:size])
+            left = left[size:]
+    return chunks
 
 
 def _float_column(state: State) -> State:

@@ -42,7 +42,7 @@ class Progress:
 
 
 class World:
-    """Plant, wind and geometry of up to 32 scenes, padded to whole lanes.
+    """Plant, wind and geometry of a block of scenes, padded to whole groups of lanes.
 
     Evaluation code: it knows the truth and passes through no tap. What modules get of it are the
     readings that the navigator takes from `state`, `wind_mps` and `vehicle`.

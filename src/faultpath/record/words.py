@@ -70,11 +70,14 @@ def verdict(
 
 def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence[Reversal]) -> str:
     repair, baseline = question.repair, question.baseline
-    turned = [item.isolated for item in reversals if item.reversed]
+    turned = [item for item in reversals if item.reversed]
     if turned:
+        effect = next(e for e in effects if e.path == turned[0].isolated)
+        alone, shared = (repair, baseline) if effect.success.value > 0 else (baseline, repair)
+        where = " or the ".join(item.isolated for item in turned)
         return (
-            f"Do not choose by the isolated fault: at the {' and the '.join(turned)} alone and "
-            f"shared, it favours opposite sides of {repair} against {baseline}."
+            f"Do not choose by the isolated fault: struck at the {where} alone, {alone} is ahead; "
+            f"with the fault shared, {shared} is."
         )
     better = [e for e in effects if e.detected and e.success.value > 0]
     worse = [e for e in effects if e.detected and e.success.value < 0]
