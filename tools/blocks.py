@@ -93,13 +93,6 @@ def table(run: Run) -> str:
     )
 
 
-def verdict(run: Run) -> str:
-    """Return the record's headline and sentences as a quotation."""
-    said = run.record.verdict
-    lines = [f"**{said.headline}**", *said.sentences]
-    return "\n>\n".join(f"> {wording.typeset(line)}" for line in lines)
-
-
 def headline(run: Run) -> str:
     """Return the record's headline as a quotation."""
     return f"> **{wording.typeset(run.record.verdict.headline)}**"
@@ -196,7 +189,6 @@ PARTS: dict[str, tuple[str, str]] = {
 FILLERS: dict[str, Callable[..., str]] = {
     "table": table,
     "headline": headline,
-    "verdict": verdict,
     "terminal": terminal,
     "command": command,
     "origin": origin,
