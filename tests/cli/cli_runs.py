@@ -1,0 +1,97 @@
+"""Running the command line, in this process and in others."""
+
+import contextlib
+import io
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from unittest.mock import patch
+
+from faultpath.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[2]
+TOY = f"{ROOT / 'examples' / 'toy.py'}:create"
+HERE = Path(__file__).resolve().parent
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended."""
+
+    status: int
+    out: str
+    err: str
+
+    def refused(self) -> str:
+        """Return the one sentence of a mistake, after checking that it is one and only that."""
+        assert self.status == 2, (self.status, self.out, self.err)
+        assert "Traceback" not in self.out + self.err
+        assert self.err.endswith("\n")
+        (line,) = self.err.splitlines()
+        assert line.startswith("faultpath: ")
+        assert len(line) > 30
+        return line
+
+
+def faultpath(*arguments: object) -> Ended:
+    """Run the command in this process."""
+    out, err = io.StringIO(), io.StringIO()
+    command = ["faultpath", *map(str, arguments)]
+    with (
+        patch.object(sys, "argv", command),
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+    ):
+        try:
+            main()
+        except SystemExit as stop:
+            return Ended(int(stop.code or 0), out.getvalue(), err.getvalue())
+    raise AssertionError("main() always exits with a status")
+
+
+def audit(*arguments: object, **options: object) -> Ended:
+    """Audit the toy in this process; an option given here replaces the default one."""
+    return faultpath(*_command(arguments, options))
+
+
+def _command(arguments: tuple[object, ...], options: dict[str, object]) -> list[object]:
+    chosen: dict[str, object] = {
+        "system": TOY,
+        "baseline": "calibrated",
+        "repair": "blind",
+        "fault": "gain:scale=0.6",
+        "library": "carts",
+        "scenes": 6,
+        "workers": 0,
+    } | options
+    named = [part for k, v in chosen.items() if k != "system" for part in (f"--{k}", v)]
+    return ["audit", chosen["system"], *named, *arguments]
+
+
+def start(words: Path, /, *arguments: object, **options: object) -> subprocess.Popen[str]:
+    """Audit in a process of its own, in a session of its own, its words going into a file."""
+    command = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
+    with words.open("w") as file:
+        return subprocess.Popen(
+            [*command, *map(str, _command(arguments, options))],
+            stdout=file,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+            env={**os.environ, "COLUMNS": "200"},
+        )
+
+
+def until(condition: Callable[[], object], what: str, seconds: float = 60.0) -> None:
+    limit = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < limit, f"waited in vain for {what}"
+        time.sleep(0.02)
+
+
+def shards(folder: Path) -> list[Path]:
+    return sorted(folder.glob("shards/*.parquet"))

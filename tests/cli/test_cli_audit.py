@@ -1,0 +1,271 @@
+"""`faultpath audit` from end to end, and what it does in a folder that holds something."""
+
+import json
+import os
+import re
+import shutil
+from pathlib import Path
+
+import pyarrow.parquet as pq
+import pytest
+from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
+
+from faultpath.cli.pages import read_record
+from faultpath.interface import read_interface
+from faultpath.record import SHARED
+
+FILES = {
+    "manifest.json",
+    "outcomes.parquet",
+    "traces.parquet",
+    "record.json",
+    "provenance.json",
+    "report.html",
+    "table.tex",
+    "table.md",
+}
+BROKEN = f"{HERE / 'slow_toy.py'}:broken"
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def toy_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Run the command of the example as it stands there, in the root of the project."""
+    folder = tmp_path_factory.mktemp("toy") / "run"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(ROOT)
+        line = ["audit", "examples/toy.py:create", "--baseline", "calibrated", "--repair", "blind"]
+        line += ["--fault", "gain:scale=0.6", "--library", "carts"]
+        ended = faultpath(*line, "--out", folder, "--workers", 0)
+    assert ended.status == 0, ended.err
+    assert ended.err == ""
+    assert str(folder / "report.html") in ended.out
+    return folder
+
+
+@pytest.fixture
+def run(toy_run: Path, tmp_path: Path) -> Path:
+    """A copy of that run, to damage."""
+    return Path(shutil.copytree(toy_run, tmp_path / "run"))
+
+
+def _again(folder: Path, **options: object):
+    return audit(scenes=100, out=folder, system="examples/toy.py:create", **options)
+
+
+def test_the_toy_shows_the_reversal(toy_run):
+    assert {path.name for path in toy_run.iterdir()} >= FILES
+    record = read_record(toy_run)
+    assert [path.name for path in record.paths] == ["correct", "controller", "observer", SHARED]
+    (turn,) = (turn for turn in record.reversals if turn.isolated == "observer")
+    assert turn.reversed
+    effects = {effect.path: effect for effect in record.effects}
+    assert effects["observer"].detected
+    assert effects["observer"].success.value > 0
+    assert effects[SHARED].detected
+    assert effects[SHARED].success.value < 0
+    assert "observer" in record.verdict.headline
+
+
+def test_files_of_a_run_agree_with_each_other(toy_run):
+    record = read_record(toy_run)
+    rows = pq.read_table(toy_run / "outcomes.parquet").to_pylist()
+    assert len(rows) == 2 * 4 * 100
+    for cell in record.cells:
+        mine = [r for r in rows if (r["variant"], r["path"]) == (cell.variant, cell.path)]
+        assert len(mine) == cell.trials
+        assert sum(r["status"] == "success" for r in mine) == cell.success
+        assert sum(r["struck_steps"] > 0 for r in mine) == cell.struck_trials
+    page = (toy_run / "report.html").read_text()
+    for name in ("report.html", "table.tex", "table.md"):
+        assert "calibrated" in (toy_run / name).read_text()
+    assert record.verdict.headline in page
+    provenance = json.loads((toy_run / "provenance.json").read_text())
+    assert provenance["command"][1:3] == ["audit", "examples/toy.py:create"]
+    assert provenance["blocks_kept"] == 0
+    assert provenance["library_hash"] == record.question.library_hash
+
+
+def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    before = {name: (run / name).read_bytes() for name in ("report.html", "table.tex", "table.md")}
+    for name in before:
+        (run / name).unlink()
+    ended = faultpath("report", run)
+    assert (ended.status, ended.err) == (0, "")
+    assert {name: (run / name).read_bytes() for name in before} == before
+
+
+def test_a_library_that_changed_since_is_not_drawn(run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    record = json.loads((run / "record.json").read_text())
+    record["question"]["library_hash"] = "other"
+    (run / "record.json").write_text(json.dumps(record))
+    assert "'carts' has changed" in faultpath("report", run).refused()
+
+
+@pytest.mark.parametrize("name", ["record.json", "provenance.json", "outcomes.parquet"])
+@pytest.mark.parametrize("damage", ["missing", "cut"])
+def test_a_damaged_run_is_not_reported(name, damage, run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    path = run / name
+    if damage == "missing":
+        path.unlink()
+    else:
+        path.write_bytes(path.read_bytes()[:40])
+    assert name in faultpath("report", run).refused()
+
+
+def test_a_second_time_everything_is_kept(run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    before = (run / "outcomes.parquet").read_bytes()
+    times = {path: path.stat().st_mtime_ns for path in shards(run)}
+    assert _again(run).status == 0
+    assert {path: path.stat().st_mtime_ns for path in shards(run)} == times
+    assert (run / "outcomes.parquet").read_bytes() == before
+    assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
+
+
+@pytest.mark.parametrize("damage", [b"", b"PAR1 no more", None], ids=["empty", "other", "cut"])
+def test_a_damaged_shard_is_named_and_run_again(damage, run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    before = (run / "outcomes.parquet").read_bytes()
+    hurt = shards(run)[3]
+    sound = hurt.read_bytes()
+    hurt.write_bytes(sound[: len(sound) // 2] if damage is None else damage)
+    ended = _again(run)
+    assert (ended.status, ended.err) == (0, "")
+    assert f"{hurt} is damaged" in ended.out
+    assert hurt.read_bytes() == sound
+    assert (run / "outcomes.parquet").read_bytes() == before
+    assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ({"fault": "gain:scale=0.7"}, "set of variants, faults or seeds"),
+        ({"seeds": "1"}, "set of variants, faults or seeds"),
+        ({"baseline": "blind", "repair": "calibrated"}, "study"),
+        ({"library": "wagons"}, "library"),
+    ],
+)
+def test_a_folder_of_another_study_is_left_alone(options, says, run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    before = {p: p.read_bytes() for p in run.rglob("*") if p.is_file() and p.name != ".lock"}
+    sentence = _again(run, **options).refused()
+    assert str(run) in sentence
+    assert says in sentence
+    after = {p: p.read_bytes() for p in run.rglob("*") if p.is_file() and p.name != ".lock"}
+    assert after == before
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"faultpath_version": "0.0.0"}, "another version of faultpath"),
+        ({"format": 99}, "format 99"),
+        ({"system_fingerprint": "older"}, "another state of the system"),
+        ({"study": 3}, "cannot be read as a manifest"),
+    ],
+)
+def test_a_folder_of_another_version_is_left_alone(change, says, run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    manifest = run / "manifest.json"
+    manifest.write_text(json.dumps(json.loads(manifest.read_text()) | change))
+    before = {path: path.read_bytes() for path in shards(run)}
+    assert says in _again(run).refused()
+    assert {path: path.read_bytes() for path in shards(run)} == before
+
+
+def test_a_quick_look_grows_into_the_whole(toy_run, tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    out = tmp_path / "look"
+    assert audit(scenes=20, out=out, system="examples/toy.py:create").status == 0
+    assert read_record(out).question.n_scenes == 20
+    assert _again(out).status == 0
+    assert (out / "outcomes.parquet").read_bytes() == (toy_run / "outcomes.parquet").read_bytes()
+    assert json.loads((out / "provenance.json").read_text())["blocks_kept"] > 0
+
+
+def test_a_file_in_the_place_of_the_folder(tmp_path):
+    place = tmp_path / "taken"
+    place.write_text("mine")
+    assert str(place) in audit(out=place).refused()
+    assert str(place) in audit(out=place / "below").refused()
+    assert place.read_text() == "mine"
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a place where nobody may write")
+def test_a_folder_where_nobody_may_write():
+    assert "/proc/none" in audit(out="/proc/none/run").refused()
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_that_may_not_be_written(tmp_path):
+    place = tmp_path / "locked"
+    place.mkdir(mode=0o500)
+    assert str(place) in audit(out=place).refused()
+    assert str(place / "below") in audit(out=place / "below").refused()
+
+
+def test_without_a_folder_the_run_is_called_after_its_question(tmp_path):
+    assert audit(scenes=2, seeds="3").status == 0
+    (folder,) = (tmp_path / "runs").iterdir()
+    for part in ("blind-vs-calibrated", "gain_scale=0.6", "carts", "2-scenes", "seeds-3"):
+        assert part in folder.name
+    assert audit(scenes=2, seeds="3", fault="gain:scale=0.5").status == 0
+    assert len(list((tmp_path / "runs").iterdir())) == 2
+
+
+def test_brackets_in_names_are_no_markup(tmp_path):
+    ended = audit(out=tmp_path / "[bold]run[/red]")
+    assert (ended.status, ended.err) == (0, "")
+    assert str(tmp_path / "[bold]run[/red]" / "report.html") in ended.out
+
+
+def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):
+    options = {"system": BROKEN, "set": "where=cart/003", "out": tmp_path / "run"}
+    for _ in ("at first", "and again"):
+        ended = audit(**options)
+        assert ended.status == 1
+        assert "Traceback" not in ended.out + ended.err
+        assert "cart/003: ZeroDivisionError: the [cart] has no wheels" in ended.out
+        (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
+        assert "has no wheels" in Path(place).read_text()
+    effect = read_record(tmp_path / "run").effects[0]
+    assert (effect.void_pairs, effect.pairs) == (1, 5)
+    assert "1 void" in ended.out
+
+
+def test_when_every_trial_fails_the_failures_are_shown_and_nothing_is_decided(tmp_path):
+    ended = audit(system=BROKEN, set="where=", out=tmp_path / "run", scenes=2)
+    assert "no scene is left" in ended.refused()
+    assert "cart/000: ZeroDivisionError" in ended.out
+    assert not (tmp_path / "run" / "record.json").exists()
+
+
+def test_workers_change_nothing(toy_run, tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    assert _again(tmp_path / "run", workers=2).status == 0
+    for name in ("outcomes.parquet", "record.json"):
+        assert (tmp_path / "run" / name).read_bytes() == (toy_run / name).read_bytes()
+
+
+def test_zero_workers_run_in_this_process(tmp_path, monkeypatch):
+    monkeypatch.setattr("faultpath.execution.runner.Crew", None)
+    assert audit(workers=0, out=tmp_path / "run").status == 0
+
+
+def test_interfaces_are_printed_and_written(tmp_path):
+    ended = faultpath("interface", TOY, "--svg", "a.svg", "--yaml", "a.yaml", "--schema", "a.json")
+    assert (ended.status, ended.err) == (0, "")
+    assert read_interface(tmp_path / "a.yaml").name == "toy"
+    assert "<svg" in (tmp_path / "a.svg").read_text()
+    assert json.loads((tmp_path / "a.json").read_text())["title"] == "Interface"
+    for name in ("a.svg", "a.yaml", "a.json"):
+        assert f"Written: {name}" in ended.out

@@ -1,0 +1,104 @@
+"""Processes that are stopped, killed, or not alone: nothing finished is lost."""
+
+import json
+import os
+import signal
+from pathlib import Path
+
+import pytest
+from cli_runs import HERE, audit, faultpath, shards, start, until
+
+from faultpath.cli.main import INTERRUPTED
+
+SCENES = 12
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    place = tmp_path_factory.mktemp("undisturbed")
+    options = _options(place / "no gate", place / "run") | {"workers": 0}
+    assert audit(**options).status == 0
+    return (place / "run" / "outcomes.parquet").read_bytes()
+
+
+@pytest.fixture
+def gate(tmp_path: Path) -> Path:
+    """A file that slows the toy down while it exists."""
+    place = tmp_path / "gate"
+    place.touch()
+    return place
+
+
+def _options(gate: Path, out: Path) -> dict[str, object]:
+    system = f"{HERE / 'slow_toy.py'}:create"
+    return {"system": system, "set": f"gate={gate}", "out": out, "scenes": SCENES}
+
+
+def _resumed(run: Path, gate: Path) -> bytes:
+    """Finish a run with the gate open and return its table."""
+    kept = len(shards(run))
+    gate.unlink(missing_ok=True)
+    ended = audit(**_options(gate, run))
+    assert (ended.status, ended.err) == (0, "")
+    provenance = json.loads((run / "provenance.json").read_text())
+    assert provenance["blocks_kept"] == kept
+    assert provenance["blocks_computed"] == len(shards(run)) - kept > 0
+    assert not list(run.rglob(".partial-*"))
+    return (run / "outcomes.parquet").read_bytes()
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_ctrl_c_says_what_is_kept_and_how_to_go_on(workers, gate, tmp_path, undisturbed):
+    run, words = tmp_path / "run", tmp_path / "words"
+    process = start(words, **_options(gate, run), workers=workers)
+    until(lambda: len(shards(run)) >= 2, "two blocks")
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=60) == INTERRUPTED
+    kept = len(shards(run))
+    assert kept < 36
+    said = words.read_text()
+    assert "Traceback" not in said
+    last = said.splitlines()[-1]
+    assert last.startswith(f"faultpath: interrupted with {kept} of 36 blocks done")
+    assert str(run) in last
+    assert "run the same command again to resume" in last
+    assert not (run / "record.json").exists()
+    assert _resumed(run, gate) == undisturbed
+
+
+def test_a_run_that_is_killed_goes_on_to_the_same_bytes(gate, tmp_path, undisturbed):
+    run = tmp_path / "run"
+    process = start(tmp_path / "words", **_options(gate, run), workers=1)
+    until(lambda: len(shards(run)) >= 2, "two blocks")
+    process.kill()
+    assert process.wait(timeout=60) == -signal.SIGKILL
+    assert not (run / "outcomes.parquet").exists()
+    assert _resumed(run, gate) == undisturbed
+
+
+def test_two_processes_on_one_folder_take_turns(gate, tmp_path, undisturbed):
+    run = tmp_path / "run"
+    first = start(tmp_path / "first", **_options(gate, run), workers=0)
+    until(lambda: shards(run), "a block of the first")
+    second = start(tmp_path / "second", **_options(gate, run), workers=0)
+    until(lambda: "waiting for it" in (tmp_path / "second").read_text(), "the second to wait")
+    assert f"another faultpath process (id {first.pid})" in (tmp_path / "second").read_text()
+    gate.unlink()
+    assert (first.wait(timeout=60), second.wait(timeout=60)) == (0, 0)
+    assert (run / "outcomes.parquet").read_bytes() == undisturbed
+    assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
+
+
+def test_ctrl_c_outside_the_run_is_a_sentence_too(monkeypatch, tmp_path):
+    def stopped(*_: object) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr("faultpath.cli.run.save_pages", stopped)
+    ended = audit(out=tmp_path / "run")
+    assert ended.status == INTERRUPTED
+    (line,) = ended.err.splitlines()
+    assert line.startswith("faultpath: interrupted")
+    assert "same command" in line
+    monkeypatch.undo()
+    assert audit(out=tmp_path / "run").status == 0
+    assert faultpath("report", tmp_path / "run").status == 0

@@ -1,0 +1,63 @@
+"""A library of one's own, from its making to its report."""
+
+import json
+
+from cli_runs import audit, faultpath
+
+from faultpath.cli.pages import read_record
+from faultpath.execution.worker import Hello
+from faultpath.quadrotor.scenes.library import write_library
+from faultpath.trials import SystemSpec, load_system
+
+
+def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 3)
+    made = faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2")
+    assert (made.status, made.err) == (0, "")
+    listed = faultpath("scenes", "list", "mine.json")
+    assert [line.split()[0] for line in listed.out.splitlines()] == ["mine/000", "mine/001"]
+    assert (
+        "exists already"
+        in faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2").refused()
+    )
+
+    ended = audit(
+        system="quadrotor",
+        baseline="zero-wind",
+        repair="observer",
+        fault="calibration=0.1",
+        library="mine.json",
+        scenes=2,
+        wind="L1",
+        out="run",
+    )
+    assert (ended.status, ended.err) == (0, "")
+    question = read_record(tmp_path / "run").question
+    assert question.n_scenes == 2
+    assert question.options == {"wind": "L1"}
+    assert question.library_hash == json.loads((tmp_path / "mine.json").read_text())["content_hash"]
+    assert [path.name for path in read_record(tmp_path / "run").paths] == [
+        "correct",
+        "observer",
+        "predictor",
+        "shared",
+    ]
+
+    page = tmp_path / "run" / "report.html"
+    before = page.read_bytes()
+    page.unlink()
+    again = faultpath("report", "run")
+    assert (again.status, again.err) == (0, "")
+    assert page.read_bytes() == before
+    assert b"mine/001" in before
+
+
+def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
+    """What a worker is told is the system and the library's name, and no more."""
+    monkeypatch.chdir(tmp_path)
+    write_library("mine.json", seed=5, count=1, name="mine")
+    system = load_system(SystemSpec(name="quadrotor"))
+    library = system.library("mine.json")
+    hello = Hello(SystemSpec(name="quadrotor"), library.name)
+    assert load_system(hello.system).library(hello.library) == library
