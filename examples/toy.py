@@ -17,44 +17,33 @@ import hashlib
 
 import numpy as np
 
-from faultpath.interface import Channel, Gap, Interface, Provenance, Source
+from faultpath.interface import read_interface
 from faultpath.streams import generator
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Library, Outcome, SceneRef, Status, System, Variant
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
 
-INTERFACE = Interface(
-    name="toy",
-    sources=(
-        Source(name="gain_estimate", unit="1", provenance=Provenance.ESTIMATED),
-        Source(name="speedometer", unit="m/s", provenance=Provenance.MEASURED),
-        Source(name="odometer", unit="m", provenance=Provenance.MEASURED),
-        Source(name="observed_slope", unit="m/s^2", provenance=Provenance.RECONSTRUCTED),
-    ),
-    channels=(
-        Channel(
-            name="gain",
-            sources=("gain_estimate",),
-            consumers=("controller.inverse", "observer.model"),
-            erasure_default=1.0,
-            gap=Gap.FIDELITY,
-        ),
-        Channel(
-            name="velocity",
-            sources=("speedometer",),
-            consumers=("controller.feedback", "observer.difference"),
-        ),
-        Channel(name="position", sources=("odometer",), consumers=("controller.feedback",)),
-        Channel(
-            name="slope",
-            sources=("observed_slope",),
-            consumers=("controller.feedforward",),
-            gap=Gap.AVAILABILITY,
-        ),
-    ),
-    reconstructs={"observer": "observed_slope"},
-)
+INTERFACE = read_interface("""
+name: toy
+sources:
+- {name: gain_estimate, unit: '1', provenance: estimated}
+- {name: speedometer, unit: m/s, provenance: measured}
+- {name: odometer, unit: m, provenance: measured}
+- {name: observed_slope, unit: m/s^2, provenance: reconstructed}
+channels:
+- name: gain
+  sources: [gain_estimate]
+  consumers: [controller.inverse, observer.model]
+  gap: fidelity
+- {name: velocity, sources: [speedometer], consumers: [controller.feedback, observer.difference]}
+- {name: position, sources: [odometer], consumers: [controller.feedback]}
+- name: slope
+  sources: [observed_slope]
+  consumers: [controller.feedforward]
+  gap: availability
+reconstructs: {observer: observed_slope}
+""")
 EVERYONE = frozenset(c for channel in INTERFACE.channels for c in channel.consumers)
 
 

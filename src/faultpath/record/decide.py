@@ -31,10 +31,12 @@ from faultpath.statistics import (
     success_test,
 )
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Floats, Pairs, Side, pair
+from faultpath.trials.pairing import Bools, Floats, Pairs, Side, pair
 from faultpath.trials.table import OutcomeTable
 
 CURVE_POINTS = 41
+MIN_JOINT_SCENES = 6
+"""Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
 
 
 def decide(
@@ -116,15 +118,29 @@ def _effect(
         mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
         minimum_detectable_pp=detectable(first.success, second.success).value,
         detected=detected,
-        time_s=median_effect(first.time_s, second.time_s, joint, resamples).estimate()
-        if joint.any()
-        else None,
+        time_s=_time(pairs, joint, resamples),
         joint_successes=int(joint.sum()),
         terminal_distance_m=_mean(first.terminal_distance_m, second.terminal_distance_m, resamples),
         min_clearance_m=_mean(first.min_clearance_m, second.min_clearance_m, resamples),
         words="",
     )
     return effect.model_copy(update={"words": effect_words(question, effect)})
+
+
+def _time(pairs: Pairs, joint: Bools, resamples: Resamples) -> Estimate | None:
+    """Median within-scene difference over joint successes; too few of them have no interval."""
+    if not joint.any():
+        return None
+    estimate = median_effect(pairs.first.time_s, pairs.second.time_s, joint, resamples).estimate()
+    if estimate.n_scenes >= MIN_JOINT_SCENES:
+        return estimate
+    return estimate.model_copy(
+        update={
+            "low": None,
+            "high": None,
+            "method": f"median of {estimate.n_scenes} scenes, too few for an interval",
+        }
+    )
 
 
 def _mean(first: Floats | None, second: Floats | None, resamples: Resamples) -> Estimate | None:

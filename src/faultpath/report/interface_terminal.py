@@ -4,36 +4,50 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from faultpath.interface import Interface, rank, transitive_consumers
+from faultpath.interface import Gap, Interface, rank, transitive_consumers
 
 
 def interface_table(interface: Interface) -> RenderableType:
-    """Return the channels of an interface, most consumers first, and what is reconstructed."""
+    """Return the channels of an interface, most consumers first, and what is reconstructed.
+
+    Fits a terminal of 80 columns: what qualifies a name stands below it.
+    """
     table = Table(
         title=Text(f"Information interface of {interface.name}"),
         title_justify="left",
         box=None,
         pad_edge=False,
-        padding=(0, 2, 0, 0),
+        padding=(0, 2, 1, 0),
     )
-    for head in ("channel", "gap", "fed by", "read by", "reaches"):
-        table.add_column(head)
+    for head in ("channel", "fed by", "read by"):
+        table.add_column(head, overflow="fold")
     for ranked in rank(interface):
         channel = interface.channel(ranked.channel)
-        further = set(transitive_consumers(interface, channel.name)) - set(channel.consumers)
-        sources = [
-            f"{name} ({interface.source(name).provenance.value})" for name in channel.sources
-        ]
+        name = Text(channel.name, style="bold")
+        gap = "no" if channel.gap is Gap.NONE else channel.gap.value
+        name.append(f"\n{gap} gap", style="not bold dim")
         table.add_row(
-            Text(channel.name, style="bold"),
-            Text(channel.gap.value),
-            Text("\n".join(sources)),
-            Text("\n".join(channel.consumers)),
-            Text("\n".join(sorted(further))),
+            name, _sources(interface, channel.sources), _consumers(interface, channel.name)
         )
     made = [
-        Text(f"{module} reconstructs {source}.")
-        for module, source in interface.reconstructs.items()
+        Text(f"{module} reconstructs {source}.") for module, source in interface.reconstructs.items()
     ]
-    reach = "Reaches: consumers that a fault gets to through a reconstruction."
-    return Group(table, Text(""), Text(reach, style="dim"), *made)
+    return Group(table, *made)
+
+
+def _sources(interface: Interface, names: tuple[str, ...]) -> Text:
+    lines = [Text(f"{name} ").append(_provenance(interface, name)) for name in names]
+    return Text("\n").join(lines)
+
+
+def _provenance(interface: Interface, name: str) -> Text:
+    return Text(interface.source(name).provenance.value, style="dim")
+
+
+def _consumers(interface: Interface, channel: str) -> Text:
+    """Who reads the channel, then who is reached through a reconstruction."""
+    direct = interface.channel(channel).consumers
+    further = sorted(set(transitive_consumers(interface, channel)) - set(direct))
+    lines = [Text(name) for name in direct]
+    lines += [Text(f"reaches {name}", style="dim") for name in further]
+    return Text("\n").join(lines)

@@ -42,8 +42,11 @@ def wins_losses(wins: tuple[int, ...], losses: tuple[int, ...]) -> str:
 
 
 def p_value(value: float) -> str:
-    """Return `0.032`, or `< 0.001`."""
-    return "< 0.001" if value < 0.001 else f"{value:.3f}"
+    """Return `0.032`, or `< 0.001`; a digit more where `0.050` would hide the side of 0.05."""
+    if value < 0.001:
+        return "< 0.001"
+    text = f"{value:.3f}"
+    return f"{value:.4f}" if text == "0.050" and value != 0.05 else text
 
 
 def percent(fraction: float) -> str:
