@@ -72,6 +72,9 @@ def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence
     repair, baseline = question.repair, question.baseline
     turned = [item for item in reversals if item.reversed]
     if turned:
+        # An isolated effect that was itself detected makes the stronger headline.
+        detected = {effect.path for effect in effects if effect.detected}
+        turned = [item for item in turned if item.isolated in detected] or turned
         effect = next(e for e in effects if e.path == turned[0].isolated)
         alone, shared = (repair, baseline) if effect.success.value > 0 else (baseline, repair)
         where = " or the ".join(item.isolated for item in turned)
