@@ -43,6 +43,22 @@ def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, who
     assert {o.scene: bits(o) for o in outcomes} == {scene: whole[scene] for scene in scenes}
 
 
+MANY = tuple(f"held-out/{i:03d}" for i in range(40))
+OTHER_MODULES = {"predictor": "true-parameter", "planner": "running", "wind": "L3"}
+
+
+@pytest.mark.parametrize("options", [STRONG_WIND, OTHER_MODULES], ids=["usual", "other modules"])
+def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(options, monkeypatch):
+    """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
+    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 5)
+    system = quadrotor(**options)
+    faults = [fault(text, system) for text in FAULTS[:3]]
+    block = {o.scene: bits(o) for o in fly(system, "observer", MANY, faults)[0]}
+    for chosen in (MANY[33:34], MANY[20:35], MANY[38:31:-1], MANY[::13]):
+        outcomes, _ = fly(system, "observer", chosen, faults)
+        assert {o.scene: bits(o) for o in outcomes} == {scene: block[scene] for scene in chosen}
+
+
 def test_scenes_do_not_share_their_randomness(whole):
     assert len({content[7] for content in whole.values()}) == len(HELD_OUT)
 
@@ -58,7 +74,7 @@ def test_each_of_these_faults_alone_changes_the_flight(text):
 
 
 def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
-    """Scenes are planned four at a time, and who flies with whom changes when one ends."""
+    """Scenes are planned several at a time, and who flies with whom changes when one ends."""
     system = quadrotor(**STRONG_WIND)
     near, under = with_halls(
         system,
