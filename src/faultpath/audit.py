@@ -110,6 +110,11 @@ def _strikes(
             places.append(consumer)
     strikes: dict[str, AnyFault | None] = {CORRECT: None}
     for module in sorted(by_module):
+        if module in (CORRECT, SHARED):
+            raise UserError(
+                f"the interface calls a module '{module}', which is the name of a path of every "
+                "audit: rename the module."
+            )
         strikes[module] = fault.striking(*by_module[module])
     # With a single module there is nothing to share: the isolated fault is all of it.
     if len(by_module) > 1:

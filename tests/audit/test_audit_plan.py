@@ -1,10 +1,12 @@
 """Which arms a question needs, and which of them are one and the same."""
 
 import pytest
-from audit_toys import planned
+from audit_toys import INTERFACE, Paper, planned
 
 from faultpath.audit import Audit
 from faultpath.errors import UserError
+from faultpath.interface import interface_yaml, read_interface
+from faultpath.trials import Variant
 
 
 def _paths(audit: Audit) -> list[str]:
@@ -129,3 +131,12 @@ def test_scenes_that_the_library_does_not_have(count):
 def test_seeds_that_say_nothing_or_twice_the_same(seeds):
     with pytest.raises(UserError, match="at least one seed, each of them once"):
         planned("plain", "observed", "mass:scale=2", seeds=seeds)
+
+
+def test_a_module_may_not_be_called_like_a_path(monkeypatch):
+    document = interface_yaml(INTERFACE).replace("observer.model", "shared.model")
+    monkeypatch.setattr(Paper, "interface", read_interface(document))
+    reads = frozenset({"planner.cost", "shared.model"})
+    monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))
+    with pytest.raises(UserError, match="calls a module 'shared'"):
+        planned("plain", "observed", "mass:scale=2")

@@ -46,6 +46,7 @@ def test_a_module_of_the_working_directory_is_found(tmp_path, monkeypatch):
         (f"{FILE}:impostor", "returned a object"),
         (f"{FILE}:needy", r"pip install 'faultpath\[quadrotor\]'"),
         (f"{FILE}:", "there is no system"),
+        ("..x:create", "there is no system"),
     ],
 )
 def test_a_name_that_leads_nowhere_says_what_to_do(name, sentence):

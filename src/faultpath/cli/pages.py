@@ -4,13 +4,12 @@ from pathlib import Path
 from typing import TypeVar
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import ReportInput, Traces, write_report
-from faultpath.store import read_traces
+from faultpath.store import read_table, read_traces
 from faultpath.trials import System
 
 _Model = TypeVar("_Model", DecisionRecord, RunProvenance)
@@ -53,7 +52,7 @@ def save_pages(system: System, folder: Path) -> list[Path]:
 
 def _table(path: Path) -> pa.Table:
     try:
-        return pq.read_table(path)  # pyright: ignore[reportUnknownMemberType] - as its stubs are
+        return read_table(path.read_bytes())
     except (OSError, pa.ArrowInvalid):
         raise UserError(
             f"{path} is missing or damaged: run the audit again with the same --out."

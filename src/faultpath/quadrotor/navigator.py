@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Sequence
+from itertools import pairwise
 
 import torch
 from torch import Tensor
@@ -16,9 +17,10 @@ from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import ModuleTaps, Reading, Taps
 
-CHUNKS = (8, 4, 2, 1)
-"""How many scenes are planned at once, the most first. Eight times 512 candidates share the cost
-of each kernel's start and still stay in cache. A scene's result is the same in any of them."""
+CHUNK = 10
+"""Most scenes planned at once: they share the cost of each kernel's start, and their candidates
+still stay in cache. A scene's result is the same in a chunk of any size, because its 512
+candidates fill whole vectors."""
 
 
 class WindObserver:
@@ -168,14 +170,10 @@ class Navigator:
 
 
 def _chunks(running: Sequence[int]) -> list[list[int]]:
-    """Split scenes into chunks of the allowed sizes, without filling any up."""
-    left = list(running)
-    chunks: list[list[int]] = []
-    for size in CHUNKS:
-        while len(left) >= size:
-            chunks.append(left[:size])
-            left = left[size:]
-    return chunks
+    """Split scenes into as few chunks as may be, of nearly equal size."""
+    count = -(-len(running) // CHUNK)
+    ends = [len(running) * i // count for i in range(count + 1)]
+    return [list(running[a:b]) for a, b in pairwise(ends)]
 
 
 def _float_column(state: State) -> State:

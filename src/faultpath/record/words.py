@@ -59,7 +59,7 @@ def verdict(
     sentences = [effect.words for effect in effects]
     if break_even:
         clauses = [f"{item.result.words} {_under(item.path)}" for item in break_even]
-        sentences.append(f"{question.repair} is, on the point estimates, {'; '.join(clauses)}.")
+        sentences.append(f"{question.repair}, on the point estimates: {'; '.join(clauses)}.")
     sentences += [item.words for item in reversals]
     return Verdict(
         headline=_headline(question, effects, reversals),

@@ -30,7 +30,8 @@ def interface_table(interface: Interface) -> RenderableType:
             name, _sources(interface, channel.sources), _consumers(interface, channel.name)
         )
     made = [
-        Text(f"{module} reconstructs {source}.") for module, source in interface.reconstructs.items()
+        Text(f"{module} reconstructs {source}.")
+        for module, source in interface.reconstructs.items()
     ]
     return Group(table, *made)
 

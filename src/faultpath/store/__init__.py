@@ -3,6 +3,7 @@
 from faultpath.store.atomic import write_text
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import FORMAT, Manifest
+from faultpath.store.parquet import read_table
 from faultpath.store.tables import TrialAddress, read_outcomes, read_traces
 
 __all__ = [
@@ -11,6 +12,7 @@ __all__ = [
     "RunFolder",
     "TrialAddress",
     "read_outcomes",
+    "read_table",
     "read_traces",
     "write_text",
 ]

@@ -27,7 +27,12 @@ def load_system(spec: SystemSpec) -> System:
     """
     target = BUILT_IN.get(spec.name, spec.name)
     place, separator, attribute = target.rpartition(":")
-    if not separator or not place or not attribute:
+    if (
+        not separator
+        or not place
+        or not attribute
+        or (place.startswith(".") and not place.endswith(".py"))
+    ):
         raise UserError(
             f"there is no system {spec.name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
             "factory as 'module:attribute' or 'path/to/file.py:attribute'"
