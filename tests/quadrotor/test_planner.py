@@ -1,7 +1,9 @@
 """The planner: noise, candidates, weights and the two goal costs."""
 
+import numpy as np
 import pytest
 import torch
+from scipy import stats
 
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planner import (
@@ -14,10 +16,12 @@ from faultpath.quadrotor.planner import (
     TerminalGoal,
     shift,
 )
+from faultpath.quadrotor.planner.sampler import standard_normals
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
+from faultpath.streams import generator
 
 SCENES = ["s/0", "s/1", "s/2", "s/3"]
 
@@ -125,3 +129,18 @@ def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
 def test_shift_repeats_the_last_row():
     plan = torch.arange(3.0).view(3, 1, 1).expand(3, 4, 1)
     assert shift(plan)[:, 0, 0].tolist() == [1, 2, 2]
+
+
+def test_normals_are_standard_normal():
+    normals = torch.cat(
+        [standard_normals(generator("test", "s", 0, step), 40960) for step in range(50)]
+    )
+    assert normals.isfinite().all()
+    grid = normals.double().numpy()
+    assert stats.kstest(grid[::10], "norm").pvalue > 0.001
+    assert float(grid.std()) == pytest.approx(1, abs=0.002)
+    assert float((grid**4).mean()) == pytest.approx(3, abs=0.03)
+    assert 4.5 < abs(grid).max() < 7
+    # The two normals of a pair, and neighbours in the stream, do not know of each other.
+    for lag in (1, 20480):
+        assert abs(np.corrcoef(grid[:-lag], grid[lag:])[0, 1]) < 0.003

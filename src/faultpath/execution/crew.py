@@ -21,6 +21,13 @@ _ONE_THREAD = (
     "NUMEXPR_NUM_THREADS",
     "VECLIB_MAXIMUM_THREADS",
 )
+# Large blocks stay with the process once freed: glibc would give them back to the system and fault
+# them in again at the next tensor of that size.
+_KEEP_MEMORY = {
+    "MALLOC_MMAP_THRESHOLD_": str(1 << 28),
+    "MALLOC_TRIM_THRESHOLD_": str(1 << 30),
+    "MALLOC_TOP_PAD_": str(1 << 26),
+}
 _BOOT = (
     "import sys; from faultpath.execution.worker import main; "
     "main(int(sys.argv[1]), int(sys.argv[2]))"
@@ -45,7 +52,8 @@ class Worker:
         ours, theirs = socket.socketpair()
         lifeline, self._lifeline = os.pipe()
         path = os.pathsep.join(entry for entry in sys.path if entry)
-        environment = {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": path}
+        one_thread = dict.fromkeys(_ONE_THREAD, "1")
+        environment = {**_KEEP_MEMORY, **os.environ, **one_thread, "PYTHONPATH": path}
         # A blocked signal stays blocked in the child until it says how it takes it.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:

@@ -17,7 +17,7 @@ from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import ModuleTaps, Reading, Taps
 
-CHUNK = 10
+CHUNK = 13
 """Most scenes planned at once: they share the cost of each kernel's start, and their candidates
 still stay in cache. A scene's result is the same in a chunk of any size, because its 512
 candidates fill whole vectors."""

@@ -1,5 +1,6 @@
 """Candidate commands around a plan."""
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
@@ -62,14 +63,31 @@ class AutoregressiveSampler(Sampler):
     def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
         """See `Sampler.noise`."""
         shape = (self.settings.horizon, 4, self.settings.candidates)
-        out = np.empty((shape[0], 4, len(scenes), shape[2]), dtype=np.float32)
+        noise = torch.empty(shape[0], 4, len(scenes), shape[2])
         for i, scene in enumerate(scenes):
             draws = generator("planner", scene, seed, step)
-            out[:, :, i] = draws.standard_normal(shape, dtype=np.float32)
-        noise = torch.from_numpy(out)
+            noise[:, :, i] = standard_normals(draws, math.prod(shape)).view(shape)
         rho = self.settings.correlation
         noise[1:] *= (1 - rho**2) ** 0.5
         for h in range(1, shape[0]):
             noise[h].add_(noise[h - 1], alpha=rho)
         noise[..., 0] = 0
         return noise
+
+
+def standard_normals(draws: np.random.Generator, count: int) -> Tensor:
+    """Return `count` (even) standard normals, float32, from the bits of a counter-based stream.
+
+    Box and Muller (1958): two uniforms make two normals. The transcendental functions run
+    vectorised, which takes a third of the time of the generator's own rejection method.
+    """
+    half = count // 2
+    bits = draws.bit_generator.random_raw(half).view(np.int32)
+    uniform = torch.from_numpy(bits).to(torch.float32).mul_(2.0**-32)  # from -1/2 to 1/2
+    # Above zero by half a step of the integers, so that the logarithm is finite.
+    radius = uniform[:half].add_(0.5).add_(2.0**-33).log_().mul_(-2).clamp_(min=0).sqrt_()
+    angle = uniform[half:].mul_(2 * math.pi)
+    normals = torch.empty(count)
+    torch.mul(angle.cos(), radius, out=normals[:half])
+    torch.mul(angle.sin(), radius, out=normals[half:])
+    return normals
