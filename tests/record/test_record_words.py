@@ -46,6 +46,18 @@ def test_a_reversal_the_other_way_round_names_the_other_side():
     assert ahead.groups() == (BASELINE, REPAIR)
 
 
+def test_a_headline_claims_no_winner_where_none_was_detected():
+    made = three((50, 0, 0), (50, 6, 12), GAIN)
+    (turn,) = made.reversals
+    assert turn.reversed
+    (isolated,) = (effect for effect in made.effects if effect.path == "observer")
+    assert not isolated.detected
+    alone, shared = made.verdict.headline.split(";")
+    assert "no difference is detected" in alone
+    assert round(isolated.success.value, 1) in _numbers(alone)
+    assert _favoured(shared) == {REPAIR}
+
+
 @pytest.mark.parametrize(
     ("isolated", "shared"),
     [(GAIN, (40, 10, 2)), (LEVEL, LOSS), (LOSS, LOSS), ((50, 6, 5), (50, 5, 6))],

@@ -38,8 +38,9 @@ def reversal_words(question: Question, isolated: Effect, shared: Effect, turned:
         if isolated.success.value < 0:
             first, second = second, first
         return (
-            f"Sharing the fault turns the verdict round: {first} is ahead when only the "
-            f"{isolated.path} is struck, {second} when the fault is shared ({change})."
+            f"Sharing the fault turns the point estimate round: {first} is ahead when only the "
+            f"{isolated.path} is struck, {second} when the fault is shared ({change}); the change "
+            "is detected."
         )
     return (
         f"Sharing the fault does not turn the verdict on the {isolated.path}-only fault round "
@@ -75,12 +76,15 @@ def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence
         # An isolated effect that was itself detected makes the stronger headline.
         detected = {effect.path for effect in effects if effect.detected}
         turned = [item for item in turned if item.isolated in detected] or turned
-        effect = next(e for e in effects if e.path == turned[0].isolated)
-        alone, shared = (repair, baseline) if effect.success.value > 0 else (baseline, repair)
+        if turned[0].isolated not in detected:
+            turned = turned[:1]
+        found = {effect.path: effect for effect in effects}
         where = " or the ".join(item.isolated for item in turned)
+        alone = _ahead(question, found[turned[0].isolated])
+        shared = _ahead(question, found[turned[0].shared])
         return (
-            f"Do not choose by the isolated fault: struck at the {where} alone, {alone} is ahead; "
-            f"with the fault shared, {shared} is."
+            f"Do not choose by the isolated fault: struck at the {where} alone, {alone}; "
+            f"with the fault shared, {shared}."
         )
     better = [e for e in effects if e.detected and e.success.value > 0]
     worse = [e for e in effects if e.detected and e.success.value < 0]
@@ -97,6 +101,13 @@ def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence
             f"and loses {_list_paths(worse)}."
         )
     return f"No difference between {repair} and {baseline} is detected on any path."
+
+
+def _ahead(question: Question, effect: Effect) -> str:
+    """Say who is ahead on a path, or that nobody was found to be."""
+    if not effect.detected:
+        return f"no difference is detected ({effect.success.value:+.1f} pp)"
+    return f"{question.repair if effect.success.value > 0 else question.baseline} is ahead"
 
 
 def _list_paths(effects: Sequence[Effect]) -> str:
