@@ -1,11 +1,14 @@
 """Write the tables of `docs/design/platform.md` from the records of the platform search.
 
-python tools/platform_note.py
+python tools/platform_note.py [--freeze]
 """
 
+import argparse
 import json
 import re
 from pathlib import Path
+
+from faultpath.quadrotor.platform import platform, platform_hash
 
 NOTE = Path(__file__).parents[1] / "docs/design/platform.md"
 RECORDS = NOTE.parent / "platform-search"
@@ -38,14 +41,38 @@ def _cell(result: dict | None) -> str:
     return counts if time is None else f"{counts} ({time:.2f})"
 
 
+def frozen() -> str:
+    """Return the frozen planner and wind levels as a Markdown table."""
+    record = json.loads((RECORDS / "frozen.json").read_text())
+    planner, wind = record["platform"]["planner"], record["platform"]["wind"]
+    parts = {
+        "sampler": planner["sampler"],
+        "terminal cost": planner["terminal"],
+        "running cost": planner["running"],
+        "temperature": {"fraction of the spread": planner["temperature"]},
+        "mean wind, m/s": {name: level["mean_mps"] for name, level in wind.items()},
+    }
+    lines = ["| frozen | settings |", "|---|---|"]
+    for name, values in parts.items():
+        shown = ", ".join(f"{key} {value}" for key, value in values.items())
+        lines.append(f"| {name} | {shown} |")
+    return "\n".join([*lines, "", f"Hash `{record['hash']}`."])
+
+
 def main() -> None:
     """Fill every `<!-- begin:NAME -->` block that names a record."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--freeze", action="store_true", help="freeze what the code says now")
+    if parser.parse_args().freeze:
+        now = {"hash": platform_hash(), "platform": platform()}
+        (RECORDS / "frozen.json").write_text(json.dumps(now, indent=1) + "\n")
     text = NOTE.read_text()
     for record in sorted(RECORDS.glob("*.json")):
+        made = frozen() if record.stem == "frozen" else table(record.stem)
         block = re.compile(
             rf"(<!-- begin:{record.stem} -->\n).*?(<!-- end:{record.stem} -->)", re.S
         )
-        text = block.sub(lambda m, name=record.stem: m[1] + table(name) + "\n" + m[2], text)
+        text = block.sub(lambda m, made=made: m[1] + made + "\n" + m[2], text)
     NOTE.write_text(text)
 
 

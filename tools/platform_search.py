@@ -18,10 +18,11 @@ from statistics import median
 
 import torch
 
+from faultpath.execution.attempt import Done, attempt
 from faultpath.faults import parse_fault
 from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Taps
+from faultpath.trials import Arm
 
 # name: (variant, options, fault). All are baselines: no wind is reconstructed.
 CELLS = {
@@ -62,25 +63,18 @@ def fly(job):
     torch.set_num_threads(1)
     variant, options, fault = CELLS[cell]
     system = Quadrotor(QuadrotorOptions(planner=planner, settings=settings(**point), **options))
-    wiring = system.variants[variant]
     scenes = [scene.id for scene in system.library("selection").scenes[:count]]
+    faults = ()
+    if fault:
+        parsed = parse_fault(fault, system.interface, system.fault_presets, system.control_dt_s)
+        faults = parsed.resolved(system.interface, system.variants[variant].consumers)
     outcomes = []
     for start in range(0, count, system.block_size):
         block = scenes[start : start + system.block_size]
-        faults = ()
-        if fault:
-            parsed = parse_fault(fault, system.interface, system.fault_presets, 0.05)
-            faults = parsed.resolved(system.interface, wiring.consumers)
-        taps = Taps(
-            system.interface,
-            faults,
-            scenes=tuple(block),
-            dt_s=system.control_dt_s,
-            bindings=wiring.bindings,
-            consumers=wiring.consumers,
-            privileged=wiring.privileged,
-        )
-        outcomes += system.run(variant, block, taps, 0)
+        reply = attempt(system, Arm(variant=variant, faults=faults), block)
+        if not isinstance(reply, Done):
+            raise RuntimeError(f"{cell} cannot be flown: {reply}")
+        outcomes += reply.outcomes
     times = [o.time_s for o in outcomes if o.status == "success"]
     return {
         "point": point,

@@ -125,7 +125,7 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
     )
     console = Console(file=io.StringIO(), width=160, force_terminal=False)
     console.print(decision(record.model_copy(update={"paths": paths})))
-    text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined]
+    text = console.file.getvalue().replace("−", "-")  # type: ignore[attr-defined] - a StringIO
     assert "[red]Shared[/]" in text
     for effect in record.effects:
         assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
@@ -136,7 +136,7 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
 def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:
     console = Console(file=io.StringIO(), width=120, force_terminal=False)
     console.print(interface_table(drawn_interface))
-    text = console.file.getvalue()  # type: ignore[attr-defined]
+    text = console.file.getvalue()  # type: ignore[attr-defined] - a StringIO
     for channel in drawn_interface.channels:
         assert channel.name in text
     for source in drawn_interface.sources:

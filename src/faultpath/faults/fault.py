@@ -183,6 +183,7 @@ class Coupled(_Frozen):
         """Return the faults as `Fault.resolved` does, without those that strike nobody."""
         self.validate_against(interface)
         shared = (f.model_copy(update={"cause": f.cause or self.name}) for f in self.faults)
+        # The parts were validated together above: a consumer may read only one of the channels.
         return tuple(found for f in shared for found in f._resolved(interface, present))  # pyright: ignore[reportPrivateUsage]
 
     def describe(self) -> str:

@@ -81,7 +81,7 @@ def decide(
         effects=ordered,
         break_even=tuple(breaks),
         reversals=tuple(turns),
-        verdict=verdict(question, paths, ordered, breaks, turns),
+        verdict=verdict(question, ordered, breaks, turns),
     )
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from faultpath.record.model import Effect, Path, PathBreakEven, Question, Reversal, Verdict
+from faultpath.record.model import Effect, PathBreakEven, Question, Reversal, Verdict
 
 CORRECT = "correct"
 SHARED = "shared"
@@ -50,13 +50,11 @@ def reversal_words(question: Question, isolated: Effect, shared: Effect, turned:
 
 def verdict(
     question: Question,
-    paths: Sequence[Path],
     effects: Sequence[Effect],
     break_even: Sequence[PathBreakEven],
     reversals: Sequence[Reversal],
 ) -> Verdict:
     """Put the answer into words."""
-    del paths
     sentences = [effect.words for effect in effects]
     if break_even:
         clauses = [f"{item.result.words} {_under(item.path)}" for item in break_even]

@@ -78,11 +78,6 @@ class RunFolder:
                 return outcomes
         return None
 
-    def remove_shard(self, key: str) -> None:
-        """Forget a finished block, so that it runs again."""
-        for path in self.shards.glob(f"{key}-*.parquet"):
-            path.unlink()
-
     def save_failure(self, key: str, text: str) -> Path:
         """Store what is known about the failed trials of a block and return where."""
         path = self.failures / f"{key}.txt"

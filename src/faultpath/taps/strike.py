@@ -86,7 +86,7 @@ class Strike:
 
 
 def _words(memory: Memory) -> str:
-    if isinstance(memory, tuple):
+    if isinstance(memory, tuple):  # of what, only the intervention knows
         return "(" + ", ".join(_words(part) for part in memory) + ")"  # pyright: ignore[reportUnknownVariableType]
     if hasattr(memory, "shape"):
         values = to_numpy(memory)
