@@ -4,7 +4,6 @@ import pytest
 import torch
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.predictors import Calibration
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, Sensed
 
@@ -12,7 +11,7 @@ LANES = 32
 DT = 0.05
 
 
-def sensed(seed, velocity=None, mass=1.0, scale=1.0, map_mass=None):
+def delivered(seed, velocity=None, mass=1.0, scale=1.0, map_mass=None):
     draw = torch.Generator().manual_seed(seed)
     one = torch.ones(LANES, dtype=torch.float64)
 
@@ -20,22 +19,42 @@ def sensed(seed, velocity=None, mass=1.0, scale=1.0, map_mass=None):
         return torch.randn(*shape, LANES, generator=draw, dtype=torch.float64)
 
     thrust = 9.81 + normal(1)
-    return Sensed(
-        velocity_mps=normal(3) if velocity is None else velocity,
-        rotation=so3.exp(0.4 * normal(3)),
-        executed=torch.cat([thrust, normal(3)]),
-        nominal=Calibration(mass * one, scale * one),
-        wind_map_mass_kg=(mass if map_mass is None else map_mass) * one,
-    )
+    return {
+        ("velocity", "velocity_difference"): normal(3) if velocity is None else velocity,
+        ("attitude", "nominal_model"): so3.exp(0.4 * normal(3)),
+        ("action", "nominal_model"): torch.cat([thrust, normal(3)]),
+        ("mass", "nominal_model"): mass * one,
+        ("thrust_scale", "nominal_model"): scale * one,
+        ("mass", "wind_map"): (mass if map_mass is None else map_mass) * one,
+    }
+
+
+def test_it_reads_what_it_declares_and_nothing_else():
+    seen = set()
+
+    class Watched(dict):
+        def __getitem__(self, read):
+            seen.add(read)
+            return super().__getitem__(read)
+
+    observer = DisturbanceObserver()
+    observer.update(observer.begin(Watched(delivered(1))), Watched(delivered(2)))
+    assert seen == observer.reads == set(delivered(1))
+    assert observer.consumers() == {
+        "reconstruction.velocity_difference",
+        "reconstruction.nominal_model",
+        "reconstruction.wind_map",
+    }
 
 
 @pytest.mark.parametrize(("mass", "scale"), [(1.0, 1.0), (1.1, 0.9), (0.9, 1.1)])
 def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale):
     """a_0 + B w_raw = a_obs whatever the calibration (paper, Eq. 2)."""
     observer = DisturbanceObserver(low_pass=1.0)
-    first, second = sensed(1, mass=mass, scale=scale), sensed(2, mass=mass, scale=scale)
-    start = observer.begin(first)
-    wind = observer.wind(observer.update(start, second))
+    readings = [delivered(seed, mass=mass, scale=scale) for seed in (1, 2)]
+    first, second = (Sensed.of(each) for each in readings)
+    start = observer.begin(readings[0])
+    wind = observer.wind(observer.update(start, readings[1]))
     turn = so3.log(so3.compose(first.rotation.transpose(0, 1), second.rotation))
     middle = so3.compose(first.rotation, so3.exp(0.5 * turn))
     recombined = observer.nominal(start, second) + LinearDrag().force(middle, wind) / mass
@@ -43,7 +62,7 @@ def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale
 
 
 def test_estimate_starts_at_zero_and_is_low_pass_filtered():
-    first, second = sensed(1), sensed(2)
+    first, second = delivered(1), delivered(2)
     raw, half = DisturbanceObserver(low_pass=1.0), DisturbanceObserver()
     assert not half.wind(half.begin(first)).any()
     once = raw.wind(raw.update(raw.begin(first), second))
@@ -51,8 +70,8 @@ def test_estimate_starts_at_zero_and_is_low_pass_filtered():
 
 
 def test_estimate_is_not_clipped():
-    first = sensed(1)
-    second = sensed(2, velocity=first.velocity_mps + 50 * DT)
+    first = delivered(1)
+    second = delivered(2, velocity=first["velocity", "velocity_difference"] + 50 * DT)
     observer = DisturbanceObserver(low_pass=1.0)
     assert observer.wind(observer.update(observer.begin(first), second)).max() > 100
 
@@ -67,8 +86,15 @@ def test_thrust_lag_of_the_first_interval():
     def at_rest(thrust):
         command = torch.zeros(4, LANES, dtype=torch.float64)
         command[0] = thrust
-        return Sensed(rest, level, command, Calibration(one, one), one)
+        return {
+            ("velocity", "velocity_difference"): rest,
+            ("attitude", "nominal_model"): level,
+            ("action", "nominal_model"): command,
+            ("mass", "nominal_model"): one,
+            ("thrust_scale", "nominal_model"): one,
+            ("mass", "wind_map"): one,
+        }
 
     memory = observer.begin(at_rest(9.81))
-    explained = observer.nominal(memory, at_rest(9.81 + 1.0))
+    explained = observer.nominal(memory, Sensed.of(at_rest(9.81 + 1.0)))
     assert float(explained[2, 0]) == pytest.approx(1 - 0.57, abs=0.005)

@@ -1,6 +1,18 @@
 """Modules that recover the wind from what the vehicle can measure."""
 
-from faultpath.quadrotor.reconstruction.base import Memory, Reconstruction, Sensed
-from faultpath.quadrotor.reconstruction.observer import DisturbanceObserver, ObserverMemory
+from faultpath.quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
+from faultpath.quadrotor.reconstruction.observer import (
+    DisturbanceObserver,
+    ObserverMemory,
+    Sensed,
+)
 
-__all__ = ["DisturbanceObserver", "Memory", "ObserverMemory", "Reconstruction", "Sensed"]
+__all__ = [
+    "Delivered",
+    "DisturbanceObserver",
+    "Memory",
+    "ObserverMemory",
+    "Read",
+    "Reconstruction",
+    "Sensed",
+]

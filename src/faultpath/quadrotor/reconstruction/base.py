@@ -1,42 +1,46 @@
 """What recovers a channel that no sensor supplies."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeAlias
 
 from torch import Tensor
 
-from faultpath.quadrotor.predictors import Calibration
+Memory: TypeAlias = Any
+"""What a reconstruction carries from step to step; opaque to everybody else."""
 
-Memory = Any
+Read: TypeAlias = tuple[str, str]
+"""A channel and the place in the module where it enters: one tap."""
 
-
-@dataclass(frozen=True)
-class Sensed:
-    """What the module's taps delivered at this step, batch `[*batch]`."""
-
-    velocity_mps: Tensor
-    """World frame, `[3, *batch]`."""
-    rotation: Tensor
-    """Body to world, `[3, 3, *batch]`."""
-    executed: Tensor
-    """Command executed over the interval that has just ended, `[4, *batch]`."""
-    nominal: Calibration
-    """Calibration of the nominal dynamics."""
-    wind_map_mass_kg: Tensor
-    """Mass that the wind map is inverted with, `[*batch]`."""
+Delivered: TypeAlias = Mapping[Read, Tensor]
+"""What each tap delivered at this step, `[..., *batch]`: one entry for each of `reads`."""
 
 
 class Reconstruction(ABC):
-    """Estimates the current wind from completed intervals; it never sees a candidate action."""
+    """Estimates the current wind from completed intervals; it never sees a candidate action.
+
+    `reads` is all that it may know. Whoever calls it takes exactly these from the taps, so a
+    variant's consumers follow from it, and a read that is not declared has no entry to find. The
+    same channel at two places is two reads, for a fault may strike one of them alone.
+
+    The channel `action` holds the command executed over the interval that has just ended, N and
+    rad/s. At `begin` no interval has ended, and its value means nothing.
+    """
+
+    reads: frozenset[Read]
+
+    @classmethod
+    def consumers(cls, module: str = "reconstruction") -> frozenset[str]:
+        """Return the names `module.place` under which the interface lists the reads."""
+        return frozenset(f"{module}.{place}" for _, place in cls.reads)
 
     @abstractmethod
-    def begin(self, first: Sensed) -> Memory:
+    def begin(self, delivered: Delivered) -> Memory:
         """Return the memory at the start of an episode, from the first readings."""
 
     @abstractmethod
-    def update(self, memory: Memory, sensed: Sensed) -> Memory:
-        """Take in the interval that ended with `sensed`."""
+    def update(self, memory: Memory, delivered: Delivered) -> Memory:
+        """Take in the interval that ended with `delivered`."""
 
     @abstractmethod
     def wind(self, memory: Memory) -> Tensor:

@@ -7,11 +7,41 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.predictors import Calibration
 from faultpath.quadrotor.predictors.drag import LinearDrag
-from faultpath.quadrotor.reconstruction.base import Memory, Reconstruction, Sensed
+from faultpath.quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
 from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_MOTOR_TIME_CONSTANT_S
 
 LOW_PASS = 0.5  # paper, appendix: fixed before held-out evaluation
+
+
+@dataclass(frozen=True)
+class Sensed:
+    """What the observer's taps delivered at this step, batch `[*batch]`."""
+
+    velocity_mps: Tensor
+    """World frame, `[3, *batch]`."""
+    rotation: Tensor
+    """Body to world, `[3, 3, *batch]`."""
+    executed: Tensor
+    """Command executed over the interval that has just ended, `[4, *batch]`."""
+    nominal: Calibration
+    """Calibration of the nominal dynamics."""
+    wind_map_mass_kg: Tensor
+    """Mass that the wind map is inverted with, `[*batch]`."""
+
+    @classmethod
+    def of(cls, delivered: Delivered) -> "Sensed":
+        """Name what was delivered."""
+        return cls(
+            velocity_mps=delivered["velocity", "velocity_difference"],
+            rotation=delivered["attitude", "nominal_model"],
+            executed=delivered["action", "nominal_model"],
+            nominal=Calibration(
+                delivered["mass", "nominal_model"], delivered["thrust_scale", "nominal_model"]
+            ),
+            wind_map_mass_kg=delivered["mass", "wind_map"],
+        )
 
 
 @dataclass(frozen=True)
@@ -34,6 +64,17 @@ class DisturbanceObserver(Reconstruction):
     clipped (paper, Section V-B and appendix).
     """
 
+    reads: frozenset[Read] = frozenset(
+        {
+            ("velocity", "velocity_difference"),
+            ("attitude", "nominal_model"),
+            ("action", "nominal_model"),
+            ("mass", "nominal_model"),
+            ("thrust_scale", "nominal_model"),
+            ("mass", "wind_map"),
+        }
+    )
+
     def __init__(self, low_pass: float = LOW_PASS, dt_s: float = CONTROL_DT_S) -> None:
         self._alpha = low_pass
         self._dt = dt_s
@@ -42,17 +83,19 @@ class DisturbanceObserver(Reconstruction):
         self._keep = math.exp(-dt_s / lag)
         self._mean = lag / dt_s * (1 - self._keep)
 
-    def begin(self, first: Sensed) -> Memory:
+    def begin(self, delivered: Delivered) -> Memory:
         """Start at zero wind, with the motors believed to hover."""
+        first = Sensed.of(delivered)
         return ObserverMemory(
             wind_mps=torch.zeros_like(first.velocity_mps),
             thrust_n=first.nominal.hover_thrust(GRAVITY_MPS2),
             before=first,
         )
 
-    def update(self, memory: Memory, sensed: Sensed) -> Memory:
+    def update(self, memory: Memory, delivered: Delivered) -> Memory:
         """See `Reconstruction.update`."""
         now: ObserverMemory = memory
+        sensed = Sensed.of(delivered)
         middle = _halfway(now.before.rotation, sensed.rotation)
         residual = self.observed(now, sensed) - self.nominal(now, sensed)
         raw = self._air.inverse(middle, residual * sensed.wind_map_mass_kg)
