@@ -5,6 +5,7 @@ same numbers whatever else runs beside them, which is what makes arms of a contr
 """
 
 import hashlib
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 import numpy as np
@@ -24,3 +25,19 @@ def generator(purpose: str, scene: str, seed: int, step: int = 0) -> np.random.G
     """
     counter = np.array([0, 0, 0, step], dtype=np.uint64)
     return np.random.Generator(np.random.Philox(key=_key(purpose, scene, seed), counter=counter))
+
+
+def generators(
+    purpose: str, scenes: Iterable[str], seed: int, step: int = 0
+) -> Iterator[np.random.Generator]:
+    """Yield `generator(purpose, scene, seed, step)` for each scene, much faster for many.
+
+    One object is moved from address to address, so each must be used before the next is asked for.
+    """
+    bits = np.random.Philox(key=0, counter=np.array([0, 0, 0, step], dtype=np.uint64))
+    stream, fresh = np.random.Generator(bits), bits.state
+    for scene in scenes:
+        key = _key(purpose, scene, seed)
+        fresh["state"]["key"] = np.array([key & 0xFFFFFFFFFFFFFFFF, key >> 64], dtype=np.uint64)
+        bits.state = fresh
+        yield stream

@@ -4,13 +4,21 @@ import numpy as np
 import pytest
 
 from faultpath.faults import Draws
-from faultpath.streams import generator
+from faultpath.streams import generator, generators
 
 
 def test_rows_are_the_keyed_streams() -> None:
     drawn = Draws(("a", "b"), 3, "storm").normal((2,), 5)
     for row, scene in zip(drawn, ("a", "b"), strict=True):
         np.testing.assert_array_equal(row, generator("fault/storm", scene, 3, 5).normal(size=2))
+
+
+def test_streams_of_many_scenes_are_those_of_each() -> None:
+    """Whatever an earlier scene left behind: half a word, a part of a block."""
+    for scene, stream in zip("abc", generators("x", "abc", 3, 5), strict=True):
+        alone = generator("x", scene, 3, 5)
+        assert stream.integers(9, dtype=np.uint32) == alone.integers(9, dtype=np.uint32)
+        np.testing.assert_array_equal(stream.random(3), alone.random(3))
 
 
 @pytest.mark.parametrize("what", ["normal", "uniform"])

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.streams import generator
+from faultpath.streams import generators
 
 
 @dataclass(frozen=True)
@@ -57,8 +57,7 @@ class Draws:
         known = self._latest.get((what, size))
         if known is not None and known[0] == step:
             return known[1]
-        purpose = f"fault/{self.cause}"
-        streams = (generator(purpose, scene, self.seed, step) for scene in self.scenes)
+        streams = generators(f"fault/{self.cause}", self.scenes, self.seed, step)
         drawn = np.stack([draw(stream) for stream in streams])
         self._latest[what, size] = (step, drawn)
         return drawn
