@@ -29,10 +29,9 @@ class Reconstruction(ABC):
 
     reads: frozenset[Read]
 
-    @classmethod
-    def consumers(cls, module: str = "reconstruction") -> frozenset[str]:
+    def consumers(self, module: str = "reconstruction") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists the reads."""
-        return frozenset(f"{module}.{place}" for _, place in cls.reads)
+        return frozenset(f"{module}.{place}" for _, place in self.reads)
 
     @abstractmethod
     def begin(self, delivered: Delivered) -> Memory:
