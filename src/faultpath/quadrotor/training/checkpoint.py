@@ -151,6 +151,20 @@ def save_checkpoint(module: nn.Module, path: Path, card: Mapping[str, Any]) -> M
     return full
 
 
+def ship(path: Path) -> None:
+    """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
+    folder = shipped_folder()
+    try:
+        folder.mkdir(exist_ok=True)
+        for each in (path, path.with_suffix(".json")):
+            write(folder / each.name, each.read_bytes())
+    except OSError as error:
+        raise UserError(
+            f"cannot ship {path.stem} into {folder} ({error.strerror}): install the package so "
+            "that you may write to it, or leave --ship out."
+        ) from error
+
+
 def tensors(module: nn.Module) -> dict[str, Tensor]:
     """Return parameters and buffers by name, each with memory of its own."""
     return {name: value.detach().clone() for name, value in module.state_dict().items()}

@@ -1,0 +1,198 @@
+"""Carrying a fit out on the terminal: progress, notices, the table at the end.
+
+The quadrotor, and torch with it, loads inside the functions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+from faultpath.cli.options import Stopped
+
+if TYPE_CHECKING:
+    from faultpath.quadrotor.training.catalogue import Job
+    from faultpath.quadrotor.training.checkpoint import ModelCard
+    from faultpath.quadrotor.training.jobs import Report
+    from faultpath.quadrotor.training.pace import Overview
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What the command line asked for."""
+
+    names: tuple[str, ...]
+    seeds: tuple[int, ...]
+    data: Path
+    out: Path
+    workers: int
+    tensorboard: Path | None
+    ship: bool
+    force: bool
+
+
+def list_models() -> None:
+    """Print what can be fitted."""
+    from faultpath.quadrotor.training.catalogue import ALL
+
+    table = _table(None, "model", "seeds", "what it is")
+    for entry in ALL:
+        table.add_row(entry.name, ",".join(map(str, entry.seeds)), entry.description)
+    Console().print(table)
+
+
+def train(wishes: Wishes) -> int:
+    """Collect what is missing, fit, print the table; return the number of models that failed.
+
+    Raises `Stopped` on Ctrl-C and `UserError` for names that are not known or folders that cannot
+    be used.
+    """
+    from faultpath.quadrotor.training.catalogue import choose
+
+    console = Console()
+    jobs = choose(wishes.names, wishes.seeds)
+    _collect(console, jobs, wishes)
+    report = _fit(console, jobs, wishes)
+    for failure in report.failures:
+        line = f"{failure.job.stem} was not fitted: {failure.error}"
+        line += f" ({failure.details})" if failure.details else ""
+        console.print(Text(line, style="bold red"), soft_wrap=True)
+    if report.cards:
+        console.print(result_table(report.cards))
+        console.print(f"Checkpoints: {wishes.out}", markup=False, soft_wrap=True)
+    return len(report.failures)
+
+
+def result_table(cards: Sequence[ModelCard]) -> Table:
+    """Return the table of fitted models."""
+    heads = ("seed", "parameters", "training loss", "validation", "time")
+    table = _table("Fitted models", "model", *heads)
+    for card in cards:
+        metric, value = next(iter(card.final.items()), ("", None))
+        table.add_row(
+            card.name,
+            str(card.seed),
+            f"{card.parameters:,}",
+            f"{card.training_loss[-1]:.4g}",
+            "–" if value is None else f"{metric} {value:.4g}",
+            _duration(card.duration_s),
+        )
+    return table
+
+
+def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:
+    from faultpath.quadrotor.training.jobs import collect_missing, missing_pools
+
+    missing = missing_pools(jobs, wishes.data)
+    if not missing:
+        return
+    with _progress(console) as bar:
+        task = bar.add_task(f"Collecting {', '.join(missing)}", total=None, news="", left="")
+
+        def show(done: float, asked: float) -> None:
+            bar.update(task, total=asked, completed=done, news=f"{done / max(asked, 1):.0%}")
+
+        try:
+            collect_missing(jobs, wishes.data, wishes.workers, show)
+        except KeyboardInterrupt:
+            raise Stopped(
+                f"interrupted while collecting; what was flown is kept in {wishes.data}; run the "
+                "same command again to resume."
+            ) from None
+
+
+def _fit(console: Console, jobs: Sequence[Job], wishes: Wishes) -> Report:
+    from faultpath.quadrotor.training.jobs import Interrupted, run_jobs
+    from faultpath.quadrotor.training.worker import Places
+
+    with _progress(console) as bar:
+        board = _Board(bar)
+
+        def notice(text: str) -> None:
+            bar.console.print(text, markup=False, soft_wrap=True)
+
+        try:
+            return run_jobs(
+                jobs,
+                Places(wishes.data, wishes.out, wishes.tensorboard),
+                wishes.workers,
+                board.show,
+                notice,
+                shipped=wishes.ship,
+                force=wishes.force,
+            )
+        except Interrupted as stop:
+            again = "without --force " if wishes.force else ""
+            raise Stopped(
+                f"interrupted with {stop.done} of {stop.total} models finished; they and the "
+                f"finished epochs of the others are kept in {wishes.out}; run the same command "
+                f"{again}again to resume."
+            ) from None
+
+
+class _Board:
+    """A bar for the whole, and one for each model at work."""
+
+    def __init__(self, bar: Progress) -> None:
+        self._bar = bar
+        self._whole = bar.add_task("Fitting", total=1.0, news="", left="")
+        self._tasks: dict[str, TaskID] = {}
+
+    def show(self, now: Overview) -> None:
+        """Bring every bar up to date."""
+        self._bar.update(
+            self._whole,
+            completed=now.fraction,
+            news=f"{now.done}/{now.total} models",
+            left=_left(now.seconds_left),
+        )
+        stems = {each.stem for each in now.running}
+        for stem in set(self._tasks) - stems:
+            self._bar.remove_task(self._tasks.pop(stem))
+        for each in now.running:
+            if each.stem not in self._tasks:
+                self._tasks[each.stem] = self._bar.add_task(
+                    f"  {each.stem}", total=1.0, news="", left=""
+                )
+            loss = "" if each.loss is None else f"epoch {each.epoch}, loss {each.loss:.4g}"
+            self._bar.update(
+                self._tasks[each.stem],
+                completed=each.fraction,
+                news=loss,
+                left=_left(each.seconds_left),
+            )
+
+
+def _progress(console: Console) -> Progress:
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[news]}"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+        console=console,
+    )
+
+
+def _table(title: str | None, *heads: str) -> Table:
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for number, head in enumerate(heads):
+        numeric = title is not None and number > 0
+        table.add_column(head, justify="right" if numeric else "left", no_wrap=numeric)
+    return table
+
+
+def _left(seconds: float | None) -> str:
+    return "" if seconds is None else f"{_duration(seconds)} left"
+
+
+def _duration(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d}"

@@ -1,0 +1,60 @@
+"""`faultpath train`: fit the learned models of the quadrotor."""
+
+import os
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FAILED_MODELS = 1
+
+app = typer.Typer(help="Fit the learned models of the quadrotor.", no_args_is_help=True)
+
+
+@app.command("quadrotor")
+def command(
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="NAME",
+            help="Models or groups (predictors, reconstructions, all); default everything.",
+        ),
+    ] = None,
+    seeds: Annotated[
+        list[int] | None,
+        typer.Option("--seed", help="Seed, repeatable; default those of the paper."),
+    ] = None,
+    data: Annotated[Path, typer.Option(help="Folder of the collected flights.")] = Path("data"),
+    out: Annotated[Path, typer.Option(help="Folder for the checkpoints.")] = Path("runs/train"),
+    workers: Annotated[
+        int | None,
+        typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
+    ] = None,
+    tensorboard: Annotated[
+        Path | None, typer.Option(help="Folder for the curves of TensorBoard.")
+    ] = None,
+    ship: Annotated[
+        bool, typer.Option("--ship", help="Copy finished checkpoints into the package.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Fit from the start what is fitted already.")
+    ] = False,
+    list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
+) -> int:
+    """Fit models from wherever an earlier call left them; missing flights are collected first."""
+    from faultpath.cli.fitting import Wishes, list_models, train
+
+    if list_:
+        list_models()
+        return 0
+    wishes = Wishes(
+        names=tuple(names or ()),
+        seeds=tuple(seeds or ()),
+        data=data,
+        out=out,
+        workers=(os.cpu_count() or 1) if workers is None else workers,
+        tensorboard=tensorboard,
+        ship=ship,
+        force=force,
+    )
+    return FAILED_MODELS if train(wishes) else 0
