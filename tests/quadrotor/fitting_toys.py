@@ -1,0 +1,109 @@
+"""A model small enough to fit in milliseconds, with a corruption as DCC has one."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import LongTensor, Tensor, nn
+from torch.nn import functional
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.training.catalogue import Entry
+from faultpath.quadrotor.training.fitting import Schedule, Task
+from faultpath.streams import generator
+
+
+def draw(purpose: str, seed: int, *shape: int, step: int = 0) -> Tensor:
+    numbers = generator(purpose, "toy", seed, step).standard_normal(shape)
+    return torch.from_numpy(numbers).float()
+
+
+class Net(nn.Module):
+    """Features first, batch last."""
+
+    def __init__(self, seed: int) -> None:
+        super().__init__()
+        self.first = nn.Parameter(draw("toy/first", seed, 8, 3))
+        self.last = nn.Parameter(draw("toy/last", seed, 1, 8))
+        self.register_buffer("scale", torch.tensor([1.0, 2.0, 0.5]))
+
+    def forward(self, x: Tensor) -> Tensor:
+        return self.last @ torch.tanh(self.first @ (x * self.scale[:, None]))
+
+
+class Toy(Task):
+    """Regression of a sum; `magnitude` scales the corruption that each epoch draws."""
+
+    def __init__(self, seed: int = 0, magnitude: float | None = None, **schedule: Any) -> None:
+        self.name = "toy" if magnitude is None else "toy+dcc"
+        self.seed = seed
+        self.schedule = Schedule(**{"epochs": 4, "batch_size": 32} | schedule)
+        self.magnitude = magnitude
+        self.stop_at: tuple[int, int] | None = None
+        """Epoch and minibatch at which Ctrl-C comes."""
+        self.poisoned: int | None = None
+        """Epoch from which the loss is not a number."""
+        self.pause_s = 0.0
+        self.weight = 1.0
+        self.data_sha256 = "3fa9"
+        self._epoch, self._batch = 0, 0
+
+    @property
+    def count(self) -> int:
+        return 150
+
+    @property
+    def order_key(self) -> str:
+        return "toy order"
+
+    def load(self) -> None:
+        self._input = draw("toy/input", 0, 3, 200)
+        self._target = self._input.sum(0, keepdim=True)
+        self._seen = self._input
+
+    def module(self) -> nn.Module:
+        return Net(self.seed)
+
+    def begin_epoch(self, epoch: int) -> None:
+        self._epoch, self._batch = epoch, 0
+        if self.magnitude is not None:
+            noise = draw("toy/corruption", self.seed, 3, 200, step=epoch)
+            self._seen = self._input * (1 + self.magnitude * noise)
+
+    def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
+        if torch.is_grad_enabled() and (self._epoch, self._batch) == self.stop_at:
+            raise KeyboardInterrupt
+        time.sleep(self.pause_s)
+        self._batch += 1
+        error = functional.mse_loss(module(self._seen[:, index]), self._target[:, index])
+        poisoned = self.poisoned is not None and self._epoch >= self.poisoned
+        return self.weight * error * (torch.nan if poisoned else 1.0)
+
+    def validate(self, module: nn.Module) -> dict[str, float]:
+        assert not module.training
+        error = module(self._input[:, 150:]) - self._target[:, 150:]
+        return {"error": float(error.square().mean().sqrt())}
+
+    def describe(self) -> dict[str, Any]:
+        return {
+            "description": "a toy",
+            "data_sha256": {"toy": self.data_sha256},
+            "magnitude": self.magnitude or 0.0,
+        }
+
+
+def make(name: str, seed: int, data: Path) -> Task:
+    """Make a task for the catalogue; the file `data/gate` slows it down while it exists."""
+    if name == "mistake":
+        raise UserError("the toy has no data: make some.")
+    if name == "bug":
+        raise ZeroDivisionError("the toy is broken")
+    task = Toy(seed, epochs=30 if (data / "gate").exists() else 4)
+    task.name = name
+    task.pause_s = 0.02 if (data / "gate").exists() else 0.0
+    return task
+
+
+def entry(name: str, **more: Any) -> Entry:
+    return Entry(name, make, (), f"{name} of the tests", **{"cost": 1.0, "seeds": (0,)} | more)

@@ -1,0 +1,226 @@
+"""One model: what its weights depend on, and what survives a process that stops."""
+
+import itertools
+import json
+from pathlib import Path
+
+import pytest
+import torch
+from fitting_toys import Net, Toy
+from safetensors.torch import load_file
+
+from faultpath.quadrotor.training import fitting
+from faultpath.quadrotor.training.checkpoint import read_card
+from faultpath.quadrotor.training.fitting import Diverged, fit, forget
+from faultpath.quadrotor.training.journal import journal_path
+from faultpath.store.atomic import write
+
+
+def _silent(text: str) -> None:
+    raise AssertionError(f"nothing was to be said, but: {text}")
+
+
+def _fit(task: Toy, folder: Path) -> bytes:
+    return fit(task, folder, notice=_silent).read_bytes()
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    return _fit(Toy(), tmp_path_factory.mktemp("reference"))
+
+
+def test_fitting_helps_and_its_card_says_so(tmp_path: Path) -> None:
+    path = fit(Toy(epochs=20, learning_rate=0.02), tmp_path, notice=_silent)
+    card = read_card(path)
+    assert len(card.training_loss) == len(card.validation) == 20
+    assert card.training_loss[-1] < 0.2 * card.training_loss[0]
+    assert card.final["error"] < 0.5 * card.validation[0]["error"]
+    assert card.first_loss > card.training_loss[1]
+    assert (card.parameters, card.samples) == (32, 150)
+    assert card.schedule["epochs"] == 20
+    assert card.data_sha256 == {"toy": "3fa9"}
+    assert card.config == {"magnitude": 0.0}
+    assert card.description == "a toy"
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["toy-0.json", "toy-0.safetensors"]
+
+
+@pytest.mark.parametrize("optimiser", ["adam", "adamw"])
+@pytest.mark.parametrize("stop", [(0, 3), (1, 0), (2, 4), (3, 2)])
+def test_an_interrupted_fit_goes_on_to_the_same_bits(
+    optimiser: str, stop: tuple[int, int], tmp_path: Path
+) -> None:
+    whole = _fit(Toy(optimiser=optimiser), tmp_path / "whole")
+    cut = Toy(optimiser=optimiser)
+    cut.stop_at = stop
+    with pytest.raises(KeyboardInterrupt):
+        _fit(cut, tmp_path / "cut")
+    path = tmp_path / "cut" / "toy-0.safetensors"
+    assert not path.exists()
+    assert journal_path(path).exists() == (stop[0] > 0)
+    assert _fit(Toy(optimiser=optimiser), tmp_path / "cut") == whole
+    first, second = (read_card(tmp_path / f / path.name) for f in ("whole", "cut"))
+    assert first.training_loss == second.training_loss
+    assert first.validation == second.validation
+
+
+def test_a_stop_at_any_write_loses_no_bits(
+    reference: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The journal of each epoch, the weights and the card: each write in turn is the last."""
+    for survived in itertools.count():
+        folder = tmp_path / str(survived)
+        writes = itertools.count()
+
+        def stopping(path, data, original=write, limit=survived, writes=writes):
+            if next(writes) == limit:
+                raise KeyboardInterrupt
+            original(path, data)
+
+        with monkeypatch.context() as patch:
+            patch.setattr("faultpath.quadrotor.training.journal.write", stopping)
+            patch.setattr("faultpath.quadrotor.training.checkpoint.write", stopping)
+            try:
+                _fit(Toy(), folder)
+            except KeyboardInterrupt:
+                pass
+            else:
+                break
+        assert fit(Toy(), folder, notice=lambda _: None).read_bytes() == reference
+        assert not journal_path(folder / "toy-0.safetensors").exists()
+    assert survived == 6  # four epochs, weights, card
+
+
+def test_zero_corruption_is_no_corruption(reference: bytes, tmp_path: Path) -> None:
+    """Initial weights and minibatch order are those of the baseline, to the bit."""
+    assert _fit(Toy(magnitude=0.0), tmp_path) == reference
+    plain, dcc = (read_card(fit(Toy(magnitude=m), tmp_path)) for m in (None, 0.2))
+    assert plain.initial_sha256 == dcc.initial_sha256
+    assert plain.weights_sha256 != dcc.weights_sha256
+
+
+def test_the_seed_decides_the_weights(reference: bytes, tmp_path: Path) -> None:
+    assert _fit(Toy(), tmp_path) == reference
+    assert _fit(Toy(seed=1), tmp_path) != reference
+
+
+def test_the_global_generator_has_no_say(reference: bytes, tmp_path: Path) -> None:
+    with torch.random.fork_rng():
+        torch.manual_seed(987)
+        assert _fit(Toy(), tmp_path) == reference
+
+
+def test_the_order_is_a_new_permutation_each_epoch() -> None:
+    task = Toy()
+    first, again, second = (torch.cat(fitting._minibatches(task, e)) for e in (0, 0, 1))
+    assert torch.equal(first, again)
+    assert not torch.equal(first, second)
+    for order in (first, second):
+        assert torch.equal(order.sort().values, torch.arange(task.count))
+    assert [len(batch) for batch in fitting._minibatches(task, 0)] == [32, 32, 32, 32, 22]
+
+
+def test_a_finished_model_is_left_alone(tmp_path: Path) -> None:
+    path = fit(Toy(), tmp_path, notice=_silent)
+    before = path.stat().st_mtime_ns, path.with_suffix(".json").read_bytes()
+    task = Toy()
+    task.stop_at = (0, 0)
+    assert fit(task, tmp_path, notice=_silent) == path
+    assert (path.stat().st_mtime_ns, path.with_suffix(".json").read_bytes()) == before
+
+
+CHANGES = {
+    "schedule": lambda task: setattr(task, "schedule", fitting.Schedule(epochs=2)),
+    "data_sha256": lambda task: setattr(task, "data_sha256", "ffff"),
+    "config": lambda task: setattr(task, "magnitude", 0.1),
+    "initial_sha256": lambda task: setattr(task, "module", lambda: Net(5)),
+    "first_loss": lambda task: setattr(task, "weight", 1.01),
+}
+
+
+@pytest.mark.parametrize(("word", "change"), CHANGES.items(), ids=CHANGES)
+def test_a_changed_task_is_fitted_again_and_says_why(word, change, tmp_path: Path) -> None:
+    fit(Toy(), tmp_path, notice=_silent)
+    task = Toy()
+    change(task)
+    said: list[str] = []
+    path = fit(task, tmp_path, notice=said.append)
+    assert len(said) == 1
+    assert said[0].startswith("toy-0 is fitted again: ")
+    assert word in said[0]
+    assert fit(task, tmp_path, notice=_silent) == path
+
+
+@pytest.mark.parametrize("damage", ["weights", "card"])
+def test_a_damaged_checkpoint_is_fitted_again(damage: str, reference: bytes, tmp_path) -> None:
+    path = fit(Toy(), tmp_path, notice=_silent)
+    broken = path if damage == "weights" else path.with_suffix(".json")
+    broken.write_bytes(broken.read_bytes()[:-1] + b" ")
+    if damage == "card":
+        broken.write_text("{")
+    said: list[str] = []
+    assert fit(Toy(), tmp_path, notice=said.append).read_bytes() == reference
+    assert [text.startswith("toy-0 is fitted again") for text in said] == [True]
+
+
+@pytest.mark.parametrize("damage", ["cut", "of another fit"])
+def test_a_useless_journal_is_told_and_dropped(damage: str, reference: bytes, tmp_path) -> None:
+    task = Toy() if damage == "cut" else Toy(learning_rate=0.01)
+    task.stop_at = (2, 0)
+    with pytest.raises(KeyboardInterrupt):
+        _fit(task, tmp_path)
+    journal = journal_path(tmp_path / "toy-0.safetensors")
+    if damage == "cut":
+        journal.write_bytes(journal.read_bytes()[:100])
+    said: list[str] = []
+    assert fit(Toy(), tmp_path, notice=said.append).read_bytes() == reference
+    assert ["first epoch" in text for text in said] == [True]
+
+
+def test_a_loss_that_is_no_number_stops_with_the_last_good_state(tmp_path: Path) -> None:
+    task = Toy()
+    task.poisoned = 2
+    with pytest.raises(Diverged, match=r"loss of toy-0 .* epoch 3 of 4: lower .* epoch 2 is kept"):
+        _fit(task, tmp_path)
+    path = tmp_path / "toy-0.safetensors"
+    assert not path.exists()
+    kept = load_file(journal_path(path))
+    assert all(value.isfinite().all() for value in kept.values())
+    shorter = _fit(Toy(epochs=2), tmp_path / "shorter")
+    (tmp_path / "shorter.safetensors").write_bytes(shorter)
+    for name, value in load_file(tmp_path / "shorter.safetensors").items():
+        assert torch.equal(kept[f"model.{name}"], value)
+
+
+def test_weights_that_are_no_numbers_are_not_kept(tmp_path: Path) -> None:
+    with pytest.raises(Diverged, match="epoch 1 of 4"):
+        _fit(Toy(learning_rate=float("inf")), tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_norm_of_the_gradient_is_clipped(reference: bytes, tmp_path: Path) -> None:
+    assert _fit(Toy(clip_norm=1e9), tmp_path / "far") == reference
+    assert _fit(Toy(clip_norm=1e-6), tmp_path / "near") != reference
+
+
+def test_progress_rises_to_one(tmp_path: Path) -> None:
+    moments: list[fitting.Moment] = []
+    fit(Toy(epochs=2), tmp_path, moments.append, notice=_silent)
+    assert [moment.fraction for moment in moments] == pytest.approx([k / 10 for k in range(1, 11)])
+    assert [moment.epoch for moment in moments] == [0] * 5 + [1] * 5
+
+
+def test_forgetting_removes_model_and_journal_and_nothing_else(tmp_path: Path) -> None:
+    for seed in (0, 1):
+        fit(Toy(seed), tmp_path, notice=_silent)
+    journal_path(tmp_path / "toy-0.safetensors").touch()
+    forget("toy", 0, tmp_path)
+    assert sorted(item.name for item in tmp_path.iterdir()) == ["toy-1.json", "toy-1.safetensors"]
+
+
+def test_the_digest_covers_no_time(tmp_path: Path) -> None:
+    cards = [
+        json.loads(fit(Toy(), tmp_path / place).with_suffix(".json").read_text()) for place in "ab"
+    ]
+    for card in cards:
+        assert card.pop("duration_s") > 0
+    assert cards[0] == cards[1]
