@@ -1,0 +1,237 @@
+"""Fitting the learned wind reconstruction: its data, its corruption and its loss."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import torch
+from torch import LongTensor, Tensor, nn
+from torch.nn import functional
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
+from faultpath.quadrotor.training.corruption import (
+    DCC_HALF_RANGE,
+    Corruption,
+    dcc,
+    quadrotor_interface,
+)
+from faultpath.quadrotor.training.pool import read_provenance
+from faultpath.quadrotor.training.task import Schedule, Task
+from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
+from faultpath.streams import generator
+
+HEAD = "reconstruction.head"
+SHORT_HISTORIES = 0.15
+"""Share of training windows with 0 to 11 intervals only: 12 of the roughly 80 control steps of a
+flight have no more (derived, docs/design/reconstruction.md)."""
+CHECK_ERROR = 0.1
+"""Coupled calibration error of the validation metric `calibration_shift_mps` (paper, Table IV)."""
+BANDS_MPS = (0.0, 3.0, 6.0, 9.0)
+"""Lower ends of the bands of wind speed that validation reports."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """What tells the models apart."""
+
+    pool: str = "wind"
+    calibrated: bool = True
+    half_range: float | None = None
+    """Of the noise on the head's calibration; `None`: the values are delivered as they are."""
+
+
+MODELS: Mapping[str, Model] = MappingProxyType(
+    {
+        "gru": Model(),
+        "gru+dcc": Model(half_range=DCC_HALF_RANGE),
+        "gru-withheld": Model(calibrated=False),
+        "gru-trajectory": Model(pool="trajectory", calibrated=False),
+    }
+)
+"""The reference module, its repair, the control without calibration, and the one that learns from
+closed-loop flights, which has no calibration input (paper, Section V-A and V-B)."""
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Windows as the network wants them, standardised once; N windows."""
+
+    intervals: Tensor  # [22, 12, N]
+    latest: Tensor  # [18, N]
+    calibration: Tensor  # m and T as they are, [2, N]
+    target: Tensor  # standardised wind, [3, N]
+    ids: tuple[str, ...]
+
+    @classmethod
+    def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
+        intervals, latest = network.inputs(*_history(windows))
+        return cls(
+            intervals, latest, _calibration(windows), network.target(_wind(windows)), windows.ids
+        )
+
+
+class ReconstructionTask(Task):
+    """One reconstruction: mean squared error of the standardised wind vector (paper, appendix).
+
+    A window's history is its commands 0..11 with the states 1..12 that they led to; the target is
+    the wind at state 12. A share of the windows keeps fewer intervals, drawn anew each epoch from
+    a stream of its own, because a flight begins without any.
+    """
+
+    def __init__(self, name: str, seed: int, data_folder: Path) -> None:
+        if name not in MODELS:
+            raise UserError(
+                f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
+            )
+        self.name = name
+        self.seed = seed
+        self.schedule = Schedule(epochs=40, optimiser="adam")  # paper, appendix
+        self._model = MODELS[name]
+        self._path = data_folder / f"{self._model.pool}.parquet"
+        self._base = name.removesuffix("+dcc")
+        self._scaled = WindNetwork(self._model.calibrated)
+
+    def load(self) -> None:
+        """See `Task.load`."""
+        self.use(*windows_of(self._path).split())
+
+    def use(self, training: Windows, validation: Windows) -> None:
+        """Take windows from memory, and the scales of inputs and target from the training ones."""
+        self._scaled.measure(*_history(training), _calibration(training), _wind(training))
+        self._training = _Samples.of(training, self._scaled)
+        self._validation = _Samples.of(validation, self._scaled)
+        self._corruption = self._corrupted(training.ids)
+        self._known = self._delivered = torch.empty(0)
+
+    @property
+    def count(self) -> int:
+        """See `Task.count`."""
+        return len(self._training.ids)
+
+    @property
+    def order_key(self) -> str:
+        """See `Task.order_key`."""
+        return self._base
+
+    def module(self) -> nn.Module:
+        """See `Task.module`."""
+        network = copy.deepcopy(self._scaled)
+        stream = generator("initial weights", self._base, self.seed)
+        network.initialise(torch.Generator().manual_seed(int(stream.integers(2**63))))
+        return network
+
+    def begin_epoch(self, epoch: int) -> None:
+        """Draw the lengths of the histories and what the head gets of the calibration."""
+        stream = generator("short histories", self._base, self.seed, epoch)
+        short = stream.random(self.count) < SHORT_HISTORIES
+        lengths = stream.integers(INTERVALS, size=self.count)
+        self._known = torch.from_numpy(lengths).masked_fill(torch.from_numpy(~short), INTERVALS)
+        if self._corruption is not None:
+            mass, scale = self._training.calibration
+            delivered = self._corruption.deliver(epoch, {"mass": mass, "thrust_scale": scale})
+            got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
+            self._delivered = self._scaled.calibration(got)
+
+    def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
+        """See `Task.loss`."""
+        samples = self._training
+        estimate = module(
+            samples.intervals.index_select(2, index),
+            samples.latest.index_select(1, index),
+            None if self._corruption is None else self._delivered.index_select(1, index),
+            self._known[index],
+        )
+        return functional.mse_loss(estimate, samples.target.index_select(1, index))
+
+    def validate(self, module: nn.Module) -> Mapping[str, float]:
+        """Return errors with full histories and correct calibration, in m/s.
+
+        `wind_rmse_mps` is the root mean square length of the error vector, also by band of wind
+        speed and, as `start_rmse_mps`, without any interval. `calibration_shift_mps` is how far
+        the vertical wind moves, on average, under a coupled calibration error of +0.1.
+        """
+        network, samples = self._scaled, self._validation
+        truth = samples.target * network.wind_std + network.wind_mean
+        calibration = samples.calibration if network.calibrated else None
+        estimate = self._estimate(module, calibration)
+        squared = (estimate - truth).square().sum(0)
+        blind = self._estimate(module, calibration, intervals=0)
+        metrics = {"wind_rmse_mps": _rms(squared)}
+        metrics |= _by_speed(squared, truth.norm(dim=0))
+        metrics["start_rmse_mps"] = _rms((blind - truth).square().sum(0))
+        if calibration is not None:
+            wrong = calibration * torch.tensor([[1 + CHECK_ERROR], [1 - CHECK_ERROR]])
+            shift = self._estimate(module, wrong)[2] - estimate[2]
+            metrics["calibration_shift_mps"] = float(shift.mean())
+        return metrics
+
+    def describe(self) -> Mapping[str, Any]:
+        """See `Task.describe`."""
+        provenance = read_provenance(self._path)
+        return {
+            "description": _DESCRIPTIONS[self.name],
+            "data_sha256": {} if provenance is None else {provenance.pool: provenance.rows_sha256},
+            "calibration_inputs": self._model.calibrated,
+            "calibration_noise_half_range": self._model.half_range,
+            "short_histories": SHORT_HISTORIES,
+        }
+
+    def _corrupted(self, windows: tuple[str, ...]) -> Corruption | None:
+        """Return the way of calibration to the head; `None` where the head has none."""
+        if not self._model.calibrated:
+            return None
+        half_range = self._model.half_range
+        faults = () if half_range is None else (dcc([HEAD], half_range),)
+        return Corruption(quadrotor_interface(), faults, [HEAD], windows, self.seed)
+
+    def _estimate(
+        self, module: nn.Module, calibration: Tensor | None, intervals: int = INTERVALS
+    ) -> Tensor:
+        """Return the wind `[3, N]`, m/s, of the validation windows."""
+        network, samples = self._scaled, self._validation
+        supplied = None if calibration is None else network.calibration(calibration)
+        known = samples.intervals[:, INTERVALS - intervals :]
+        return module(known, samples.latest, supplied) * network.wind_std + network.wind_mean
+
+
+_DESCRIPTIONS = {
+    "gru": "Wind from twelve completed intervals and calibration.",
+    "gru+dcc": "The same, trained with noise on the calibration that enters its head.",
+    "gru-withheld": "Wind from twelve completed intervals alone, without calibration.",
+    "gru-trajectory": "Wind from twelve completed intervals alone, learned in closed loop.",
+}
+
+
+def _history(windows: Windows) -> tuple[Tensor, Tensor]:
+    """Return states 0..12 `[18, 13, W]` and commands 0..11 `[4, 12, W]`."""
+    rotation = windows.rotation.flatten(0, 1)
+    states = torch.cat((windows.position, windows.velocity, rotation, windows.rate))
+    return states[:, : HISTORY + 1], windows.command[:, :HISTORY]
+
+
+def _calibration(windows: Windows) -> Tensor:
+    return torch.stack((windows.mass_kg, windows.thrust_scale))
+
+
+def _wind(windows: Windows) -> Tensor:
+    return windows.wind_mps[:, HISTORY]
+
+
+def _rms(squared: Tensor) -> float:
+    return float(squared.mean().sqrt())
+
+
+def _by_speed(squared: Tensor, speed: Tensor) -> dict[str, float]:
+    """Return the error in each band of wind speed that has windows."""
+    metrics = {}
+    for low, high in zip(BANDS_MPS, (*BANDS_MPS[1:], float("inf")), strict=True):
+        inside = (speed >= low) & (speed < high)
+        if inside.any():
+            metrics[f"wind_rmse_mps_from_{low:g}"] = _rms(squared[inside])
+    return metrics

@@ -1,0 +1,231 @@
+"""How the wind reconstruction is fitted, and that its repair differs by the corruption alone."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from faultpath.errors import UserError
+from faultpath.faults import Fault, Scale
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.training.corruption import Corruption, dcc, quadrotor_interface
+from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
+from faultpath.quadrotor.training.windows import Windows
+
+COUNT = 96
+
+
+def windows(pool="wind", count=COUNT, seed=0):
+    """Windows of noise, but for a wind that the last velocities tell."""
+    draw = torch.Generator().manual_seed(seed)
+
+    def normal(*shape):
+        return torch.randn(*shape, count, generator=draw)
+
+    wind = 4 * normal(3, 1).expand(3, 33, count)
+    return Windows(
+        position=normal(3, 33),
+        velocity=0.5 * wind + 0.1 * normal(3, 33),
+        rotation=so3.exp(0.4 * normal(3, 33)),
+        rate=normal(3, 33),
+        command=9.81 + normal(4, 32),
+        wind_mps=wind.contiguous(),
+        mass_kg=1 + 0.5 * normal().tanh(),
+        thrust_scale=1 + 0.5 * normal().tanh(),
+        inertia_kgm2=normal(3),
+        torque_scale=normal(),
+        motor_time_constant_s=normal(),
+        drag_kgps=normal(3),
+        motor_thrust_n=normal(33),
+        episode=torch.arange(count),
+        ids=tuple(f"{pool}/{i:05d}/0" for i in range(count)),
+    )
+
+
+def task(name, seed=0):
+    made = ReconstructionTask(name, seed, Path("nowhere"))
+    made.use(windows(), windows(seed=1))
+    return made
+
+
+def loss(made, epoch=0):
+    made.begin_epoch(epoch)
+    return made.loss(made.module(), torch.arange(COUNT)).detach()
+
+
+def weights(made):
+    return torch.cat([value.flatten() for value in made.module().state_dict().values()])
+
+
+@torch.no_grad()
+def metrics(made, module):
+    return made.validate(module)
+
+
+def test_repair_shares_initial_weights_order_and_short_histories():
+    plain, repair = task("gru"), task("gru+dcc")
+    assert torch.equal(weights(plain), weights(repair))
+    assert plain.order_key == repair.order_key
+    plain.begin_epoch(3)
+    repair.begin_epoch(3)
+    assert torch.equal(plain._known, repair._known)
+    assert not torch.equal(plain._delivered, repair._delivered)
+
+
+def test_repair_without_noise_is_the_baseline_bit_for_bit(monkeypatch):
+    noiseless = MODELS | {"gru+dcc": type(MODELS["gru"])(half_range=0.0)}
+    monkeypatch.setattr("faultpath.quadrotor.training.reconstruction_task.MODELS", noiseless)
+    assert loss(task("gru")) == loss(task("gru+dcc"))
+
+
+def test_noise_reaches_the_loss_and_is_drawn_anew_each_epoch():
+    made = task("gru+dcc")
+    assert loss(made) != loss(task("gru"))
+    first = made._delivered
+    made.begin_epoch(1)
+    assert not (made._delivered == first).any()
+
+
+def test_epochs_may_be_prepared_in_any_order():
+    made = task("gru+dcc")
+    later = loss(made, epoch=5)
+    loss(made, epoch=2)
+    assert loss(made, epoch=5) == later
+
+
+@pytest.mark.parametrize("name", ["gru", "gru-withheld"])
+def test_seeds_change_initial_weights(name):
+    assert not torch.equal(weights(task(name)), weights(task(name, seed=1)))
+
+
+@pytest.mark.parametrize("name", ["gru-withheld", "gru-trajectory"])
+def test_withheld_models_never_see_calibration(name):
+    one, two = task(name), task(name)
+    shifted = windows()
+    shifted = Windows(**{**vars(shifted), "mass_kg": 3 * shifted.mass_kg})
+    two.use(shifted, windows(seed=1))
+    assert not one.module().calibrated
+    assert torch.equal(weights(one), weights(two))
+    assert loss(one) == loss(two)
+
+
+def test_loss_reads_no_future_state_command_or_wind():
+    plain, other = windows(), windows(seed=5)
+
+    def mixed(name, time, keep):
+        mine, theirs = getattr(plain, name).clone(), getattr(other, name)
+        mine.narrow(time, keep, mine.shape[time] - keep).copy_(
+            theirs.narrow(time, keep, mine.shape[time] - keep)
+        )
+        return mine
+
+    future = {name: mixed(name, 1, 13) for name in ("position", "velocity", "rate", "wind_mps")}
+    future["rotation"] = mixed("rotation", 2, 13)
+    future["command"] = mixed("command", 1, 12)
+    made, changed = task("gru"), task("gru")
+    changed.use(Windows(**{**vars(plain), **future}), windows(seed=1))
+    assert torch.equal(weights(made), weights(changed))
+    assert loss(made) == loss(changed)
+
+
+def test_a_share_of_histories_is_short():
+    made = task("gru")
+    made.use(windows(count=3200), windows(seed=1))
+    made.begin_epoch(0)
+    short = made._known[made._known < 12]
+    assert 0.12 < len(short) / 3200 < 0.18
+    assert set(short.tolist()) == set(range(12))
+
+
+def test_fitting_lowers_the_error():
+    made = task("gru")
+    module = made.module()
+    before = metrics(made, module)
+    optimiser = torch.optim.Adam(module.parameters(), lr=3e-2)
+    made.begin_epoch(0)
+    for _ in range(25):
+        optimiser.zero_grad()
+        made.loss(module, torch.arange(COUNT)).backward()
+        optimiser.step()
+    after = metrics(made, module)
+    assert after["wind_rmse_mps"] < 0.5 * before["wind_rmse_mps"]
+
+
+def test_validation_metrics_are_lengths_of_error_vectors():
+    made = task("gru")
+    module = made.module()
+    truth = windows(seed=1).wind_mps[:, 12]
+    with torch.no_grad():
+        module.head.weight.zero_()
+        module.head.bias.zero_()
+    found = metrics(made, module)
+    error = (truth - module.wind_mean).norm(dim=0)
+    slow = error[truth.norm(dim=0) < 3]
+    for name, lengths in (("wind_rmse_mps", error), ("wind_rmse_mps_from_0", slow)):
+        assert found[name] == pytest.approx(float(lengths.square().mean().sqrt()), rel=1e-5)
+    assert found["calibration_shift_mps"] == 0
+    withheld = task("gru-withheld")
+    assert "calibration_shift_mps" not in metrics(withheld, withheld.module())
+
+
+def test_unknown_model_is_a_users_mistake():
+    with pytest.raises(UserError, match="no wind reconstruction 'gur'"):
+        ReconstructionTask("gur", 0, Path("nowhere"))
+
+
+def corrupted(faults, consumers=(HEAD,), epoch=0, seed=0, count=COUNT):
+    few = windows(count=count)
+    corruption = Corruption(quadrotor_interface(), faults, consumers, few.ids, seed)
+    readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}
+    return readings, corruption.deliver(epoch, readings)
+
+
+def test_corruption_without_noise_delivers_the_same_bits():
+    readings, delivered = corrupted([dcc([HEAD], half_range=0.0)])
+    assert set(delivered) == {("mass", HEAD), ("thrust_scale", HEAD)}
+    assert all(torch.equal(delivered[c, HEAD], readings[c]) for c in readings)
+    readings, delivered = corrupted([])
+    assert all(delivered[c, HEAD] is readings[c] for c in readings)
+
+
+def test_mass_and_thrust_scale_err_independently_within_the_half_range():
+    readings, delivered = corrupted([dcc([HEAD])], count=2000)
+    mass, scale = (delivered[c, HEAD] / readings[c] - 1 for c in ("mass", "thrust_scale"))
+    for factor in (mass, scale):
+        assert factor.abs().max() <= 0.2 + 1e-6
+        assert factor.std() == pytest.approx(0.2 / 3**0.5, rel=0.05)
+    assert abs(float(torch.corrcoef(torch.stack((mass, scale)))[0, 1])) < 0.08
+
+
+def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
+    places = ("predictor.dynamics", "predictor.trim", "predictor.wind_map")
+    readings, delivered = corrupted([dcc(places[:2])], consumers=places)
+    assert torch.equal(delivered["mass", places[0]], delivered["mass", places[1]])
+    assert not torch.equal(delivered["mass", places[0]], readings["mass"])
+    assert delivered["mass", places[2]] is readings["mass"]
+    assert ("thrust_scale", places[2]) not in delivered  # the wind map reads the mass alone
+
+
+def test_a_window_keeps_its_draw_whatever_windows_are_beside_it():
+    _, few = corrupted([dcc([HEAD])], count=5)
+    _, many = corrupted([dcc([HEAD])], count=50)
+    five = windows(count=5).mass_kg
+    fifty = windows(count=50).mass_kg
+    torch.testing.assert_close(few["mass", HEAD] / five, many["mass", HEAD][:5] / fifty[:5])
+
+
+def test_epochs_and_seeds_draw_anew():
+    draws = [corrupted([dcc([HEAD])], epoch=e, seed=s)[1] for e, s in ((0, 0), (1, 0), (0, 1))]
+    firsts = {float(each["mass", HEAD][0]) for each in draws}
+    assert len(firsts) == 3
+
+
+def test_any_fault_of_an_audit_can_corrupt_training():
+    fault = Fault(channel="mass", consumers=(HEAD,), intervention=Scale(factor=2.0))
+    readings, delivered = corrupted([fault])
+    assert torch.equal(delivered["mass", HEAD], 2 * readings["mass"])
+
+
+def test_a_fault_that_strikes_nobody_is_refused():
+    with pytest.raises(UserError, match="strikes nobody"):
+        corrupted([dcc(["predictor.trim"])])
