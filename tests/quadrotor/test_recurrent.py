@@ -132,6 +132,12 @@ def test_action_at_the_start_means_nothing():
     assert all(torch.equal(a, b) for a, b in zip(one, two, strict=True))
 
 
+def test_estimate_is_zero_until_an_interval_is_complete():
+    start, after = winds(RecurrentReconstruction(network()), flight(2))
+    assert torch.equal(start, torch.zeros(3, 32))
+    assert after.abs().min() > 0
+
+
 def test_position_enters_relative_to_the_latest():
     readings = flight(14)
     away = [{**r, ("position", "history"): r["position", "history"] + 64.0} for r in readings]

@@ -117,7 +117,7 @@ class WindNetwork(nn.Module):
 
         Args:
             states: Where the vehicle was at the start and at each interval's end,
-                `[18, n + 1, N]` with n from 0 to 12.
+                `[18, n + 1, N]` with n from 1 to 12.
             commands: What was executed over each interval, `[4, n, N]`, N and rad/s.
             calibration: Delivered m~ (kg) and T~, `[2, N]`; `None` where it is withheld.
         """

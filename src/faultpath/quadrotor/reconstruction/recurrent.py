@@ -33,8 +33,9 @@ class RecurrentReconstruction(Reconstruction):
     Calibration enters at the head; a network built without it reads none anywhere.
 
     The estimate is computed anew from the last 12 completed intervals at each replan; no hidden
-    state is carried on. While fewer are complete, at the start of an episode, the network runs
-    over those that are, from a hidden state of zero; it was trained with such histories as well.
+    state is carried on. Before the first is complete it is zero, as the observer's. While fewer
+    than 12 are, the network runs over those that are, from a hidden state of zero; it was trained
+    with such histories as well.
     """
 
     def __init__(self, network: WindNetwork) -> None:
@@ -61,6 +62,8 @@ class RecurrentReconstruction(Reconstruction):
     def wind(self, memory: Memory) -> Tensor:
         """See `Reconstruction.wind`; lanes come in multiples of 32."""
         known: RecurrentMemory = memory
+        if not known.commands.shape[1]:
+            return torch.zeros_like(known.states[:3, 0])
         return self._network.estimate(known.states, known.commands, known.calibration)
 
     def _calibration(self, delivered: Delivered) -> Tensor | None:
