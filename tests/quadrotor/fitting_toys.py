@@ -1,5 +1,7 @@
 """A model small enough to fit in milliseconds, with a corruption as DCC has one."""
 
+import os
+import signal
 import time
 from pathlib import Path
 from typing import Any
@@ -83,7 +85,7 @@ class Toy(Task):
     def validate(self, module: nn.Module) -> dict[str, float]:
         assert not module.training
         error = module(self._input[:, 150:]) - self._target[:, 150:]
-        return {"error": float(error.square().mean().sqrt())}
+        return {"error": error.detach().square().mean().sqrt().item()}
 
     def describe(self) -> dict[str, Any]:
         return {
@@ -99,6 +101,8 @@ def make(name: str, seed: int, data: Path) -> Task:
         raise UserError("the toy has no data: make some.")
     if name == "bug":
         raise ZeroDivisionError("the toy is broken")
+    if name == "dies":
+        os.kill(os.getpid(), signal.SIGKILL)
     task = Toy(seed, epochs=30 if (data / "gate").exists() else 4)
     task.name = name
     task.pause_s = 0.02 if (data / "gate").exists() else 0.0

@@ -118,7 +118,7 @@ def load_checkpoint(module: nn.Module, path: Path) -> ModelCard:
         raise UserError(
             f"cannot read {path} ({error.strerror}): copy it again or fit the model again."
         ) from error
-    if hashlib.sha256(data).hexdigest() != card.weights_sha256:
+    if digest(data) != card.weights_sha256:
         raise UserError(
             f"the weights in {path} are not those of its card: copy both files again or fit the "
             "model again."
@@ -142,7 +142,7 @@ def save_checkpoint(module: nn.Module, path: Path, card: Mapping[str, Any]) -> M
     data = save(tensors(module))
     full = ModelCard(
         parameters=parameter_count(module),
-        weights_sha256=hashlib.sha256(data).hexdigest(),
+        weights_sha256=digest(data),
         **card,
     )
     write(path, data)
@@ -163,6 +163,11 @@ def ship(path: Path) -> None:
             f"cannot ship {path.stem} into {folder} ({error.strerror}): install the package so "
             "that you may write to it, or leave --ship out."
         ) from error
+
+
+def digest(data: bytes) -> str:
+    """Return the SHA-256 of some bytes in hexadecimal."""
+    return hashlib.sha256(data).hexdigest()
 
 
 def tensors(module: nn.Module) -> dict[str, Tensor]:

@@ -5,7 +5,6 @@ seed only. A fit that was killed and run again ends with the same weights as one
 finished model is fitted again only when what decides its weights has changed.
 """
 
-import hashlib
 import json
 import logging
 import math
@@ -22,7 +21,13 @@ from torch.optim import Adam, AdamW, Optimizer
 
 import faultpath
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.checkpoint import read_card, save_checkpoint, stem, tensors
+from faultpath.quadrotor.training.checkpoint import (
+    digest,
+    read_card,
+    save_checkpoint,
+    stem,
+    tensors,
+)
 from faultpath.quadrotor.training.journal import (
     History,
     journal_path,
@@ -127,7 +132,7 @@ class _Work:
         if changed:
             notice(f"{self._path.stem} is fitted again: {', '.join(changed)} changed.")
             return False
-        if hashlib.sha256(self._path.read_bytes()).hexdigest() != card.weights_sha256:
+        if digest(self._path.read_bytes()) != card.weights_sha256:
             notice(f"{self._path.stem} is fitted again: its weights are not those of its card.")
             return False
         return True
@@ -244,7 +249,7 @@ def _recipe(task: Task, module: nn.Module) -> dict[str, Any]:
         "order_key": task.order_key,
         "data_sha256": config.pop("data_sha256", {}),
         "config": config,
-        "initial_sha256": hashlib.sha256(save(tensors(module))).hexdigest(),
+        "initial_sha256": digest(save(tensors(module))),
     }
     return json.loads(json.dumps(recipe))
 

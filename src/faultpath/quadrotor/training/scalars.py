@@ -38,7 +38,7 @@ def require_tensorboard() -> None:
 
 def _writer_class() -> Any:
     try:
-        from torch.utils.tensorboard.writer import SummaryWriter
+        from torch.utils.tensorboard import SummaryWriter  # pyright: ignore[reportPrivateImportUsage]
     except ModuleNotFoundError as error:
         raise UserError(
             "--tensorboard needs the tensorboard package, which is not installed: "

@@ -1,0 +1,164 @@
+"""`faultpath train`: what it prints, what it refuses, and how it stops."""
+
+import sys
+from pathlib import Path
+
+import pytest
+from cli_runs import ROOT, faultpath
+
+from faultpath.cli.main import INTERRUPTED
+from faultpath.quadrotor.training import catalogue, checkpoint, jobs
+
+sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
+from fitting_toys import Toy, entry
+
+
+@pytest.fixture(autouse=True)
+def _toys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Put toys in the place of the quadrotor's models."""
+    monkeypatch.chdir(tmp_path)
+    entries = (entry("one"), entry("one+dcc", seeds=(0, 1)), entry("bug"), entry("mistake"))
+    monkeypatch.setattr(catalogue, "ALL", entries)
+    monkeypatch.setattr(catalogue, "GROUPS", {"both": entries[:2], "all": entries[:2]})
+    monkeypatch.setenv("COLUMNS", "200")
+
+
+def _train(*arguments: object):
+    return faultpath("train", "quadrotor", *arguments, "--workers", 0)
+
+
+def test_everything_is_fitted_and_ends_in_a_table() -> None:
+    ended = _train()
+    assert (ended.status, ended.err) == (0, "")
+    names = {path.name for path in Path("runs/train").glob("*.safetensors")}
+    assert names == {"one-0.safetensors", "one+dcc-0.safetensors", "one+dcc-1.safetensors"}
+    rows = [line.split() for line in ended.out.splitlines()]
+    (head,) = (row for row in rows if row[:2] == ["model", "seed"])
+    assert head[2:] == ["parameters", "training", "loss", "validation", "time"]
+    card = checkpoint.read_card(Path("runs/train/one+dcc-1.safetensors"))
+    (row,) = (row for row in rows if row[:2] == ["one+dcc", "1"])
+    assert row[2:4] == ["32", f"{card.training_loss[-1]:.4g}"]
+    assert row[4:6] == ["error", f"{card.final['error']:.4g}"]
+    assert "Checkpoints: runs/train" in ended.out
+
+
+def test_names_seeds_and_folders_are_heeded(tmp_path: Path) -> None:
+    ended = _train("one", "--seed", 3, "--seed", 1, "--out", tmp_path / "mine")
+    assert ended.status == 0, ended.err
+    stems = {path.stem for path in (tmp_path / "mine").glob("*.safetensors")}
+    assert stems == {"one-1", "one-3"}
+    assert not (tmp_path / "runs").exists()
+
+
+def test_the_same_again_fits_nothing_until_forced(monkeypatch: pytest.MonkeyPatch) -> None:
+    card = Path("runs/train/one-0.json")
+    assert _train("one").status == 0
+    before = card.read_bytes()
+    assert _train("one").status == 0
+    assert card.read_bytes() == before
+    assert _train("one", "--force").status == 0
+    assert card.read_bytes() != before
+    monkeypatch.setattr(Toy, "count", 149)
+    ended = _train("one")
+    assert "one-0 is fitted again: samples" in ended.out
+
+
+def test_finished_checkpoints_are_shipped(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
+    assert _train("one", "--ship").status == 0
+    assert checkpoint.checkpoint_path("one", 0).parent == tmp_path / "package"
+
+
+def test_models_that_fail_are_told_and_change_the_status() -> None:
+    ended = _train("bug", "mistake", "one")
+    assert ended.status == 1
+    assert "bug-0 was not fitted: ZeroDivisionError: the toy is broken" in ended.out
+    assert "runs/train/bug-0.error.txt" in ended.out
+    assert "mistake-0 was not fitted: the toy has no data: make some." in ended.out
+    assert "Traceback" not in ended.out + ended.err
+    assert Path("runs/train/one-0.safetensors").exists()
+
+
+def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[Path, tuple[str, ...], int]] = []
+
+    def collect(folder: Path, pools, workers: int, progress) -> None:
+        progress(1.0, 2.0)
+        asked.append((folder, pools, workers))
+
+    monkeypatch.setattr(jobs, "collect", collect)
+    monkeypatch.setattr(
+        catalogue,
+        "ALL",
+        (catalogue.Entry("one", entry("one").factory, ("nominal",), "", 1.0, seeds=(0,)),),
+    )
+    ended = _train("one", "--data", "flights")
+    assert ended.status == 0, ended.err
+    assert asked == [(Path("flights"), ("nominal",), 1)]
+    assert "Collecting nominal" in ended.out
+
+
+def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    begin = Toy.begin_epoch
+
+    def stop(self: Toy, epoch: int) -> None:
+        begin(self, epoch)
+        if (self.name, epoch) == ("one+dcc", 2):
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Toy, "begin_epoch", stop)
+        ended = _train("both")
+        assert ended.status == INTERRUPTED
+        assert "interrupted with 1 of 3 models finished" in ended.err
+        assert "kept in runs/train; run the same command again to resume" in ended.err
+        assert "without --force" in _train("both", "--force").err
+    assert _train("both").status == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["two"], ["'two'", "one, one+dcc, bug, mistake", "both, all"]),
+        (["one", "--seed", "x"], ["--seed", "`faultpath train quadrotor --help`"]),
+        (["one", "--seed", "-1"], ["-1", "negative"]),
+        (["one", "--out", "/proc/none"], ["/proc/none", "write"]),
+        (["one", "--fast"], ["--fast"]),
+    ],
+    ids=" ".join,
+)
+def test_a_mistake_is_one_sentence(arguments, says, tmp_path: Path) -> None:
+    sentence = _train(*arguments).refused()
+    for part in says:
+        assert part in sentence
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_number_of_workers_below_zero_is_refused() -> None:
+    assert "-2" in faultpath("train", "quadrotor", "one", "--workers", -2).refused()
+
+
+def test_tensorboard_that_is_missing_is_said_before_the_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "torch.utils.tensorboard", None)
+    assert "faultpath[tensorboard]" in _train("one", "--tensorboard", "board").refused()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_list_names_every_model() -> None:
+    ended = faultpath("train", "quadrotor", "--list")
+    assert ended.status == 0
+    assert "one+dcc" in ended.out
+    assert "0,1" in ended.out
+
+
+def test_a_system_without_models_is_a_mistake() -> None:
+    assert "'toy'" in faultpath("train", "toy").refused()
+
+
+def test_help_is_whole() -> None:
+    for verb in (["train"], ["train", "quadrotor"]):
+        ended = faultpath(*verb, "--help")
+        assert (ended.status, ended.err) == (0, "")
+        assert "quadrotor" in ended.out

@@ -1,0 +1,259 @@
+"""Many models: which, in which order, on how many processes, and what stops them."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from fitting_toys import Toy, entry
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.training import catalogue, jobs
+from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose
+from faultpath.quadrotor.training.collection import EPISODES
+from faultpath.quadrotor.training.fitting import Moment, fit
+from faultpath.quadrotor.training.jobs import Interrupted, Report, missing_pools, run_jobs
+from faultpath.quadrotor.training.journal import journal_path
+from faultpath.quadrotor.training.pace import Overview, Pace
+from faultpath.quadrotor.training.worker import Places
+
+HERE = Path(__file__).resolve().parent
+
+
+def _run(tmp_path: Path, wanted: list[Job], workers: int = 0, **more) -> Report:
+    places = Places(tmp_path / "data", tmp_path / "out")
+    return run_jobs(wanted, places, workers, lambda _: None, lambda _: None, **more)
+
+
+def test_without_names_everything_comes_in_order_of_dependence() -> None:
+    stems = [job.stem for job in choose([])]
+    assert len(stems) == len(set(stems)) == sum(len(each.seeds) for each in ALL)
+    places = {name: i for i, name in enumerate(dict.fromkeys(job.entry.name for job in choose([])))}
+    for each in ALL:
+        assert all(places[needed] < places[each.name] for needed in each.after)
+
+
+def test_names_groups_and_seeds() -> None:
+    assert [job.stem for job in choose(["gru+dcc", "wm-a"], [4, 0, 4])] == [
+        "wm-a-4",
+        "wm-a-0",
+        "gru+dcc-4",
+        "gru+dcc-0",
+    ]
+    assert {job.entry for job in choose(["predictors", "wm-a"])} == set(GROUPS["predictors"])
+    assert choose(["all"]) == choose([])
+
+
+@pytest.mark.parametrize(
+    ("names", "seeds", "says"),
+    [(["wm-b"], [], "'wm-b'.* wm-a, .*clearance.* predictors"), ([], [-1], "-1 is negative")],
+)
+def test_wrong_names_and_seeds(names, seeds, says) -> None:
+    with pytest.raises(UserError, match=says):
+        choose(names, seeds)
+
+
+def test_a_corrupted_variant_stands_beside_its_baseline_in_everything_else() -> None:
+    by_name = {each.name: each for each in ALL}
+    for each in ALL:
+        if each.name.endswith("+dcc"):
+            base = by_name[each.name.removesuffix("+dcc")]
+            assert (each.pools, each.seeds, each.cost) == (base.pools, base.seeds, base.cost)
+
+
+def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
+    assert {pool for each in ALL for pool in each.pools} <= set(EPISODES)
+
+
+def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> None:
+    wanted = choose(["wm-a", "wm-a-wind"])
+    assert missing_pools(wanted, tmp_path) == ("nominal", "wind")
+    (tmp_path / "nominal.parquet").touch()
+    (tmp_path / "wind.json").touch()
+    assert missing_pools(wanted, tmp_path) == ("nominal",)
+    assert missing_pools(choose(["wm-a"]), tmp_path) == ("nominal",)
+
+
+@pytest.mark.slow
+def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> None:
+    good, bug, dies = (Job(entry(name), 0) for name in ("good", "bug", "dies"))
+    alone, beside = _run(tmp_path / "0", [good]), _run(tmp_path / "2", [bug, dies, good], 2)
+    for ours, theirs in zip(alone.cards, beside.cards, strict=True):
+        same = {"duration_s"}
+        assert ours.model_dump(exclude=same) == theirs.model_dump(exclude=same)
+    assert [failure.job.stem for failure in beside.failures] == ["bug-0", "dies-0"]
+    broken, killed = beside.failures
+    assert broken.error == "ZeroDivisionError: the toy is broken"
+    assert broken.details is not None
+    assert "Traceback" in broken.details.read_text()
+    assert "memory" in killed.error
+
+
+def _order(tmp_path: Path, wanted: list[Job]) -> list[str]:
+    seen: list[str] = []
+
+    def note(now: Overview) -> None:
+        seen.extend(each.stem for each in now.running if each.stem not in seen)
+
+    places = Places(tmp_path / "data", tmp_path / "out")
+    run_jobs(wanted, places, 0, note, lambda _: None)
+    return seen
+
+
+def test_the_longest_goes_first_but_not_before_what_it_needs(tmp_path: Path) -> None:
+    wanted = [
+        Job(entry("short", cost=1.0), 0),
+        Job(entry("needy", cost=9.0, after=("flies",)), 0),
+        Job(entry("flies", cost=2.0), 0),
+        Job(entry("flies", cost=2.0), 1),
+        Job(entry("long", cost=5.0), 0),
+    ]
+    assert _order(tmp_path, wanted) == ["long-0", "flies-0", "needy-0", "flies-1", "short-0"]
+
+
+def test_a_model_that_fails_stops_only_those_that_need_it(tmp_path: Path) -> None:
+    wanted = [
+        Job(entry("bug"), 0),
+        Job(entry("mistake"), 0),
+        Job(entry("needy", after=("mistake",)), 0),
+        Job(entry("good"), 0),
+    ]
+    report = _run(tmp_path, wanted)
+    assert [card.stem for card in report.cards] == ["good-0"]
+    errors = {failure.job.stem: failure for failure in report.failures}
+    assert list(errors) == ["bug-0", "mistake-0", "needy-0"]
+    assert errors["mistake-0"].error == "the toy has no data: make some."
+    assert "mistake-0, which was not fitted" in errors["needy-0"].error
+    assert errors["bug-0"].error == "ZeroDivisionError: the toy is broken"
+    assert errors["bug-0"].details is not None
+    assert "Traceback" in errors["bug-0"].details.read_text()
+    assert errors["mistake-0"].details is None
+
+
+def test_force_fits_again(tmp_path: Path) -> None:
+    wanted = [Job(entry("one"), 0)]
+    first = _run(tmp_path, wanted).cards[0]
+    assert _run(tmp_path, wanted).cards[0] == first
+    again = _run(tmp_path, wanted, force=True).cards[0]
+    assert again != first
+    assert again.weights_sha256 == first.weights_sha256
+
+
+def test_finished_models_are_shipped_when_asked(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shipped: list[Path] = []
+    monkeypatch.setattr(jobs, "ship", shipped.append)
+    _run(tmp_path, [Job(entry("one"), 0)])
+    assert shipped == []
+    _run(tmp_path, [Job(entry("one"), 0), Job(entry("mistake"), 0)], shipped=True)
+    assert shipped == [tmp_path / "out" / "one-0.safetensors"]
+
+
+@pytest.fixture
+def gate(tmp_path: Path) -> Path:
+    """A file that makes the toy slow and long while it exists."""
+    place = tmp_path / "data" / "gate"
+    place.parent.mkdir()
+    place.touch()
+    return place
+
+
+def _finishes_to_the_same_bits(tmp_path: Path) -> None:
+    task = Toy(epochs=30)
+    task.name = "slow"
+    _run(tmp_path, [Job(entry("slow"), 0)])
+    ours, whole = tmp_path / "out" / "slow-0.safetensors", fit(task, tmp_path / "whole")
+    assert ours.read_bytes() == whole.read_bytes()
+
+
+@pytest.mark.usefixtures("gate")
+def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
+    processes: list[subprocess.Popen[bytes]] = []
+    original = jobs._Process.__init__
+
+    def note(self, order) -> None:
+        original(self, order)
+        processes.append(self._process)
+
+    def stop(now: Overview) -> None:
+        if journal.exists() and now.running:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(jobs._Process, "__init__", note)
+    places = Places(tmp_path / "data", tmp_path / "out")
+    with pytest.raises(Interrupted) as caught:
+        run_jobs([Job(entry("slow"), 0)], places, 1, stop, lambda _: None)
+    assert (caught.value.done, caught.value.total) == (0, 1)
+    assert [process.returncode for process in processes] == [-signal.SIGKILL]
+    _finishes_to_the_same_bits(tmp_path)
+
+
+RUN = """
+import sys
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from fitting_toys import entry
+from faultpath.quadrotor.training.catalogue import Job
+from faultpath.quadrotor.training.jobs import run_jobs
+from faultpath.quadrotor.training.worker import Places
+place = Path(sys.argv[2])
+places = Places(place / "data", place / "out")
+run_jobs([Job(entry("slow"), 0)], places, 1, lambda _: None, print)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("gate")
+def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
+    parent = subprocess.Popen([sys.executable, "-c", RUN, str(HERE), str(tmp_path)])
+    journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
+    limit = time.monotonic() + 60
+    while not journal.exists():
+        assert time.monotonic() < limit
+        time.sleep(0.02)
+    parent.kill()
+    parent.wait()
+    time.sleep(0.5)  # several epochs of a worker that went on
+    before = journal.read_bytes()
+    time.sleep(0.5)
+    assert journal.read_bytes() == before
+    _finishes_to_the_same_bits(tmp_path)
+
+
+def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stop(name: str, seed: int, data: Path) -> Toy:
+        del name, seed, data
+        raise KeyboardInterrupt
+
+    stopping = catalogue.Entry("stop", stop, (), "", 0.5, seeds=(0,))
+    with pytest.raises(Interrupted) as caught:
+        _run(tmp_path, [Job(entry("one"), 0), Job(stopping, 0)])
+    assert (caught.value.done, caught.value.total) == (1, 2)
+
+
+def test_time_left_follows_the_pace_that_was_shown() -> None:
+    now = 0.0
+    slow, waiting, done = (
+        Job(entry(name, cost=cost), 0) for name, cost in (("s", 4.0), ("w", 2.0), ("d", 2.0))
+    )
+    pace = Pace([slow, waiting, done], workers=2, clock=lambda: now)
+    assert pace.overview().seconds_left is None
+    pace.start(done)
+    pace.end(done)  # was finished before: shows no pace
+    assert pace.overview().fraction == pytest.approx(2 / 8)
+    pace.start(slow)
+    pace.advance(slow, Moment(2, 0.5, 1.0))  # resumed in the middle
+    now = 10.0
+    pace.advance(slow, Moment(3, 0.75, 0.5))
+    found = pace.overview()
+    # 10 s for a quarter of cost 4: 10 s a unit of cost; 1 + 2 units are left on two workers.
+    assert found.seconds_left == pytest.approx(15.0)
+    assert (found.done, found.total) == (1, 3)
+    assert found.fraction == pytest.approx(5 / 8)
+    (running,) = found.running
+    assert (running.stem, running.epoch, running.loss) == ("s-0", 4, 0.5)
+    assert running.seconds_left == pytest.approx(10.0)
