@@ -1,0 +1,71 @@
+"""The depth camera: a pin-hole at the body's centre that looks along the body's x axis.
+
+Its frame has the body's axes: x forward (the optical axis), y left, z up. Depth is z-depth, as
+depth cameras deliver it: the distance along the optical axis, not along the ray. A pixel therefore
+sees the point `depth * ray`, where the first component of every ray is one. The capture frame is
+the camera's pose when the image was taken.
+"""
+
+from dataclasses import dataclass
+from math import radians, tan
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+
+WIDTH = 64
+HEIGHT = 36
+FIELD_OF_VIEW_DEG = 87.0
+"""Horizontal, from edge to edge of the image [Intel RealSense D455; the vertical one follows from
+the square pixels, 56 degrees]."""
+RANGE_M = 6.0
+"""Depth beyond which nothing is seen; such a pixel reads the range itself."""
+FOCAL_PX = WIDTH / 2 / tan(radians(FIELD_OF_VIEW_DEG / 2))
+
+
+def slopes() -> tuple[Tensor, Tensor]:
+    """Return how far the pixels' rays go left `[64]` and up `[36]` per metre forward, float64.
+
+    Columns run from left to right and rows from top to bottom, so both fall.
+    """
+    left = (WIDTH - 1) / 2 - torch.arange(WIDTH, dtype=torch.float64)
+    up = (HEIGHT - 1) / 2 - torch.arange(HEIGHT, dtype=torch.float64)
+    return left / FOCAL_PX, up / FOCAL_PX
+
+
+def rays() -> Tensor:
+    """Return the ray through the centre of every pixel, `[3, 36, 64]`, float64, x = 1."""
+    left, up = slopes()
+    return torch.stack(
+        (
+            torch.ones(HEIGHT, WIDTH, dtype=torch.float64),
+            left.expand(HEIGHT, WIDTH),
+            up[:, None].expand(HEIGHT, WIDTH),
+        )
+    )
+
+
+@dataclass(frozen=True)
+class CaptureFrame:
+    """Where the camera was when the image was taken; S scenes.
+
+    Attributes:
+        position: World frame, m, `[3, S]`.
+        rotation: Camera to world, `[3, 3, S]`.
+    """
+
+    position: Tensor
+    rotation: Tensor
+
+    def take(self, index: list[int]) -> "CaptureFrame":
+        """Return the frames of some scenes."""
+        return CaptureFrame(self.position[:, index], self.rotation[..., index])
+
+    def from_world(self, points: Tensor) -> Tensor:
+        """Return world points `[3, S, N]` in the capture frame, m."""
+        return so3.rotate_back(self.rotation[..., None], points - self.position[..., None])
+
+    def to_world(self, points: Tensor) -> Tensor:
+        """Return points of the capture frame `[3, S, N]` in the world frame, m."""
+        return so3.rotate(self.rotation[..., None], points) + self.position[..., None]

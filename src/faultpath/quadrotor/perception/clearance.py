@@ -1,0 +1,204 @@
+"""The clearance model: a depth image becomes a code, and the code a small network over space.
+
+The image is encoded once a replan into 64 numbers. From them a linear map makes the weights of a
+network with two hidden layers that takes a point in the capture frame to its clearance (a
+hypernetwork: Ha, Dai and Le 2016). Its first layer is then a set of planes of this scene, and a
+query costs no more than with fixed weights: what depends on the code is computed once a scene.
+"""
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from faultpath.quadrotor.perception.camera import RANGE_M, CaptureFrame
+from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+
+CODE = 64
+HIDDEN = 48
+"""Units of a hidden layer. One of them is constant and carries the next layer's bias."""
+
+_CHANNELS = (16, 32, 48)
+_DENSE = 128
+_GROUP = 16
+"""Images convolved at once. The library picks its algorithm by the batch, so the batch is
+always this; within it an image's place does not matter."""
+_BLOCK = 2560
+"""Points queried at once: both hidden layers stay in the second-level cache. A multiple of 32, as
+a matrix product's bits depend on the column's place otherwise."""
+_COLUMNS = 32
+_SCALE = (0.3, 0.1, 0.15)
+"""How much of a layer's weights the code moves at first, layer by layer."""
+
+
+def features(points: Tensor) -> Tensor:
+    """Return what the query network sees of points `[3, *b]` in the capture frame, `[9, *b]`.
+
+    Position, range, where a point projects, and inverse depth and range: planes are affine in
+    position, edges of the image in the projection. All are about one in size; the last is one.
+    """
+    x, y, z = points.unbind(0)
+    distance = (x * x).add_(y * y).add_(z * z).sqrt_()
+    inverse = (x.clamp_min(0) + 0.25).reciprocal_()
+    return torch.stack(
+        (
+            x * 0.5 - 0.5,
+            y * 0.5,
+            z * 0.5,
+            distance * 0.5 - 0.7,
+            inverse - 0.7,
+            (y * inverse).clamp_(-1.5, 1.5),
+            (z * inverse).clamp_(-1.5, 1.5),
+            (distance + 0.25).reciprocal_().sub_(0.7),
+            torch.ones_like(x),
+        )
+    )
+
+
+class ClearanceModel(nn.Module):
+    """Encoder of depth images and the query network that their codes make."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        first, second, third = _CHANNELS
+        self.encoder = nn.Sequential(
+            nn.Conv2d(2, first, 5, stride=2, padding=2),
+            nn.ReLU(),
+            nn.Conv2d(first, second, 3, stride=2, padding=1),
+            nn.ReLU(),
+            nn.Conv2d(second, third, 3, stride=2, padding=1),
+            nn.ReLU(),
+            nn.Flatten(),
+            nn.Linear(third * 5 * 8, _DENSE),
+            nn.ReLU(),
+            nn.Linear(_DENSE, CODE),
+        )
+        widths = (9, HIDDEN, HIDDEN, 1)
+        self._shapes = [
+            (after - (after == HIDDEN), before)
+            for before, after in zip(widths[:-1], widths[1:], strict=True)
+        ]
+        self.layers = nn.ModuleList(nn.Linear(CODE, rows * cols) for rows, cols in self._shapes)
+        for layer, (_, fan_in), scale in zip(self.layers, self._shapes, _SCALE, strict=True):
+            nn.init.normal_(layer.weight, std=scale / CODE**0.5)
+            nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5)
+
+    def encode(self, depth: Tensor) -> Tensor:
+        """Return the codes of images.
+
+        Args:
+            depth: z-depth `[S, 36, 64]`, m, float32.
+
+        Returns:
+            `[64, S]`; a scene's code has the same bits in a batch of any size.
+        """
+        groups = -(-len(depth) // _GROUP)
+        padded = depth.new_full((groups * _GROUP, *depth.shape[1:]), RANGE_M)
+        padded[: len(depth)] = depth
+        codes = [self.encode_batch(group) for group in padded.split(_GROUP)]
+        return torch.cat(codes)[: len(depth)].T.contiguous()
+
+    def encode_batch(self, depth: Tensor) -> Tensor:
+        """Return the codes `[S, 64]` of a batch; its bits may depend on the batch."""
+        return self.encoder(torch.stack((depth / RANGE_M, 0.4 / depth.clamp_min(0.2)), 1))
+
+    def query(self, code: Tensor, points: Tensor) -> Tensor:
+        """Return the clearance at points.
+
+        Args:
+            code: `[64, S]`.
+            points: In the capture frame, m, `[3, S, N]`, float32; N a multiple of 32.
+
+        Returns:
+            `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
+        """
+        weights = self._weights(code)
+        clearance = points.new_empty(points.shape[1:])
+        for scene in range(points.shape[1]):
+            ours = [weight[scene] for weight in weights]
+            for first in range(0, points.shape[2], _BLOCK):
+                block = slice(first, first + _BLOCK)
+                clearance[scene, block] = _evaluate(ours, features(points[:, scene, block]))
+        return clearance.clamp_(LOWEST_M, HIGHEST_M)
+
+    def estimate(self, codes: Tensor, points: Tensor) -> Tensor:
+        """Return the clearance before it is bounded, for training: all scenes at once.
+
+        Args:
+            codes: `[S, 64]`, as from `encode_batch`.
+            points: In the capture frame, m, `[S, 3, N]`.
+
+        Returns:
+            `[S, N]`, m.
+        """
+        hidden = features(points.movedim(1, 0)).movedim(0, 1)
+        ones = torch.ones_like(hidden[:, :1])
+        first, second, last = (
+            layer(codes).unflatten(1, shape)
+            for layer, shape in zip(self.layers, self._shapes, strict=True)
+        )
+        for weight in (first, second):
+            hidden = torch.cat((torch.bmm(weight, hidden).relu(), ones), 1)
+        return torch.bmm(last, hidden)[:, 0]
+
+    def _weights(self, code: Tensor) -> list[Tensor]:
+        """Return each layer's weights `[S, rows, columns]`, with the row that stays one."""
+        count = code.shape[1]
+        padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
+        padded[:, :count] = code
+        found = []
+        for layer, (rows, columns) in zip(self.layers, self._shapes, strict=True):
+            made = torch.mm(layer.weight, padded).add_(layer.bias[:, None])[:, :count].T
+            made = made.reshape(count, rows, columns)
+            if rows > 1:
+                constant = made.new_zeros(count, 1, columns)
+                constant[..., -1] = 1
+                made = torch.cat((made, constant), 1)
+            found.append(made.contiguous())
+        return found
+
+
+def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:
+    first, second, last = weights
+    hidden = torch.mm(first, hidden).clamp_min_(0)
+    hidden = torch.mm(second, hidden).clamp_min_(0)
+    return torch.mm(last, hidden)[0]
+
+
+class DepthClearance:
+    """The clearance that the latest depth images show, for planners that ask about many points.
+
+    It sees what it is given and nothing else: images and the poses they were taken from.
+    """
+
+    def __init__(self, model: ClearanceModel) -> None:
+        self._model = model.eval()
+        self._code: Tensor | None = None
+        self._frame: CaptureFrame | None = None
+
+    @torch.no_grad()
+    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
+        """Encode the images of all scenes: once a replan, however often it is queried.
+
+        Args:
+            depth: z-depth `[B, 36, 64]`, m.
+            position: World frame, m, `[B, 3]`.
+            rotation: Body to world, `[B, 3, 3]`.
+        """
+        self._code = self._model.encode(depth.float())
+        self._frame = CaptureFrame(
+            position.movedim(0, -1).float().contiguous(),
+            rotation.movedim(0, -1).float().contiguous(),
+        )
+
+    @torch.no_grad()
+    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+        """Return the clearance at points `[3, S, N]` of some scenes, world frame, m: `[S, N]`.
+
+        A scene's values do not depend on which others are asked for. N is a multiple of 32.
+        """
+        if self._code is None or self._frame is None:
+            raise RuntimeError("nothing was captured yet: call `capture` before `query`")
+        chosen = list(scenes)
+        local = self._frame.take(chosen).from_world(points)
+        return self._model.query(self._code[:, chosen].contiguous(), local)
