@@ -94,7 +94,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
     )
     ended = _train("one", "--data", "flights")
     assert ended.status == 0, ended.err
-    assert asked == [(Path("flights"), ("nominal",), 1)]
+    assert asked == [(Path("flights"), ["nominal"], 1)]
     assert "Collecting nominal" in ended.out
 
 

@@ -64,16 +64,40 @@ def test_a_corrupted_variant_stands_beside_its_baseline_in_everything_else() -> 
 
 
 def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
-    assert {pool for each in ALL for pool in each.pools} <= set(EPISODES)
+    known = {*EPISODES, catalogue.CLEARANCE_POOL}
+    assert {pool for each in ALL for pool in each.pools} == known
 
 
 def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> None:
     wanted = choose(["wm-a", "wm-a-wind"])
     assert missing_pools(wanted, tmp_path) == ("nominal", "wind")
+    assert missing_pools(choose(["clearance"]), tmp_path) == ("clearance",)
     (tmp_path / "nominal.parquet").touch()
     (tmp_path / "wind.json").touch()
     assert missing_pools(wanted, tmp_path) == ("nominal",)
     assert missing_pools(choose(["wm-a"]), tmp_path) == ("nominal",)
+
+
+def test_each_missing_pool_is_made_by_its_own_collector(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[str] = []
+    told: list[tuple[str, float, float]] = []
+
+    def flights(folder: Path, pools: list[str], workers: int, progress) -> None:
+        made.extend(f"{folder.name}/{pool} by {workers}" for pool in pools)
+        progress(1.0, 2.0)
+
+    def images(folder: Path, workers: int, progress) -> None:
+        made.append(f"{folder.name}/images by {workers}")
+        progress(3, 4)
+
+    monkeypatch.setattr(jobs, "collect", flights)
+    monkeypatch.setattr(jobs.clearance_data, "collect", images)
+    (tmp_path / "wind.json").touch()
+    jobs.collect_missing(choose([]), tmp_path, 2, lambda *news: told.append(news))
+    assert made == [f"{tmp_path.name}/nominal by 2", f"{tmp_path.name}/images by 2"]
+    assert told == [("nominal", 1.0, 2.0), ("clearance", 3, 4)]
 
 
 @pytest.mark.slow

@@ -94,10 +94,14 @@ def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:
     if not missing:
         return
     with _progress(console) as bar:
-        task = bar.add_task(f"Collecting {', '.join(missing)}", total=None, news="", left="")
+        tasks = {
+            pool: bar.add_task(f"Collecting {pool}", total=None, news="", left="")
+            for pool in missing
+        }
 
-        def show(done: float, asked: float) -> None:
-            bar.update(task, total=asked, completed=done, news=f"{done / max(asked, 1):.0%}")
+        def show(pool: str, done: float, asked: float) -> None:
+            news = f"{done / max(asked, 1):.0%}"
+            bar.update(tasks[pool], total=asked, completed=done, news=news)
 
         try:
             collect_missing(jobs, wishes.data, wishes.workers, show)

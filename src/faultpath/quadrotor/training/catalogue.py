@@ -26,7 +26,7 @@ class Entry:
     name: str
     factory: Factory
     pools: tuple[str, ...]
-    """Pools that `collect` makes and it needs, `<data folder>/<pool>.parquet`."""
+    """Pools of data that it needs and `collect_missing` makes, `<data folder>/<pool>.*`."""
     description: str
     cost: float
     """Expected time of a fit relative to the other models: the order of work depends on it, and
@@ -94,7 +94,10 @@ RECONSTRUCTIONS = (
         after=("wm-a-wind",),
     ),
 )
-CLEARANCE = Entry("clearance", _clearance, (), "obstacle clearance from depth", 6, seeds=(0,))
+CLEARANCE_POOL = "clearance"
+CLEARANCE = Entry(
+    "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, seeds=(0,)
+)
 
 ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)
 GROUPS: dict[str, tuple[Entry, ...]] = {

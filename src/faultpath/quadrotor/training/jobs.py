@@ -13,11 +13,13 @@ import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.catalogue import Job
+from faultpath.quadrotor.training import clearance_data
+from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath.quadrotor.training.checkpoint import ModelCard, read_card, ship
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.fitting import Moment, forget
@@ -70,24 +72,25 @@ class Report:
 def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
     """Return the pools that some jobs need and the folder does not hold whole."""
     pools = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
-    last_written = {pool: provenance_path(data / f"{pool}.parquet") for pool in pools}
-    return tuple(pool for pool, path in last_written.items() if not path.is_file())
+    return tuple(pool for pool in pools if not provenance_path(data / pool).is_file())
 
 
 def collect_missing(
     jobs: Sequence[Job],
     data: Path,
     workers: int,
-    progress: Callable[[float, float], None] | None = None,
-) -> tuple[str, ...]:
-    """Collect the pools that are missing and return their names.
+    progress: Callable[[str, float, float], None] | None = None,
+) -> None:
+    """Collect the pools that are missing: flights, and the images of the clearance model.
 
-    `progress` is called with the vehicle-seconds done and those asked for.
+    `progress` is called with the name of a pool, what is done of it and what was asked for.
     """
-    missing = missing_pools(jobs, data)
-    if missing:
-        collect(data, missing, max(workers, 1), progress=progress)
-    return missing
+    for pool in missing_pools(jobs, data):
+        report = None if progress is None else partial(progress, pool)
+        if pool == CLEARANCE_POOL:
+            clearance_data.collect(data, workers=max(workers, 1), progress=report)
+        else:
+            collect(data, [pool], max(workers, 1), progress=report)
 
 
 def run_jobs(
