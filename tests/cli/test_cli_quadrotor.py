@@ -12,7 +12,7 @@ from faultpath.trials import SystemSpec, load_system
 
 def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 3)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 3)
     made = faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2")
     assert (made.status, made.err) == (0, "")
     listed = faultpath("scenes", "list", "mine.json")
@@ -25,7 +25,7 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     ended = audit(
         system="quadrotor",
         baseline="zero-wind",
-        repair="observer",
+        repair="dob",
         fault="calibration=0.1",
         library="mine.json",
         scenes=2,
@@ -39,7 +39,7 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     assert question.library_hash == json.loads((tmp_path / "mine.json").read_text())["content_hash"]
     assert [path.name for path in read_record(tmp_path / "run").paths] == [
         "correct",
-        "observer",
+        "dob",
         "predictor",
         "shared",
     ]

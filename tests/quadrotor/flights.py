@@ -36,8 +36,12 @@ class LoggingTaps(Taps):
         return np.stack([value for _, value in self.log[channel, consumer]])
 
 
+ANALYTIC = {"predictor": "dki-drag", "clearance": "true"}
+
+
 def quadrotor(**options: str) -> Quadrotor:
-    system = create(**options)
+    """Return a quadrotor, by default the cheapest: analytic, with ground-truth clearance."""
+    system = create(**(ANALYTIC | options))
     assert isinstance(system, Quadrotor)
     return system
 
@@ -71,7 +75,7 @@ def wire(
 
 def fly(
     system: Quadrotor,
-    variant: str = "observer",
+    variant: str = "dob",
     scenes: Sequence[str] = HELD_OUT[:1],
     faults: Sequence[AnyFault] = (),
     seed: int = 0,

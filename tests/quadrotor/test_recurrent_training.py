@@ -8,7 +8,8 @@ import torch
 from faultpath.errors import UserError
 from faultpath.faults import Fault, Scale
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.training.corruption import Corruption, dcc, quadrotor_interface
+from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.training.corruption import Corruption, dcc
 from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
 from faultpath.quadrotor.training.windows import Windows
 

@@ -10,7 +10,7 @@ STRONG_WIND = {"wind": "L3"}
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
 
 
 FAULTS = (
@@ -30,15 +30,15 @@ def faults() -> tuple[AnyFault, ...]:
 @pytest.fixture(scope="module")
 def whole(faults) -> dict[str, tuple[object, ...]]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
-        outcomes, _ = fly(quadrotor(**STRONG_WIND), "observer", HELD_OUT, faults, seed=3)
+        patch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+        outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)
     return {outcome.scene: bits(outcome) for outcome in outcomes}
 
 
 @pytest.mark.parametrize("chosen", [(0,), (4,), (1, 3), (2, 0, 4, 3, 1), (3, 2, 1, 0)])
 def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, whole, faults):
     scenes = [HELD_OUT[i] for i in chosen]
-    outcomes, _ = fly(quadrotor(**STRONG_WIND), "observer", scenes, faults, seed=3)
+    outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", scenes, faults, seed=3)
     assert [outcome.scene for outcome in outcomes] == scenes
     assert {o.scene: bits(o) for o in outcomes} == {scene: whole[scene] for scene in scenes}
 
@@ -50,12 +50,12 @@ OTHER_MODULES = {"predictor": "true-parameter", "planner": "running", "wind": "L
 @pytest.mark.parametrize("options", [STRONG_WIND, OTHER_MODULES], ids=["usual", "other modules"])
 def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(options, monkeypatch):
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 5)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 5)
     system = quadrotor(**options)
     faults = [fault(text, system) for text in FAULTS[:3]]
-    block = {o.scene: bits(o) for o in fly(system, "observer", MANY, faults)[0]}
+    block = {o.scene: bits(o) for o in fly(system, "dob", MANY, faults)[0]}
     for chosen in (MANY[33:34], MANY[20:35], MANY[38:31:-1], MANY[::13]):
-        outcomes, _ = fly(system, "observer", chosen, faults)
+        outcomes, _ = fly(system, "dob", chosen, faults)
         assert {o.scene: bits(o) for o in outcomes} == {scene: block[scene] for scene in chosen}
 
 
@@ -82,15 +82,15 @@ def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
         hall(0, start=(0.0, 0.0, 1.5), goal=(0.3, 0.0, 1.5)),
         hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
     )
-    alone, _ = fly(system, "observer", HELD_OUT)
-    mixed, _ = fly(system, "observer", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]])
+    alone, _ = fly(system, "dob", HELD_OUT)
+    mixed, _ = fly(system, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]])
     assert mixed[0].time_s == system.control_dt_s
-    assert bits(mixed[0]) == bits(fly(system, "observer", [near])[0][0])
+    assert bits(mixed[0]) == bits(fly(system, "dob", [near])[0][0])
     assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]
 
     falls = fault("action:erase@vehicle,onset=0,for=8", system)
-    alone, _ = fly(system, "observer", HELD_OUT, [falls])
-    mixed, _ = fly(system, "observer", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], [falls])
+    alone, _ = fly(system, "dob", HELD_OUT, [falls])
+    mixed, _ = fly(system, "dob", [near, *HELD_OUT[:3], under, *HELD_OUT[3:]], [falls])
     ends = {o.scene: o.time_s for o in mixed}
     assert ends[near] < ends[under] < min(ends[scene] for scene in HELD_OUT)
     assert [bits(o) for o in mixed if o.scene in HELD_OUT] == [bits(o) for o in alone]
@@ -98,7 +98,7 @@ def test_neighbours_that_end_early_leave_the_others_alone(tmp_path):
 
 def test_a_system_that_flew_before_flies_the_same_again():
     system = quadrotor(**STRONG_WIND)
-    first, _ = fly(system, "observer", HELD_OUT[:2])
+    first, _ = fly(system, "dob", HELD_OUT[:2])
     fly(system, "zero-wind", HELD_OUT[1:3], seed=1)
-    again, _ = fly(system, "observer", HELD_OUT[:2])
+    again, _ = fly(system, "dob", HELD_OUT[:2])
     assert [bits(o) for o in first] == [bits(o) for o in again]

@@ -14,23 +14,23 @@ ALTERED_BY_CALIBRATION = {
     ("mass", "predictor.dynamics"): 1,
     ("mass", "predictor.wind_map"): 1,
     ("mass", "predictor.trim"): 1,
-    ("mass", "observer.nominal_model"): 1,
-    ("mass", "observer.wind_map"): 1,
+    ("mass", "reconstruction.nominal_model"): 1,
+    ("mass", "reconstruction.wind_map"): 1,
     ("thrust_scale", "predictor.dynamics"): -1,
     ("thrust_scale", "predictor.trim"): -1,
-    ("thrust_scale", "observer.nominal_model"): -1,
+    ("thrust_scale", "reconstruction.nominal_model"): -1,
 }
 
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
 
 
 @pytest.fixture(scope="module")
 def plain() -> Outcome:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+        patch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
         return fly(quadrotor(wind="L2"))[0][0]
 
 
@@ -74,17 +74,17 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else(e
 def test_a_variant_without_an_observer_has_no_taps_of_it():
     system = quadrotor(wind="L2")
     _, taps = fly(system, "zero-wind", faults=[fault("calibration=0.1", system)])
-    struck = {key for key in ALTERED_BY_CALIBRATION if not key[1].startswith("observer.")}
+    struck = {key for key in ALTERED_BY_CALIBRATION if not key[1].startswith("reconstruction.")}
     assert _altered(taps.receipts()) == struck
-    assert not any(consumer.startswith("observer.") for _, consumer in taps.log)
+    assert not any(consumer.startswith("reconstruction.") for _, consumer in taps.log)
 
 
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
     system = quadrotor(wind="L2")
-    faults = [fault("calibration=0.2@observer", system)]
+    faults = [fault("calibration=0.2@reconstruction", system)]
     (struck,), taps = fly(system, faults=faults)
     receipts = taps.receipts()
-    observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("observer.")}
+    observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("reconstruction.")}
     assert _altered(receipts) == observer
     assert all(receipts.at(*key).steps_altered[0] == STEPS for key in observer)
     for consumer in ("predictor.dynamics", "predictor.wind_map", "predictor.trim"):
@@ -110,9 +110,9 @@ def test_the_observer_takes_thrust_that_it_was_not_told_of_for_an_updraught():
     """A larger supplied mass and a smaller thrust scale explain less lift than there is."""
     system = quadrotor(wind="L0")
     seen = {
-        error: fly(system, faults=[fault(f"calibration={error}@observer", system)])[1].delivered(
-            "wind", "predictor.wind_map"
-        )[-1, 0, 2]
+        error: fly(system, faults=[fault(f"calibration={error}@reconstruction", system)])[
+            1
+        ].delivered("wind", "predictor.wind_map")[-1, 0, 2]
         for error in (-0.2, 0.2)
     }
     assert seen[0.2] > 1.0
@@ -132,7 +132,7 @@ TEXTS = (
     "action:dropout=0.5",
     "action:scale=0.6@vehicle",
     "action:erase@vehicle,onset=4",
-    "action:delay=1@observer",
+    "action:delay=1@reconstruction",
     "clearance:offset=-0.3",
     "clearance:erase",
     "goal:offset=0/0.5/0",
@@ -193,6 +193,6 @@ def test_what_reaches_the_motors_is_the_struck_command_and_the_observer_hears_th
     actuated = taps.delivered("action", "vehicle.actuators")[:, 0]
     assert np.array_equal(actuated, np.tile([12.0, 0.0, 0.0, 0.0], (STEPS, 1)))
     commanded = np.stack([reading for reading, _ in taps.log["action", "vehicle.actuators"]])
-    heard = taps.delivered("action", "observer.nominal_model")
+    heard = taps.delivered("action", "reconstruction.nominal_model")
     assert np.array_equal(heard[1:], commanded[:-1])
     assert not np.array_equal(heard[1:, 0], actuated[1:])

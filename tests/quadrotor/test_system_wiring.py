@@ -10,12 +10,12 @@ from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.taps import IllegalRead, Reading
 
-VARIANTS = ("zero-wind", "observer", "true-wind")
+VARIANTS = ("zero-wind", "dob", "true-wind")
 
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
 
 
 class _NoWind:
@@ -41,11 +41,11 @@ class _NoPhysics:
 def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch):
     system = quadrotor(wind="L3")
     (plain,), _ = fly(system, variant)
-    monkeypatch.setattr("faultpath.quadrotor.system.Sensors", _NoWind)
+    monkeypatch.setattr("faultpath.quadrotor.flight.Sensors", _NoWind)
     (blind,), taps = fly(system, variant)
     assert (bits(blind) == bits(plain)) == (variant != "true-wind")
     source = taps.receipts().at("wind", "predictor.wind_map").source
-    assert source == {"zero-wind": "zero_wind", "observer": "observed_wind"}.get(
+    assert source == {"zero-wind": "zero_wind", "dob": "reconstructed_wind"}.get(
         variant, "true_wind"
     )
 
@@ -54,7 +54,7 @@ def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch)
 def test_only_the_true_parameter_predictor_reads_the_physics(predictor, monkeypatch):
     system = quadrotor(predictor=predictor)
     (plain,), _ = fly(system)
-    monkeypatch.setattr("faultpath.quadrotor.system.Sensors", _NoPhysics)
+    monkeypatch.setattr("faultpath.quadrotor.flight.Sensors", _NoPhysics)
     (blind,), _ = fly(system)
     assert (bits(blind) == bits(plain)) == (predictor != "true-parameter")
 
@@ -63,7 +63,7 @@ def test_only_the_true_parameter_predictor_reads_the_physics(predictor, monkeypa
     ("variant", "predictor", "source"),
     [
         ("true-wind", "dki", "true_wind"),
-        ("observer", "true-parameter", "true_physics"),
+        ("dob", "true-parameter", "true_physics"),
         ("zero-wind", "dki", "true_clearance"),
     ],
 )
@@ -119,10 +119,10 @@ def test_levels_of_wind_differ_in_the_disturbance():
 
 
 def test_the_observer_sees_most_of_a_steady_wind(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 30)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 30)
     system = quadrotor(wind="L2")
     _, truth = fly(system, "true-wind", HELD_OUT)
-    _, seen = fly(system, "observer", HELD_OUT)
+    _, seen = fly(system, "dob", HELD_OUT)
     real = truth.delivered("wind", "predictor.wind_map")[-5:].mean(0)
     guess = seen.delivered("wind", "predictor.wind_map")[-5:].mean(0)
     assert np.linalg.norm(guess - real, axis=1).mean() < 0.6 * np.linalg.norm(real, axis=1).mean()
@@ -139,7 +139,7 @@ CHOICES = [
 
 
 def test_every_option_flies_its_own_way(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.system.CONTROL_STEPS", 4)
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 4)
     flights = {}
     for choice in CHOICES:
         system = quadrotor(**choice)

@@ -32,6 +32,8 @@ class Provenance(StrEnum):
     """The output of a module of the system, which has inputs of its own."""
     PRIVILEGED = "privileged"
     """Known to the simulator only; not available at deployment."""
+    INTERNAL = "internal"
+    """A value inside the one module that reads it, exposed so that it can be intervened on."""
     CONSTANT = "constant"
     COMMANDED = "commanded"
 

@@ -8,11 +8,18 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.clearance import ClearanceSource
+from faultpath.quadrotor.history import HistoryRecord
 from faultpath.quadrotor.planner import MPPI, Proposal, shift
 from faultpath.quadrotor.predictors import Calibration, Physics, PredictorInputs
-from faultpath.quadrotor.reconstruction import Reconstruction, Sensed
-from faultpath.quadrotor.scenes.field import DistanceField
-from faultpath.quadrotor.sensors import STATE_CHANNELS, Sensors, initial_state, lanes_last
+from faultpath.quadrotor.reconstruction import Reconstruction
+from faultpath.quadrotor.sensors import (
+    STATE_CHANNELS,
+    Sensors,
+    initial_state,
+    lanes_last,
+    scenes_first,
+)
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import ModuleTaps, Reading, Taps
@@ -23,7 +30,7 @@ still stay in cache. A scene's result is the same in a chunk of any size, becaus
 candidates fill whole vectors."""
 
 
-class WindObserver:
+class WindReconstruction:
     """The reconstruction module behind its taps."""
 
     def __init__(self, reconstruction: Reconstruction, taps: ModuleTaps, lanes: Tensor) -> None:
@@ -34,29 +41,23 @@ class WindObserver:
 
     def observe(self, sensors: Sensors, executed: Reading, step: int) -> Reading:
         """Take the step's readings in and return the reconstructed wind."""
-        sensed = self._sense(sensors, executed, step)
+        delivered = {
+            (channel, place): self._take(sensors, executed, channel, place, step)
+            for channel, place in sorted(self._reconstruction.reads)
+        }
         if self._memory is None:
-            self._memory = self._reconstruction.begin(sensed)
+            self._memory = self._reconstruction.begin(delivered)
         else:
-            self._memory = self._reconstruction.update(self._memory, sensed)
+            self._memory = self._reconstruction.update(self._memory, delivered)
         wind = self._reconstruction.wind(self._memory)
         count = executed.value.shape[0]
-        return Reading(wind[..., :count].movedim(-1, 0), "observed_wind", step)
+        return Reading(wind[..., :count].movedim(-1, 0), "reconstructed_wind", step)
 
-    def _sense(self, sensors: Sensors, executed: Reading, step: int) -> Sensed:
-        def take(channel: str, place: str) -> Tensor:
-            reading = executed if channel == "action" else sensors.readings[channel]
-            return lanes_last(self._taps.deliver(channel, place, reading, step), self._lanes)
-
-        return Sensed(
-            velocity_mps=take("velocity", "velocity_difference"),
-            rotation=take("attitude", "nominal_model"),
-            executed=take("action", "nominal_model"),
-            nominal=Calibration(
-                take("mass", "nominal_model"), take("thrust_scale", "nominal_model")
-            ),
-            wind_map_mass_kg=take("mass", "wind_map"),
-        )
+    def _take(
+        self, sensors: Sensors, executed: Reading, channel: str, place: str, step: int
+    ) -> Tensor:
+        reading = executed if channel == "action" else sensors.readings[channel]
+        return lanes_last(self._taps.deliver(channel, place, reading, step), self._lanes)
 
 
 class Navigator:
@@ -65,26 +66,27 @@ class Navigator:
     def __init__(
         self,
         planner: MPPI,
-        observer: WindObserver | None,
-        field: DistanceField,
+        reconstruction: WindReconstruction | None,
+        clearance: ClearanceSource,
         taps: Taps,
         scenes: Sequence[str],
         seed: int,
         lanes: Tensor,
-        wind_source: str,
-        privileged_physics: bool,
     ) -> None:
         self._planner = planner
-        self._observer = observer
-        self._field = field
+        self._reconstruction = reconstruction
+        self._clearance = clearance
         self._predictor_taps = taps.for_module("predictor")
         self._planner_taps = taps.for_module("planner")
         self._vehicle_taps = taps.for_module("vehicle")
         self._scenes = tuple(scenes)
         self._seed = seed
         self._lanes = lanes
-        self._reads_physics = privileged_physics
-        self._wind_source = wind_source
+        self._wind_source = taps.bindings["wind"]
+        self._reads = planner.predictor.reads
+        self._history = (
+            HistoryRecord(self._predictor_taps, lanes) if "history" in self._reads else None
+        )
         self._plan: Tensor | None = None
         self._executed: Reading | None = None
 
@@ -96,10 +98,11 @@ class Navigator:
             self._plan = self._planner.initial_plan(hover)
         goal = self._planner_taps.deliver("goal", "goal_cost", sensors.readings["goal"], step)
         goal = lanes_last(goal, self._lanes).float()
+        self._clearance.look(sensors, step)
 
         chunks = _chunks(running)
         proposals = [self._propose(inputs, chunk, step) for chunk in chunks]
-        clearance = self._clearance(chunks, proposals, step)
+        clearance = self._query(chunks, proposals, step)
         command = self._planner.initial_plan(hover)[0]
         for chunk, proposal in zip(chunks, proposals, strict=True):
             plan = self._planner.decide(proposal, clearance[chunk], goal[:, chunk])
@@ -117,49 +120,85 @@ class Navigator:
         )
 
     def _inputs(self, sensors: Sensors, step: int) -> PredictorInputs:
+        """Take from the taps what the predictor reads, and nothing else."""
+
         def take(channel: str, place: str) -> Tensor:
             return self._predictor_taps.deliver(channel, place, sensors.readings[channel], step)
 
         def lane(channel: str, place: str) -> Tensor:
             return lanes_last(take(channel, place), self._lanes).float()[..., None]
 
+        def calibration(place: str) -> Calibration:
+            return Calibration(lane("mass", place), lane("thrust_scale", place))
+
+        reads = self._reads
+        executed = self._last_command(sensors, step)
         state = initial_state(
             {name: take(name, "initial_state") for name in STATE_CHANNELS}, self._lanes
         )
-        wind = self._predictor_taps.deliver("wind", "wind_map", self._wind(sensors, step), step)
+        trim = calibration("trim")
+        conditioning = calibration("features") if "features" in reads else None
         return PredictorInputs(
             state=_float_column(state),
-            dynamics=Calibration(lane("mass", "dynamics"), lane("thrust_scale", "dynamics")),
-            trim=Calibration(lane("mass", "trim"), lane("thrust_scale", "trim")),
-            wind_map_mass_kg=lane("mass", "wind_map"),
-            wind_mps=lanes_last(wind, self._lanes).float()[..., None],
-            physics=_physics(lane("physics", "physics")) if self._reads_physics else None,
+            trim=trim,
+            dynamics=calibration("dynamics") if "dynamics" in reads else None,
+            wind_map_mass_kg=lane("mass", "wind_map") if "wind_map" in reads else None,
+            wind_mps=self._wind(sensors, executed, step) if "wind_map" in reads else None,
+            physics=_physics(lane("physics", "physics")) if "physics" in reads else None,
+            thrust_mass_kg=(
+                lane("mass", "normalise_thrust") if "normalise_thrust" in reads else None
+            ),
+            conditioning=conditioning,
+            code=self._code(sensors, executed, trim, conditioning, step),
         )
 
-    def _wind(self, sensors: Sensors, step: int) -> Reading:
-        if self._observer is None:
-            return {"true_wind": sensors.true_wind, "zero_wind": sensors.zero_wind}[
-                self._wind_source
-            ]
+    def _last_command(self, sensors: Sensors, step: int) -> Reading:
         if self._executed is None:  # nothing has been commanded yet: the motors hover
             blank = sensors.readings["mass"].value
             self._executed = Reading(blank.new_zeros(len(blank), 4), "commanded_action", step)
-        return self._observer.observe(sensors, self._executed, step)
+        return self._executed
+
+    def _wind(self, sensors: Sensors, executed: Reading, step: int) -> Tensor:
+        if self._reconstruction is not None:
+            reading = self._reconstruction.observe(sensors, executed, step)
+        else:
+            reading = {"true_wind": sensors.true_wind, "zero_wind": sensors.zero_wind}[
+                self._wind_source
+            ]
+        wind = self._predictor_taps.deliver("wind", "wind_map", reading, step)
+        return lanes_last(wind, self._lanes).float()[..., None]
+
+    def _code(
+        self,
+        sensors: Sensors,
+        executed: Reading,
+        trim: Calibration,
+        conditioning: Calibration | None,
+        step: int,
+    ) -> Tensor | None:
+        if self._history is None:
+            return None
+        history = self._history.observe(sensors, executed, trim, conditioning, step)
+        code = self._planner.predictor.encode(history)
+        assert code is not None
+        reading = Reading(scenes_first(code, len(self._scenes)), "history_encoding", step)
+        delivered = self._predictor_taps.deliver("history_code", "latent", reading, step)
+        return lanes_last(delivered, self._lanes)[..., None]
 
     def _propose(self, inputs: PredictorInputs, chunk: list[int], step: int) -> Proposal:
         assert self._plan is not None
         noise = self._planner.sampler.noise([self._scenes[i] for i in chunk], self._seed, step)
         return self._planner.propose(inputs.take(chunk), self._plan[..., chunk], noise)
 
-    def _clearance(self, chunks: list[list[int]], proposals: list[Proposal], step: int) -> Tensor:
+    def _query(self, chunks: list[list[int]], proposals: list[Proposal], step: int) -> Tensor:
         """Query the clearance along all rollouts and deliver it for the whole block at once."""
         first = proposals[0].rollout.positions
         clearance = first.new_zeros(len(self._scenes), *first.shape[2:])
         for chunk, proposal in zip(chunks, proposals, strict=True):
             points = proposal.rollout.positions
-            values = self._field.select(chunk).query(points.flatten(2))
+            values = self._clearance.query(points.flatten(2), chunk)
             clearance[chunk] = values.view(points.shape[1:])
-        reading = Reading(clearance, "true_clearance", step)
+        reading = Reading(clearance, self._clearance.name, step)
         return self._planner_taps.deliver("clearance", "risk_cost", reading, step)
 
     def _actuate(self, command: Tensor, step: int) -> Tensor:

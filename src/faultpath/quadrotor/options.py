@@ -1,11 +1,13 @@
 """The choices a user makes about the quadrotor system, and the frozen settings behind them."""
 
+from collections.abc import Sequence
 from enum import StrEnum
-from typing import Self, TypeVar
+from typing import Self
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.models import PREDICTORS
 from faultpath.quadrotor.planner import (
     MPPI,
     AutoregressiveSampler,
@@ -17,7 +19,7 @@ from faultpath.quadrotor.planner import (
     ScaledTemperature,
     TerminalGoal,
 )
-from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor, TrueParameter
+from faultpath.quadrotor.predictors import Predictor
 
 
 class Wind(StrEnum):
@@ -36,12 +38,11 @@ class Environment(StrEnum):
     FREE_SPACE = "free-space"
 
 
-class PredictorName(StrEnum):
-    """Analytic predictors."""
+class ClearanceName(StrEnum):
+    """Source of the clearance channel."""
 
-    DKI = "dki"
-    DKI_DRAG = "dki-drag"
-    TRUE_PARAMETER = "true-parameter"
+    DEPTH = "depth"
+    TRUE = "true"
 
 
 class PlannerName(StrEnum):
@@ -65,9 +66,6 @@ class PlannerSettings(BaseModel):
     """Fraction of the spread of the better half of the candidates' costs."""
 
 
-_Choice = TypeVar("_Choice", bound=StrEnum)
-
-
 class QuadrotorOptions(BaseModel):
     """One configuration of the quadrotor."""
 
@@ -75,53 +73,57 @@ class QuadrotorOptions(BaseModel):
 
     wind: Wind = Wind.L0
     environment: Environment = Environment.OBSTACLES
-    predictor: PredictorName = PredictorName.DKI_DRAG
+    clearance: ClearanceName = ClearanceName.DEPTH
+    predictor: str = "wm-a-wind"
+    """Predictor of the variants that name none, a key of `models.PREDICTORS`."""
+    predictor_seed: int = Field(default=0, ge=0, le=2)
+    """Which training of it; variants that name a predictor take the seed of their arm."""
     planner: PlannerName = PlannerName.TERMINAL
     settings: PlannerSettings = PlannerSettings()
 
     @classmethod
     def parse(cls, **options: str) -> Self:
-        """Read options as the command line gives them; `UserError` names what there is."""
-        kinds = {
-            "wind": Wind,
-            "environment": Environment,
-            "predictor": PredictorName,
-            "planner": PlannerName,
+        """Read options as the command line gives them; `UserError` names what there is.
+
+        Trials in free space have ground-truth clearance, those among obstacles the depth model,
+        unless `clearance` says otherwise (paper, Section IV-A).
+        """
+        kinds: dict[str, Sequence[str]] = {
+            "wind": tuple(Wind),
+            "environment": tuple(Environment),
+            "clearance": tuple(ClearanceName),
+            "predictor": tuple(PREDICTORS),
+            "predictor_seed": ("0", "1", "2"),
+            "planner": tuple(PlannerName),
         }
         unknown = sorted(set(options) - set(kinds))
         if unknown:
             raise UserError(
                 f"the quadrotor has no option '{unknown[0]}'; it has {', '.join(kinds)}."
             )
-        return cls.model_validate({k: _choose(k, kinds[k], v) for k, v in options.items()})
+        for option, value in options.items():
+            if value not in kinds[option]:
+                known = ", ".join(kinds[option])
+                raise UserError(f"unknown {option} '{value}'; choose one of {known}.")
+        if options.get("environment") == Environment.FREE_SPACE:
+            options.setdefault("clearance", ClearanceName.TRUE)
+        return cls.model_validate(options)
 
-    def build_predictor(self) -> Predictor:
-        """Return the predictor that the options name."""
-        builders = {
-            PredictorName.DKI: KinematicIntegrator,
-            PredictorName.DKI_DRAG: lambda: KinematicIntegrator(drag=True),
-            PredictorName.TRUE_PARAMETER: TrueParameter,
-        }
-        return builders[self.predictor]()
+    @property
+    def free_space(self) -> bool:
+        """Whether only the outer boundaries are there."""
+        return self.environment is Environment.FREE_SPACE
 
-    def build_planner(self) -> MPPI:
-        """Return the planner that the options name, around their predictor."""
+    def build_planner(self, predictor: Predictor) -> MPPI:
+        """Return the planner that the options name, around a predictor."""
         goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
             PlannerName.TERMINAL: (TerminalGoal(), self.settings.terminal),
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
         }
         goal, weights = goals[self.planner]
         return MPPI(
-            self.build_predictor(),
+            predictor,
             AutoregressiveSampler(self.settings.sampler),
             NavigationCost(goal, weights),
             ScaledTemperature(self.settings.temperature),
         )
-
-
-def _choose(option: str, kind: type[_Choice], value: str) -> _Choice:
-    try:
-        return kind(value)
-    except ValueError:
-        known = ", ".join(kind)
-        raise UserError(f"unknown {option} '{value}'; choose one of {known}.") from None

@@ -19,6 +19,7 @@ SOURCES = {
     "body_rate": "body_rate_measurement",
     "goal": "mission_goal",
     "physics": "true_physics",
+    "depth": "depth_image",
 }
 """Source of each channel that has only one."""
 
@@ -33,8 +34,11 @@ class Sensors:
     zero_wind: Reading
 
     @classmethod
-    def read(cls, world: World) -> "Sensors":
-        """Take the readings of all scenes, without the lanes that only fill the batch up."""
+    def read(cls, world: World, depth: Tensor | None = None) -> "Sensors":
+        """Take the readings of all scenes, without the lanes that only fill the batch up.
+
+        `depth` `[B, 36, 64]` is what the scenes' cameras see, if there are any.
+        """
         count, step = world.count, world.step
         state = world.state
         values = {
@@ -48,10 +52,12 @@ class Sensors:
             "physics": _physics(world.vehicle, world.plant_state.thrusts),
         }
         wind = scenes_first(world.wind_mps, count)
+        rows = {channel: scenes_first(value, count) for channel, value in values.items()}
+        if depth is not None:
+            rows["depth"] = depth
         return cls(
             readings={
-                channel: Reading(scenes_first(value, count), SOURCES[channel], step)
-                for channel, value in values.items()
+                channel: Reading(value, SOURCES[channel], step) for channel, value in rows.items()
             },
             true_wind=Reading(wind, "true_wind", step),
             zero_wind=Reading(torch.zeros_like(wind), "zero_wind", step),

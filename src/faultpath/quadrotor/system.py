@@ -12,18 +12,22 @@ from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
-from faultpath.interface import Interface, read_interface
-from faultpath.quadrotor.calibration import calibration
-from faultpath.quadrotor.navigator import Navigator, WindObserver
-from faultpath.quadrotor.options import Environment, PredictorName, QuadrotorOptions
-from faultpath.quadrotor.reconstruction import DisturbanceObserver
+from faultpath.interface import Interface
+from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
+from faultpath.quadrotor.flight import Flight
+from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.models import clearance_model
+from faultpath.quadrotor.navigator import Navigator, WindReconstruction
+from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
+from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
+from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.sensors import Sensors
+from faultpath.quadrotor.variants import variant, wirings
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.world import CONTROL_STEPS, World
+from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, System, Variant
 
@@ -44,22 +48,26 @@ class Quadrotor(System):
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options
         self._scenes: dict[str, Scene] = {}
-        self._variants = {v.name: v for v in _variants(_interface(), options)}
+        self._wirings = {wiring.name: wiring for wiring in wirings(options)}
+        self._variants = {
+            name: variant(wiring, quadrotor_interface(), options)
+            for name, wiring in self._wirings.items()
+        }
 
     @property
     def interface(self) -> Interface:
         """See `System.interface`."""
-        return _interface()
+        return quadrotor_interface()
 
     @property
     def variants(self) -> Mapping[str, Variant]:
-        """Zero wind, observed wind and true wind, all with ground-truth clearance."""
+        """See `System.variants` and `faultpath.quadrotor.variants`."""
         return self._variants
 
     @property
     def fault_presets(self) -> Mapping[str, FaultPreset]:
         """See `System.fault_presets`."""
-        return {"calibration": calibration}
+        return {"calibration": calibration, "noisy_state": noisy_state}
 
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
@@ -70,7 +78,7 @@ class Quadrotor(System):
 
     def floor_plan(self, scene: str) -> FloorPlan:
         """See `System.floor_plan`."""
-        return floor_plan(self._scene(scene), free_space=self._free_space)
+        return floor_plan(self._scene(scene), free_space=self.options.free_space)
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`."""
@@ -83,42 +91,44 @@ class Quadrotor(System):
     @torch.inference_mode()
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
         """See `System.run`."""
+        flight = self.flight(variant, scenes, taps, seed)
+        world = flight.world
+        trace = [world.state.position for _ in flight.commands()]
+        trace.append(world.state.position)
+        return _outcomes(scenes, world, torch.stack(trace), flight.navigator.noise_hashes())
+
+    def flight(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Flight:
+        """Return a flight over some scenes, ready to start."""
         records = [self._scene(scene) for scene in scenes]
-        world = World(records, self.options.wind, self._free_space)
+        world = World(records, self.options.wind, self.options.free_space)
         navigator = self._navigator(variant, records, taps, seed, world)
-        trace = [world.state.position]
-        for step in range(CONTROL_STEPS):
-            running = world.progress.running[: world.count]
-            taps.set_active(running.numpy())
-            command = navigator.act(Sensors.read(world), step, running.nonzero()[:, 0].tolist())
-            world.advance(command)
-            trace.append(world.state.position)
-            if not world.progress.running[: world.count].any():
-                break
-        return _outcomes(scenes, world, torch.stack(trace), navigator.noise_hashes())
+        return Flight(world, navigator, self._camera(records), taps)
+
+    def _camera(self, scenes: list[Scene]) -> DepthRenderer | None:
+        if self.options.clearance is ClearanceName.TRUE:
+            return None
+        return _renderer(tuple(scenes), self.options.free_space)
 
     def _navigator(
         self, variant: str, scenes: list[Scene], taps: Taps, seed: int, world: World
     ) -> Navigator:
-        consumers = self.variants[variant].consumers
-        observer = None
-        if any(name.startswith("observer.") for name in consumers):
-            observer = WindObserver(DisturbanceObserver(), taps.for_module("observer"), world.lanes)
+        wiring = self._wirings[variant]
+        module = wiring.load_reconstruction(seed)
         return Navigator(
-            planner=self.options.build_planner(),
-            observer=observer,
-            field=_field(tuple(scenes), self._free_space),
+            planner=self.options.build_planner(wiring.load_predictor(seed)),
+            reconstruction=module
+            and WindReconstruction(module, taps.for_module("reconstruction"), world.lanes),
+            clearance=self._clearance(scenes, taps),
             taps=taps,
             scenes=[scene.id for scene in scenes],
             seed=seed,
             lanes=world.lanes,
-            wind_source=self.variants[variant].bindings["wind"],
-            privileged_physics="predictor.physics" in consumers,
         )
 
-    @property
-    def _free_space(self) -> bool:
-        return self.options.environment is Environment.FREE_SPACE
+    def _clearance(self, scenes: list[Scene], taps: Taps) -> ClearanceSource:
+        if self.options.clearance is ClearanceName.TRUE:
+            return TrueClearance(_field(tuple(scenes), self.options.free_space))
+        return SeenClearance(DepthClearance(clearance_model()), taps.for_module("perception"))
 
     def _scene(self, scene: str) -> Scene:
         """Return a scene of a library that was asked for before, or of a frozen one."""
@@ -165,14 +175,9 @@ def _code_digest() -> str:
         part = parts.pop()
         if part.is_dir():
             parts += sorted(part.iterdir(), key=lambda child: child.name)
-        elif part.name.endswith((".py", ".yaml")):
+        elif part.name.endswith((".py", ".yaml", ".safetensors")):
             digest.update(part.name.encode() + part.read_bytes())
     return digest.hexdigest()
-
-
-@cache
-def _interface() -> Interface:
-    return read_interface(files("faultpath.quadrotor").joinpath("interface.yaml").read_text())
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones
@@ -180,35 +185,6 @@ def _field(scenes: tuple[Scene, ...], free_space: bool) -> DistanceField:
     return DistanceField.bake(scenes, free_space)
 
 
-def _variants(interface: Interface, options: QuadrotorOptions) -> list[Variant]:
-    """A variant reads everything but the observer's taps, unless the observer feeds it."""
-    every = {consumer for channel in interface.channels for consumer in channel.consumers}
-    privileged = {"true_clearance"}
-    if options.predictor is PredictorName.TRUE_PARAMETER:
-        privileged.add("true_physics")
-    else:
-        every.discard("predictor.physics")
-    plain = frozenset(name for name in every if not name.startswith("observer."))
-    return [
-        Variant(
-            "zero-wind",
-            "The predictor's wind input is held at zero.",
-            plain,
-            {"wind": "zero_wind"},
-            frozenset(privileged),
-        ),
-        Variant(
-            "observer",
-            "The disturbance observer supplies the wind.",
-            frozenset(every),
-            {"wind": "observed_wind"},
-            frozenset(privileged),
-        ),
-        Variant(
-            "true-wind",
-            "The simulator's wind at this moment is supplied: a privileged reference.",
-            plain,
-            {"wind": "true_wind"},
-            frozenset(privileged | {"true_wind"}),
-        ),
-    ]
+@lru_cache(maxsize=4)
+def _renderer(scenes: tuple[Scene, ...], free_space: bool) -> DepthRenderer:
+    return DepthRenderer.build(scenes, free_space)

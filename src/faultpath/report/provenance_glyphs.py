@@ -18,6 +18,9 @@ def draw_provenance(svg: Svg, provenance: Provenance, x: float, y: float) -> Non
         case Provenance.PRIVILEGED:
             svg.rect(x - 5, y - 1.5, 10, 7.5, "glyph solid", 1)
             svg.path(f"M{x - 3} {y - 1.5}v-2a3 3 0 0 1 6 0v2", "glyph")
+        case Provenance.INTERNAL:
+            svg.rect(x - 5, y - 5, 10, 10, "glyph", 1)
+            svg.circle((x, y), 2, "glyph solid")
         case Provenance.CONSTANT:
             svg.path(f"M{x - 5} {y - 2.5}h10M{x - 5} {y + 2.5}h10", "glyph")
         case Provenance.COMMANDED:

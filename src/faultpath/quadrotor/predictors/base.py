@@ -25,6 +25,10 @@ class Calibration:
         """Collective thrust command that holds the vehicle if the calibration is right, N."""
         return self.mass_kg * gravity / self.thrust_scale
 
+    def squeeze(self) -> "Calibration":
+        """Return it without the candidate axis, `[*batch, 1]` to `[*batch]`."""
+        return Calibration(self.mass_kg[..., 0], self.thrust_scale[..., 0])
+
 
 @dataclass(frozen=True)
 class Physics:
@@ -39,18 +43,44 @@ class Physics:
 
 
 @dataclass(frozen=True)
+class History:
+    """The last intervals as the predictor's taps delivered them, oldest first, batch `[*batch]`."""
+
+    velocity_mps: Tensor
+    """World frame, at the start of each interval, `[3, T, *batch]`."""
+    rotation: Tensor
+    """Body to world, `[3, 3, T, *batch]`."""
+    rate_radps: Tensor
+    """Body frame, `[3, T, *batch]`."""
+    commands: Tensor
+    """Executed over each interval, `[4, T, *batch]`, N and rad/s."""
+    mass_kg: Tensor
+    """Mass that normalises the thrust, `[*batch]`."""
+    conditioning: Calibration | None = None
+    """Calibration that is appended to the features, where a predictor has it there."""
+
+
+@dataclass(frozen=True)
 class PredictorInputs:
     """Everything a predictor is told at a replan, as its taps delivered it; batch `[S, 1]`.
 
-    The three places where calibration enters are separate taps, so each has its own field.
+    Every place where a channel enters is a tap of its own, so each has its own field. A field that
+    a predictor does not read (`Predictor.reads`) is `None`.
     """
 
     state: State
-    dynamics: Calibration
     trim: Calibration
-    wind_map_mass_kg: Tensor
-    wind_mps: Tensor
+    """Where the planner's candidates are centred."""
+    dynamics: Calibration | None = None
+    wind_map_mass_kg: Tensor | None = None
+    wind_mps: Tensor | None = None
     physics: Physics | None = None
+    thrust_mass_kg: Tensor | None = None
+    """Mass that normalises the thrust of the candidates."""
+    conditioning: Calibration | None = None
+    """Calibration that is appended to the features."""
+    code: Tensor | None = None
+    """History code, `[32, S, 1]`."""
 
     def take(self, scenes: Sequence[int]) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
@@ -59,21 +89,21 @@ class PredictorInputs:
         def pick(value: Tensor) -> Tensor:
             return value.index_select(-2, index)
 
-        return PredictorInputs(
-            state=_each(self.state, pick),
-            dynamics=_each(self.dynamics, pick),
-            trim=_each(self.trim, pick),
-            wind_map_mass_kg=pick(self.wind_map_mass_kg),
-            wind_mps=pick(self.wind_mps),
-            physics=None if self.physics is None else _each(self.physics, pick),
-        )
+        return _each(self, pick)
 
 
-_Parts = TypeVar("_Parts", State, Calibration, Physics)
+_Parts = TypeVar("_Parts", State, Calibration, Physics, PredictorInputs)
 
 
 def _each(parts: _Parts, change: Callable[[Tensor], Tensor]) -> _Parts:
-    return type(parts)(**{f.name: change(getattr(parts, f.name)) for f in fields(parts)})
+    """Change every tensor of nested parts; what is `None` stays so."""
+
+    def turn(value: Any) -> Any:
+        if value is None:
+            return None
+        return change(value) if isinstance(value, Tensor) else _each(value, change)
+
+    return type(parts)(**{f.name: turn(getattr(parts, f.name)) for f in fields(parts)})
 
 
 class Predictor(ABC):
@@ -82,6 +112,14 @@ class Predictor(ABC):
     `begin` is called once a replan, `step` once a horizon step. Batches are `[S, K]`: scenes and
     candidates.
     """
+
+    reads: frozenset[str]
+    """Places at which it reads its channels: its consumers in the interface."""
+
+    def encode(self, history: History) -> Tensor | None:
+        """Return the history code `[32, *batch]`, once a replan; `None` without a memory."""
+        del history
+        return None
 
     @abstractmethod
     def begin(self, inputs: PredictorInputs) -> Memory:

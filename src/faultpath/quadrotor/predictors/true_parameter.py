@@ -33,6 +33,8 @@ class TrueParameter(Predictor):
     "integration is separate").
     """
 
+    reads = frozenset({"initial_state", "trim", "dynamics", "wind_map", "physics"})
+
     def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
         self._h = dt_s / SUBSTEPS
 
@@ -41,6 +43,9 @@ class TrueParameter(Predictor):
         physics = inputs.physics
         if physics is None:
             raise ValueError("the true-parameter predictor was given no physical parameters")
+        assert inputs.dynamics is not None
+        assert inputs.wind_map_mass_kg is not None
+        assert inputs.wind_mps is not None
         inverse_mass = 1 / inputs.wind_map_mass_kg
         lag = physics.motor_time_constant_s / self._h
         keep = torch.exp(-1 / lag)

@@ -1,13 +1,11 @@
 """Calibration noise for training (DCC), by the same taps and faults that an audit uses."""
 
 from collections.abc import Collection, Iterable, Mapping
-from functools import cache
-from importlib.resources import files
 
 from torch import Tensor
 
 from faultpath.faults import Coupled, Fault, UniformScale
-from faultpath.interface import Interface, read_interface
+from faultpath.interface import Interface
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.taps import Reading, Taps
 
@@ -15,12 +13,6 @@ DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
 _EPOCHS = 100_000
 """Seeds of the faults' random numbers lie this far apart from one model seed to the next."""
-
-
-@cache
-def quadrotor_interface() -> Interface:
-    """Return the interface that the quadrotor is audited with."""
-    return read_interface(files("faultpath.quadrotor").joinpath("interface.yaml").read_text())
 
 
 def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled:

@@ -14,13 +14,9 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
-from faultpath.quadrotor.training.corruption import (
-    DCC_HALF_RANGE,
-    Corruption,
-    dcc,
-    quadrotor_interface,
-)
+from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of

@@ -1,0 +1,166 @@
+"""The recurrent network of the learned predictors: history encoder, latent update, head.
+
+Components first: features are `[F, *batch]` and a linear map is `weight @ features`, which leaves
+the batch contiguous for the kinematics. A column of such a product has the same bits whatever the
+other columns are, as long as their number is a multiple of 32.
+"""
+
+import math
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+from faultpath.quadrotor.predictors.base import Calibration, History
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+
+LATENT = 32  # paper, Section IV-A
+ACTION_EMBEDDING = 16  # derived: with it the parameter counts are the paper's
+STATE_FEATURES = 15
+ACTION_FEATURES = 4
+BASE_FEATURES = STATE_FEATURES + ACTION_FEATURES  # 19 (paper, Section IV-A)
+
+
+class Affine(nn.Module):
+    """`weight @ x + bias` for `x` `[inputs, N]`, initialised as torch's own linear layers are."""
+
+    def __init__(self, inputs: int, outputs: int) -> None:
+        super().__init__()
+        self.weight = nn.Parameter(torch.empty(outputs, inputs))
+        self.bias = nn.Parameter(torch.empty(outputs, 1))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return `[outputs, N]`."""
+        return torch.addmm(self.bias, self.weight, x)
+
+
+class GatedCell(nn.Module):
+    """One step of a gated recurrent unit (Cho et al. 2014, in the form of cuDNN)."""
+
+    def __init__(self, inputs: int, latent: int) -> None:
+        super().__init__()
+        self.latent = latent
+        self.from_input = Affine(inputs, 3 * latent)
+        self.from_latent = Affine(latent, 3 * latent)
+
+    def forward(self, x: Tensor, latent: Tensor) -> Tensor:
+        """Return the next latent `[latent, N]`."""
+        split = 2 * self.latent
+        given = self.from_input(x)
+        weight, bias = self.from_latent.weight, self.from_latent.bias
+        gates = torch.addmm(given[:split] + bias[:split], weight[:split], latent).sigmoid()
+        reset, update = gates[: self.latent], gates[self.latent :]
+        remembered = torch.addmm(bias[split:], weight[split:], latent)
+        candidate = torch.addcmul(given[split:], reset, remembered).tanh()
+        return torch.lerp(candidate, latent, update)
+
+
+class LatentNetwork(nn.Module):
+    """Encodes the executed history once, then updates a latent along each candidate.
+
+    At each step the embedded action drives a GRU cell, and an MLP with two hidden layers maps
+    (latent, state, action) to the outputs. Features: velocity, rotation matrix, body rate, thrust
+    over m~ g, commanded rates (paper, Section IV-A); `conditioning` says how many calibration
+    values are appended. They are standardised with the training pool's statistics, which are
+    buffers of the checkpoint.
+    """
+
+    feature_mean: Tensor
+    feature_std: Tensor
+
+    def __init__(self, hidden: int, outputs: int, conditioning: int = 0) -> None:
+        super().__init__()
+        width = BASE_FEATURES + conditioning
+        self.conditioned = conditioning > 0
+        self.encoder = GatedCell(width, LATENT)
+        self.embed = Affine(ACTION_FEATURES, ACTION_EMBEDDING)
+        self.cell = GatedCell(ACTION_EMBEDDING, LATENT)
+        self.first = Affine(LATENT + width, hidden)
+        self.second = Affine(hidden, hidden)
+        self.last = Affine(hidden, outputs)
+        self.register_buffer("feature_mean", torch.zeros(width, 1))
+        self.register_buffer("feature_std", torch.ones(width, 1))
+
+    def initialise(self, generator: torch.Generator) -> None:
+        """Draw all weights; the last layer starts at zero, so that a rollout starts sane."""
+        for layer in self.modules():
+            if isinstance(layer, Affine):
+                bound = 1 / math.sqrt(layer.weight.shape[1])
+                for weights in (layer.weight, layer.bias):
+                    nn.init.uniform_(weights, -bound, bound, generator=generator)
+        nn.init.zeros_(self.last.weight)
+        nn.init.zeros_(self.last.bias)
+
+    def standardise(self, features: Tensor) -> Tensor:
+        """Return `features` `[19 + conditioning, N]` in units of the training pool's spread."""
+        return (features - self.feature_mean) / self.feature_std
+
+    def encode(self, features: Tensor) -> Tensor:
+        """Return the history code `[32, N]` of raw `features` `[T, 19 + conditioning, N]`."""
+        latent = features.new_zeros(LATENT, features.shape[-1])
+        for row in features:
+            latent = self.encoder(self.standardise(row), latent)
+        return latent
+
+    def advance(self, latent: Tensor, features: Tensor) -> tuple[Tensor, Tensor]:
+        """Return the next latent `[32, N]` and the outputs `[outputs, N]` of raw `features`."""
+        given = self.standardise(features)
+        action = given[STATE_FEATURES:BASE_FEATURES]
+        latent = self.cell(functional.relu(self.embed(action)), latent)
+        hidden = functional.relu(self.first(torch.cat((latent, given))))
+        return latent, self.last(functional.relu(self.second(hidden)))
+
+    def roll(
+        self,
+        latent: Tensor,
+        state: State,
+        command: Tensor,
+        mass_kg: Tensor,
+        conditioning: Calibration | None = None,
+    ) -> tuple[Tensor, Tensor]:
+        """Advance a latent `[32, S, 1 or K]` under `command` `[4, S, K]`; return it and outputs."""
+        batch = command.shape[1:]
+        motion = (state.velocity, state.rotation, state.rate)
+        given = features(*motion, command, mass_kg, conditioning).flatten(1)
+        ahead, outputs = self.advance(latent.expand(LATENT, *batch).flatten(1), given)
+        return ahead.unflatten(1, batch), outputs.unflatten(1, batch)
+
+
+def features(
+    velocity: Tensor,
+    rotation: Tensor,
+    rate: Tensor,
+    command: Tensor,
+    mass_kg: Tensor,
+    conditioning: Calibration | None,
+) -> Tensor:
+    """Return raw features `[19 or 21, *batch]`; `mass_kg` is the supplied mass.
+
+    `command` `[4, *batch]` decides the batch; the rest may broadcast against it.
+    """
+    batch = command.shape[1:]
+    rows = [
+        velocity.expand(3, *batch),
+        rotation.flatten(0, 1).expand(9, *batch),
+        rate.expand(3, *batch),
+        command[:1] / (mass_kg * GRAVITY_MPS2),
+        command[1:],
+    ]
+    if conditioning is not None:
+        values = (conditioning.mass_kg, conditioning.thrust_scale)
+        rows += [value.expand(1, *batch) for value in values]
+    return torch.cat(rows)
+
+
+def history_features(history: History) -> Tensor:
+    """Return raw features of a history, `[T, 19 or 21, N]`, its batch flattened."""
+    stacked = features(
+        history.velocity_mps,
+        history.rotation,
+        history.rate_radps,
+        history.commands,
+        history.mass_kg,
+        history.conditioning,
+    )
+    return stacked.movedim(1, 0).flatten(2)

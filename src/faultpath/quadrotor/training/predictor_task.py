@@ -1,0 +1,240 @@
+"""Fitting of the learned predictors (paper, Section IV-A)."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import LongTensor, Tensor, nn
+
+from faultpath.errors import UserError
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.predictors import (
+    AnchoredPredictor,
+    Calibration,
+    LatentNetwork,
+    Predictor,
+    UnanchoredNetwork,
+    UnanchoredPredictor,
+)
+from faultpath.quadrotor.predictors.network import features
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
+from faultpath.quadrotor.training.pool import read_provenance
+from faultpath.quadrotor.training.replay import Supplied, correct, predict
+from faultpath.quadrotor.training.task import Schedule, Task
+from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
+from faultpath.streams import generator
+
+DCC = "+dcc"
+CLIP_NORM = 1.0
+"""Largest gradient norm: a rollout of 20 steps of a young network can explode (derived)."""
+PARTS = ("position", "velocity", "rotation", "rate")
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a predictor is and what it learns from."""
+
+    network: Callable[[], LatentNetwork]
+    predictor: Callable[[Any], Predictor]
+    pools: tuple[str, ...]
+    epochs: int
+    description: str
+
+
+def _anchored(wind: bool) -> Callable[[LatentNetwork], Predictor]:
+    return lambda network: AnchoredPredictor(network, wind)
+
+
+_BOTH = ("nominal", "wind")
+RECIPES: Mapping[str, Recipe] = {
+    "wm-a": Recipe(
+        AnchoredPredictor.build_network, _anchored(False), ("nominal",), 10, "physics-anchored"
+    ),
+    "wm-u": Recipe(
+        UnanchoredPredictor.build_network, UnanchoredPredictor, ("nominal",), 30, "unanchored"
+    ),
+    "wm-a-wind": Recipe(
+        AnchoredPredictor.build_network, _anchored(True), _BOTH, 10, "wind-conditioned anchored"
+    ),
+    "wm-a-nowind": Recipe(
+        AnchoredPredictor.build_network, _anchored(False), _BOTH, 10, "wind-withheld anchored"
+    ),
+}
+
+
+class PredictorTask(Task):
+    """One predictor: the error of its own 20-step rollout, in units of how far states move.
+
+    Each prediction is the input to the next step; recorded states are targets only. With `+dcc` in
+    the name the calibration passes through the audit's faults on its way to the model; samples,
+    targets, initial weights and the order of minibatches stay (paper, Equation 1).
+    """
+
+    def __init__(
+        self, name: str, seed: int, data: Path, half_range: float = DCC_HALF_RANGE
+    ) -> None:
+        self.name = name
+        self.seed = seed
+        self._base = name.removesuffix(DCC)
+        if self._base not in RECIPES:
+            raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
+        self._recipe = RECIPES[self._base]
+        self.schedule = Schedule(epochs=self._recipe.epochs, clip_norm=CLIP_NORM)
+        self._data = data
+        self._half_range = half_range
+
+    def load(self) -> None:
+        """See `Task.load`; several pools contribute equally many windows."""
+        pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
+        training, self._validation = _equal_mix(pools)
+        self._train = training
+        self._scales = scales(training)
+        predictor = self._recipe.predictor(self._recipe.network())
+        self._consumers = frozenset(f"predictor.{place}" for place in predictor.reads)
+        self._corruption = Corruption(
+            quadrotor_interface(),
+            [dcc(_calibrated(self._consumers), self._half_range)] if self.is_dcc else [],
+            self._consumers,
+            training.ids,
+            self.seed,
+        )
+        self._supplied: Supplied = {}
+
+    @property
+    def is_dcc(self) -> bool:
+        """Whether the calibration is corrupted in training."""
+        return self.name.endswith(DCC)
+
+    @property
+    def count(self) -> int:
+        """See `Task.count`."""
+        return len(self._train)
+
+    @property
+    def order_key(self) -> str:
+        """See `Task.order_key`."""
+        return self._base
+
+    def module(self) -> nn.Module:
+        """See `Task.module`."""
+        network = self._recipe.network()
+        stream = generator("training/weights", self._base, self.seed)
+        network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
+        _measure(network, self._train)
+        return network
+
+    def begin_epoch(self, epoch: int) -> None:
+        """Draw what each window's consumers get of the calibration in this epoch."""
+        readings = {"mass": self._train.mass_kg, "thrust_scale": self._train.thrust_scale}
+        self._supplied = self._corruption.deliver(epoch, readings)
+
+    def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
+        """See `Task.loss`."""
+        batch = _pick(self._train, index)
+        supplied = {tap: value[index] for tap, value in self._supplied.items()}
+        predicted = list(predict(self._recipe.predictor(module), batch, supplied))
+        return error(predicted, batch, self._scales)
+
+    def validate(self, module: nn.Module) -> Mapping[str, float]:
+        """Return the median 20-step position error under correct calibration, and the loss."""
+        predictor = self._recipe.predictor(module)
+        windows = self._validation
+        predicted = list(predict(predictor, windows, correct(predictor, windows)))
+        missed = (predicted[-1].position[..., 0] - windows.position[:, -1]).norm(dim=0)
+        return {
+            "position_error_20_m": float(missed.median()),
+            "loss": float(error(predicted, windows, self._scales)),
+        }
+
+    def describe(self) -> Mapping[str, Any]:
+        """See `Task.describe`."""
+        return {
+            "description": f"{self._recipe.description} predictor"
+            + (", fitted with calibration noise" if self.is_dcc else ""),
+            "data_sha256": {
+                provenance.pool: provenance.rows_sha256
+                for name in self._recipe.pools
+                if (provenance := read_provenance(self._data / f"{name}.parquet"))
+            },
+            "history": HISTORY,
+            "horizon": HORIZON,
+            "calibration_half_range": self._half_range if self.is_dcc else 0.0,
+            "validation_windows": len(self._validation),
+            "scales": {name: float(value) for name, value in self._scales.items()},
+        }
+
+
+def known() -> str:
+    """Return the names of all predictors that can be fitted."""
+    return ", ".join(name for base in RECIPES for name in (base, base + DCC))
+
+
+def scales(windows: Windows) -> dict[str, Tensor]:
+    """Return how far each part of the state moves over the horizon: its root mean square change."""
+    return {
+        name: (ahead - ahead[..., :1, :]).square().mean().sqrt()
+        for name in PARTS
+        for ahead in [getattr(windows, name)[..., HISTORY:, :]]
+    }
+
+
+def error(predicted: Sequence[State], windows: Windows, scale: Mapping[str, Tensor]) -> Tensor:
+    """Return the mean squared error of rollouts, in units of `scale`, the parts weighing alike."""
+    parts = []
+    for name in PARTS:
+        ahead = torch.stack([getattr(state, name)[..., 0] for state in predicted], dim=-2)
+        recorded = getattr(windows, name)[..., HISTORY + 1 :, :]
+        parts.append((ahead - recorded).square().mean() / scale[name] ** 2)
+    return torch.stack(parts).mean()
+
+
+def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
+    """Return training and validation windows, as many of each pool as the smallest has."""
+    halves = [pool.split() for pool in pools]
+    training = [half[0] for half in halves]
+    fewest = min(len(windows) for windows in training)
+    mixed = [windows.take(torch.arange(fewest) * len(windows) // fewest) for windows in training]
+    return Windows.join(mixed), Windows.join([half[1] for half in halves])
+
+
+def _measure(network: LatentNetwork, windows: Windows) -> None:
+    """Store the training windows' statistics, under true calibration, in the network."""
+    now = windows.state(HISTORY)
+    known = Calibration(windows.mass_kg, windows.thrust_scale) if network.conditioned else None
+    raw = features(
+        now.velocity, now.rotation, now.rate, windows.command[:, HISTORY], windows.mass_kg, known
+    )
+    network.feature_mean.copy_(raw.mean(1, keepdim=True))
+    network.feature_std.copy_(raw.std(1, keepdim=True))
+    if isinstance(network, UnanchoredNetwork):
+        network.increment_std.copy_(_increments(windows).std(1, keepdim=True))
+
+
+def _increments(windows: Windows) -> Tensor:
+    """Return the change of the state over the next interval, `[12, W]`, as WM-U predicts it."""
+    now, then = windows.state(HISTORY), windows.state(HISTORY + 1)
+    turned = so3.log(so3.compose(now.rotation.transpose(0, 1), then.rotation))
+    return torch.cat(
+        [then.position - now.position, then.velocity - now.velocity, then.rate - now.rate, turned]
+    )
+
+
+def _calibrated(consumers: frozenset[str]) -> list[str]:
+    """Return the consumers that read a calibration channel."""
+    interface = quadrotor_interface()
+    readers = {
+        name
+        for channel in ("mass", "thrust_scale")
+        for name in interface.channel(channel).consumers
+    }
+    return sorted(consumers & readers)
+
+
+def _pick(windows: Windows, index: LongTensor) -> Windows:
+    """Return a minibatch, without the ids, which cost more than the tensors."""
+    parts = {f.name: getattr(windows, f.name) for f in fields(windows) if f.name != "ids"}
+    return Windows(**{name: value[..., index] for name, value in parts.items()}, ids=())

@@ -1,0 +1,189 @@
+"""WM-A and WM-U: what their shapes and their wiring must hold whatever their weights are."""
+
+from dataclasses import replace
+
+import pytest
+import torch
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.predictors import (
+    AnchoredPredictor,
+    Calibration,
+    History,
+    KinematicIntegrator,
+    PredictorInputs,
+    UnanchoredPredictor,
+)
+from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
+from faultpath.quadrotor.rollout import rollout
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
+
+SCENES = 5
+KINDS = [AnchoredPredictor, UnanchoredPredictor]
+
+
+def network(kind, seed=0, lively=True):
+    """Return a network with drawn weights; `lively` ones have a last layer that is not zero."""
+    generator = torch.Generator().manual_seed(seed)
+    built = kind.build_network()
+    built.initialise(generator)
+    if lively:
+        with torch.no_grad():
+            built.last.weight.normal_(0, 0.2, generator=generator)
+    return built
+
+
+def predictor(kind, seed=0, lively=True, **options):
+    if kind is AnchoredPredictor:
+        options.setdefault("wind", True)
+    return kind(network(kind, seed, lively), **options)
+
+
+def inputs(scenes=SCENES, seed=0):
+    draw = torch.Generator().manual_seed(seed)
+
+    def column(low, high):
+        return low + (high - low) * torch.rand(scenes, 1, generator=draw)
+
+    def three(spread):
+        return spread * torch.randn(3, scenes, 1, generator=draw)
+
+    state = State(three(2.0), three(2.0), so3.exp(three(0.3)), three(1.0))
+    return PredictorInputs(
+        state=state,
+        trim=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
+        dynamics=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
+        wind_map_mass_kg=column(0.7, 1.4),
+        wind_mps=three(5.0),
+        thrust_mass_kg=column(0.7, 1.4),
+        conditioning=Calibration(column(0.7, 1.4), column(0.7, 1.4)),
+        code=torch.randn(32, scenes, 1, generator=draw).tanh(),
+    )
+
+
+def commands(scenes=SCENES, candidates=512, horizon=20, seed=1):
+    drawn = torch.randn(
+        horizon, 4, scenes, candidates, generator=torch.Generator().manual_seed(seed)
+    )
+    drawn[:, 0] = GRAVITY_MPS2 * (1 + 0.2 * drawn[:, 0])
+    return drawn
+
+
+def history(lanes=32, steps=12, seed=2, conditioned=True):
+    draw = torch.Generator().manual_seed(seed)
+    return History(
+        velocity_mps=torch.randn(3, steps, lanes, generator=draw),
+        rotation=so3.exp(0.3 * torch.randn(3, steps, lanes, generator=draw)),
+        rate_radps=torch.randn(3, steps, lanes, generator=draw),
+        commands=torch.randn(4, steps, lanes, generator=draw) + 5,
+        mass_kg=0.7 + torch.rand(lanes, generator=draw),
+        conditioning=Calibration(torch.ones(lanes), torch.ones(lanes)) if conditioned else None,
+    )
+
+
+@pytest.mark.parametrize(
+    ("kind", "published"), [(AnchoredPredictor, 17e3), (UnanchoredPredictor, 35e3)]
+)
+def test_models_have_the_papers_size(kind, published):
+    count = sum(weights.numel() for weights in network(kind).parameters())
+    assert abs(count - published) < 0.1 * published
+
+
+@pytest.mark.parametrize("wind", [True, False])
+def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
+    anchored = predictor(AnchoredPredictor, lively=False, wind=wind)
+    plain = rollout(KinematicIntegrator(wind=wind), inputs(), commands())
+    rolled = rollout(anchored, inputs(), commands())
+    assert torch.equal(rolled.positions, plain.positions)
+    assert torch.equal(rolled.velocities, plain.velocities)
+    assert torch.equal(rolled.final.rotation, plain.final.rotation)
+    assert torch.equal(rolled.final.rate, plain.final.rate)
+
+
+def test_the_residuals_of_wm_a_are_bounded_whatever_the_weights():
+    wild = predictor(AnchoredPredictor)
+    with torch.no_grad():
+        wild.network.last.weight.mul_(1e4)
+    given, one = inputs(), commands(horizon=1)
+    plain = rollout(KinematicIntegrator(), given, one)
+    rolled = rollout(wild, given, one)
+    pushed = (rolled.velocities - plain.velocities)[:, :, 0] / CONTROL_DT_S
+    spun = (rolled.final.rate - plain.final.rate) / CONTROL_DT_S
+    # The residual turns the vehicle too, and with it the thrust: bound what the rate shows exactly.
+    assert spun.abs().max() <= ANGULAR_BOUND_RADPS2 * (1 + 1e-4)
+    assert spun.abs().max() > 0.99 * ANGULAR_BOUND_RADPS2
+    thrust = one[0, 0] * (given.dynamics.thrust_scale / given.dynamics.mass_kg)
+    turned = 0.5 * ANGULAR_BOUND_RADPS2 * CONTROL_DT_S**2 * 3**0.5
+    assert (pushed.abs() <= LINEAR_BOUND_MPS2 + turned * thrust.abs() + 1e-3).all()
+
+
+def test_attitudes_of_wm_u_stay_rotations():
+    final = rollout(predictor(UnanchoredPredictor), inputs(), commands()).final.rotation
+    gram = so3.compose(final.transpose(0, 1), final)
+    assert (gram - torch.eye(3)[..., None, None]).abs().max() < 1e-4
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_scene_does_not_depend_on_the_scenes_beside_it(kind):
+    model, given, drawn = predictor(kind), inputs(), commands()
+    together = rollout(model, given, drawn)
+    for scenes in ([2], [4, 1, 0]):
+        alone = rollout(model, given.take(scenes), drawn[:, :, scenes].contiguous())
+        assert torch.equal(alone.positions, together.positions[:, scenes])
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_lane_of_the_code_does_not_depend_on_the_others(kind):
+    model = predictor(kind)
+    past = history(lanes=96, conditioned=kind is UnanchoredPredictor)
+
+    def some(value):
+        return value[..., 32:64]
+
+    part = replace(
+        past,
+        velocity_mps=some(past.velocity_mps),
+        rotation=some(past.rotation),
+        rate_radps=some(past.rate_radps),
+        commands=some(past.commands),
+        mass_kg=some(past.mass_kg),
+        conditioning=past.conditioning
+        and Calibration(some(past.conditioning.mass_kg), some(past.conditioning.thrust_scale)),
+    )
+    assert torch.equal(model.encode(part), model.encode(past)[:, 32:64])
+
+
+def _moved(model, given, **changes):
+    plain = rollout(model, given, commands()).positions
+    return not torch.equal(rollout(model, replace(given, **changes), commands()).positions, plain)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_declared_place_matters_and_no_other(kind):
+    model, given = predictor(kind), inputs()
+    other = Calibration(given.trim.mass_kg * 1.1, given.trim.thrust_scale)
+    changes = {
+        "dynamics": {"dynamics": other},
+        "features": {"conditioning": other},
+        "normalise_thrust": {"thrust_mass_kg": given.thrust_mass_kg * 1.1},
+        "latent": {"code": -given.code},
+    }
+    for place, change in changes.items():
+        assert _moved(model, given, **change) == (place in model.reads), place
+    wind = {"wind_mps": -given.wind_mps}
+    assert _moved(model, given, **wind) == ("wind_map" in model.reads)
+    mass = {"wind_map_mass_kg": given.wind_map_mass_kg * 1.1}
+    assert _moved(model, given, **mass) == ("wind_map" in model.reads)
+
+
+def test_without_a_wind_input_the_wind_is_not_read():
+    model = predictor(AnchoredPredictor, wind=False)
+    assert "wind_map" not in model.reads
+    rollout(model, replace(inputs(), wind_mps=None, wind_map_mass_kg=None), commands())
+
+
+def test_the_history_code_follows_the_supplied_mass():
+    model, past = predictor(AnchoredPredictor), history(conditioned=False)
+    heavier = replace(past, mass_kg=past.mass_kg * 1.1)
+    assert not torch.equal(model.encode(past), model.encode(heavier))

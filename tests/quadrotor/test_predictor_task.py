@@ -1,0 +1,109 @@
+"""Fitting of predictors: what calibration noise may change, and what a window tells a model."""
+
+from pathlib import Path
+
+import pytest
+import torch
+
+from faultpath.quadrotor.predictors import KinematicIntegrator, TrueParameter
+from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.fitting import fit
+from faultpath.quadrotor.training.predictor_task import RECIPES, PredictorTask
+from faultpath.quadrotor.training.replay import correct, predict
+from faultpath.quadrotor.training.task import Schedule
+from faultpath.quadrotor.training.windows import windows_of
+
+EPISODES = {"nominal": 70, "wind": 70}
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    collect(folder, workers=1, episodes=EPISODES)
+    return folder
+
+
+def task(name, data, seed=0, epochs=2, **options):
+    short = PredictorTask(name, seed, data, **options)
+    short.schedule = Schedule(epochs=epochs, batch_size=64, clip_norm=short.schedule.clip_norm)
+    return short
+
+
+def loaded(name, data, **options):
+    ready = task(name, data, **options)
+    ready.load()
+    ready.begin_epoch(0)
+    return ready
+
+
+@pytest.mark.parametrize("base", ["wm-a", "wm-u"])
+def test_zero_noise_is_the_baseline_to_the_bit(base, data, tmp_path):
+    """+DCC changes the delivered calibration and nothing else: not weights, not order."""
+    plain = fit(task(base, data), tmp_path)
+    silent = fit(task(f"{base}+dcc", data, half_range=0.0), tmp_path)
+    noisy = fit(task(f"{base}+dcc", data), tmp_path / "noisy")
+    assert silent.read_bytes() == plain.read_bytes()
+    assert noisy.read_bytes() != plain.read_bytes()
+
+
+def test_noise_reaches_every_place_with_one_draw_a_window(data):
+    noisy = loaded("wm-u+dcc", data)
+    taps = noisy._supplied
+    mass = [value for (channel, _), value in taps.items() if channel == "mass"]
+    scale = [value for (channel, _), value in taps.items() if channel == "thrust_scale"]
+    assert {place for channel, place in taps if channel == "mass"} >= {
+        "predictor.history",
+        "predictor.normalise_thrust",
+        "predictor.features",
+    }
+    assert all(torch.equal(value, mass[0]) for value in mass)
+    off = mass[0] / noisy._train.mass_kg - 1
+    other = scale[0] / noisy._train.thrust_scale - 1
+    assert off.abs().max() <= 0.2
+    assert off.std() == pytest.approx(0.2 / 3**0.5, rel=0.2)
+    assert torch.corrcoef(torch.stack([off, other]))[0, 1].abs() < 0.35
+    noisy.begin_epoch(1)
+    assert not torch.equal(noisy._supplied["mass", "predictor.history"], mass[0])
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_a_few_steps_of_descent_lower_the_loss(name, data):
+    ready = loaded(name, data)
+    model = ready.module()
+    descent = torch.optim.Adam(model.parameters(), lr=3e-3)
+    index = torch.arange(ready.count)
+    first = ready.loss(model, index)
+    loss = first
+    for _ in range(8):
+        descent.zero_grad()
+        loss.backward()
+        descent.step()
+        loss = ready.loss(model, index)
+    assert loss < 0.9 * first
+
+
+def test_windy_predictors_see_as_much_still_air_as_wind(data):
+    names = [name.split("/")[0] for name in loaded("wm-a-wind", data)._train.ids]
+    assert names.count("nominal") == names.count("wind") > 0
+
+
+def test_wind_conditioned_and_withheld_differ_in_the_input_alone(data):
+    given, withheld = loaded("wm-a-wind", data), loaded("wm-a-nowind", data)
+    assert given._train.ids == withheld._train.ids
+    assert given.schedule == withheld.schedule
+    shapes = [
+        {name: value.shape for name, value in ready.module().state_dict().items()}
+        for ready in (given, withheld)
+    ]
+    assert shapes[0] == shapes[1]
+
+
+def test_the_true_parameters_predict_recorded_flights_best(data):
+    """In still air only integration and motor limits are left; in wind, that it changes."""
+    windows = windows_of(data / "nominal.parquet")
+
+    def missed(predictor):
+        *_, last = predict(predictor, windows, correct(predictor, windows))
+        return float((last.position[..., 0] - windows.position[:, -1]).norm(dim=0).median())
+
+    assert missed(TrueParameter()) < 0.5 * missed(KinematicIntegrator(wind=False))
