@@ -30,6 +30,7 @@ LEAST_LIFT = 0.3
 """The wanted vertical specific force is at least this part of gravity: the vehicle never turns
 over to fall faster."""
 _TINY = 1e-12
+"""Added to norms that divide: their quotients are then zero at zero."""
 
 Range = tuple[float, float]
 
@@ -42,9 +43,10 @@ class ControllerSettings(BaseModel):
     arena_m: tuple[Range, Range, Range] = ((-4.5, 4.5), (-3.0, 3.0), (0.0, 3.0))
     """Box of the waypoints and the starts, the size of the scenes' arenas."""
     waypoints: int = 16
-    """More than an episode can use."""
+    """More than an episode of 6 s uses; the last one is kept."""
     speed_mps: Range = (1.0, 4.8)
-    """Per waypoint; the planner's limit is 3.4 m/s (paper, Section IV-A), a wind adds to it."""
+    """Per waypoint: most that is asked for. The planner's limit is 3.4 m/s (paper, Section IV-A);
+    legs are too short to reach all of it, and a wind may push beyond it."""
     leg_s: Range = (0.6, 3.0)
     """Per waypoint: time after which the next one is taken, reached or not."""
     arrival_m: float = 0.4

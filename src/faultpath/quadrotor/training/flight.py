@@ -73,16 +73,20 @@ class Flights:
     """float32 [C, N + 1, B] at the control instants, in the order of `COMPONENTS`; a command
     stands at the instant from which it acts, and is not a number at the last one."""
     steps: np.ndarray
-    """Control steps of each episode before it ended, [B]; its states are 0..steps."""
+    """Control steps of each episode before it ended, [B]. Its states are 0..steps; what comes
+    after them is not part of it."""
     vehicles: tuple[VehicleParameters, ...]
 
 
 @dataclass(frozen=True)
 class _Start:
+    """What is drawn for one episode."""
+
     vehicle: VehicleParameters
     course: Course
     state: State
     winds: np.ndarray | None
+    """[T, 3] at the plant's steps, m/s; `None` is still air."""
 
 
 @torch.inference_mode()
@@ -113,7 +117,8 @@ def fly(pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings)
         running &= _in_bounds(now.state, settings)
         steps += running
     last = winds[EPISODE_STEPS * STEPS_PER_CONTROL].double()[:, lanes]
-    _record(values[:, EPISODE_STEPS], now, torch.full_like(command, torch.nan), last)
+    none = torch.full((4, len(lanes)), torch.nan, dtype=torch.float64)
+    _record(values[:, EPISODE_STEPS], now, none, last)
     return Flights(
         values.numpy(),
         steps[: len(starts)].numpy(),
@@ -169,7 +174,7 @@ def _stack(states: Sequence[State]) -> State:
 def _winds(starts: Sequence[_Start]) -> Tensor:
     """Return the winds of a batch at the plant's steps, [T, 3, B]; still air is a broadcast zero.
 
-    In single precision, as it is recorded: twice the batch fits into the same memory.
+    In single precision, so that the wind that is recorded is the wind that blew.
     """
     steps = EPISODE_STEPS * STEPS_PER_CONTROL + 1
     out = torch.zeros(1, 3, len(starts)).expand(steps, -1, -1)

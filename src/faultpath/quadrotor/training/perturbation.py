@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 from scipy.signal import lfilter
 
+from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
+
 Array = NDArray[np.float64]
 
 
@@ -31,9 +33,14 @@ class PerturbationSettings(BaseModel):
     jitter: float = 0.3
     """Largest standard deviation of the white part, in units of the correlated one."""
     pulses_per_s: float = 0.5
+    """Steps and doublets on one axis, on average."""
     pulse_steps: tuple[int, int] = (2, 6)
+    """Length of a step and of each half of a doublet."""
     pulse_sigmas: tuple[float, float] = (1.0, 2.5)
+    """Their height in units of the correlated part's standard deviation."""
     holds_per_s: float = 0.3
+    """Stretches without feedback, on average in an episode that is not clean: a candidate of the
+    planner has none over its whole horizon."""
     hold_steps: tuple[int, int] = (2, 8)
 
 
@@ -43,7 +50,7 @@ class Perturbation(NamedTuple):
     offset: Array
     """[4, N]: thrust as a fraction of the hover thrust, body rates in rad/s."""
     held: NDArray[np.bool_]
-    """[N]: whether the controller's command of the step before is used again."""
+    """[N]: whether the controller's command of the step before is used again, below the offset."""
 
 
 def draw(stream: np.random.Generator, steps: int, settings: PerturbationSettings) -> Perturbation:
@@ -56,10 +63,10 @@ def draw(stream: np.random.Generator, steps: int, settings: PerturbationSettings
     noise = _autoregressive(stream, steps, stream.uniform(*settings.correlation))
     jitter = stream.uniform(0.0, settings.jitter) * stream.standard_normal((4, steps))
     pulses = np.zeros((4, steps))
-    for _ in range(stream.poisson(settings.pulses_per_s * steps / 20)):
+    for _ in range(stream.poisson(settings.pulses_per_s * steps / CONTROL_RATE_HZ)):
         _add_pulse(stream, pulses, settings)
     held = np.zeros(steps, dtype=bool)
-    for _ in range(stream.poisson(high * settings.holds_per_s * steps / 20)):
+    for _ in range(stream.poisson(high * settings.holds_per_s * steps / CONTROL_RATE_HZ)):
         first = stream.integers(1, steps)
         held[first : first + stream.integers(*settings.hold_steps, endpoint=True)] = True
     return Perturbation(sigma[:, None] * (noise + jitter + pulses), held)

@@ -8,63 +8,21 @@ is written last: a pool without it is not finished.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
-from pydantic import BaseModel, ConfigDict, ValidationError
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.flight import COMPONENTS, Flights, FlightSettings
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, VehicleParameters, VehicleRanges
+from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS, Flights
+from faultpath.quadrotor.training.provenance import Provenance, provenance_path, read_provenance
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, VehicleParameters
 from faultpath.store import atomic, read_table
 
-FORMAT = 1
 _AXES = ("x", "y", "z")
-_DECISIVE = ("quadrotor/training/controller.py", "quadrotor/training/perturbation.py")
-_DECISIVE += ("quadrotor/training/flight.py", "quadrotor/plant", "quadrotor/wind.py")
-_DECISIVE += ("quadrotor/vehicle.py", "quadrotor/state.py", "quadrotor/so3.py", "streams.py")
-
-
-class Recipe(BaseModel):
-    """What decides every number of a pool."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    format: int = FORMAT
-    pool: str
-    episodes: int
-    seed: int
-    flight: FlightSettings = FlightSettings()
-    vehicle: VehicleRanges = VehicleRanges()
-    wind: dict[str, float | tuple[float, float]]
-    """Ranges and constants of the wind; empty in still air."""
-    code_sha256: str
-    """Of the files that draw and fly the episodes."""
-
-
-class Provenance(Recipe):
-    """A recipe, what it was cooked with, and what came of it."""
-
-    faultpath_version: str
-    packages: dict[str, str]
-    rows: int
-    vehicle_seconds: float
-    ended_early: int
-    """Episodes that diverged before their time was over."""
-    rows_sha256: str
-    episodes_sha256: str
-
-    def encode(self) -> bytes:
-        """Return the file's contents."""
-        content = self.model_dump(mode="json")
-        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
 
 @dataclass(frozen=True)
@@ -91,26 +49,6 @@ def episodes_path(path: Path) -> Path:
     return path.with_suffix(".episodes.parquet")
 
 
-def provenance_path(path: Path) -> Path:
-    """Return where the provenance of the pool whose rows are in `path` stands."""
-    return path.with_suffix(".json")
-
-
-@cache
-def code_sha256() -> str:
-    """Return a hash of the files that draw and fly episodes: another code, another pool."""
-    package = files("faultpath")
-    parts = [package.joinpath(name) for name in _DECISIVE]
-    digest = hashlib.sha256()
-    while parts:
-        part = parts.pop()
-        if part.is_dir():
-            parts += sorted(part.iterdir(), key=lambda child: child.name)
-        elif part.name.endswith(".py"):
-            digest.update(part.name.encode() + part.read_bytes())
-    return digest.hexdigest()
-
-
 def encode_rows(episodes: Sequence[int], flights: Flights) -> bytes:
     """Return the rows of a batch as a Parquet file."""
     instants = np.arange(flights.values.shape[1])
@@ -122,9 +60,8 @@ def encode_rows(episodes: Sequence[int], flights: Flights) -> bytes:
     }
     for name, values in zip(COMPONENTS, flights.values, strict=True):
         columns[name] = values.T.reshape(-1)[kept]
-    for name in COMPONENTS:  # no command acts after an episode's last state
-        if "command" in name or name == "thrust_n":
-            columns[name][np.cumsum(flights.steps + 1) - 1] = np.nan
+    for name in SIGNALS["command"]:  # no command acts after an episode's last state
+        columns[name][np.cumsum(flights.steps + 1) - 1] = np.nan
     return _write([pa.table(columns)])
 
 
@@ -151,19 +88,6 @@ def write_pool(path: Path, rows: bytes, episodes: bytes, provenance: Provenance)
     atomic.write(episodes_path(path), episodes)
     atomic.write(path, rows)
     atomic.write(provenance_path(path), provenance.encode())
-
-
-def read_provenance(path: Path) -> Provenance | None:
-    """Return the provenance of the pool at `path`, `None` without one; `UserError` if damaged."""
-    place = provenance_path(path)
-    try:
-        return Provenance.model_validate_json(place.read_bytes())
-    except FileNotFoundError:
-        return None
-    except (OSError, ValidationError) as error:
-        raise UserError(
-            f"{place} cannot be read as a pool's provenance: delete the pool and collect it again."
-        ) from error
 
 
 def read_pool(path: Path) -> Pool:

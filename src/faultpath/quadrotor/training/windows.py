@@ -70,7 +70,7 @@ class Windows:
         if index.dtype == torch.bool:
             index = index.nonzero()[:, 0]
         return self._build(
-            lambda name: getattr(self, name)[..., index],
+            lambda name: getattr(self, name).index_select(-1, index),
             tuple(self.ids[i] for i in index.tolist()),
         )
 
@@ -129,7 +129,8 @@ def cut(pool: Pool) -> Windows:
         for episode, steps in enumerate(pool.steps.tolist())
         for i, first in enumerate(starts(steps))
     ]
-    episode, _, first = np.array(places, dtype=np.int64).reshape(-1, 3).T
+    table = np.array(places, dtype=np.int64).reshape(-1, 3)
+    episode, first = table[:, 0].copy(), table[:, 2]
     rows = np.arange(COMMANDS + 1)[:, None] + pool.first_row[episode] + first
 
     def signal(name: str) -> Tensor:
@@ -141,7 +142,7 @@ def cut(pool: Pool) -> Windows:
         if name == "episode":
             return torch.from_numpy(episode)
         if name in pool.vehicles:
-            return torch.from_numpy(pool.vehicles[name][..., episode]).float()
+            return torch.from_numpy(np.take(pool.vehicles[name], episode, axis=-1)).float()
         values = signal(name)
         if name == "rotation":
             return values.view(3, 3, *values.shape[1:])

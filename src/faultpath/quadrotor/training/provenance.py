@@ -1,0 +1,96 @@
+"""Where a pool comes from: what decides every number of it, and what came of it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.training.flight import FlightSettings
+from faultpath.quadrotor.vehicle import VehicleRanges
+
+FORMAT = 1
+_DECISIVE = (
+    "quadrotor/training/controller.py",
+    "quadrotor/training/perturbation.py",
+    "quadrotor/training/flight.py",
+    "quadrotor/plant",
+    "quadrotor/wind.py",
+    "quadrotor/vehicle.py",
+    "quadrotor/state.py",
+    "quadrotor/so3.py",
+    "streams.py",
+)
+
+
+class Recipe(BaseModel):
+    """What decides every number of a pool."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: int = FORMAT
+    pool: str
+    episodes: int
+    seed: int
+    flight: FlightSettings = FlightSettings()
+    vehicle: VehicleRanges = VehicleRanges()
+    wind: dict[str, float | tuple[float, float]]
+    """Ranges and constants of the wind; empty in still air."""
+    code_sha256: str
+    """Of the files that draw and fly the episodes."""
+
+
+class Provenance(Recipe):
+    """A recipe, what it was cooked with, and what came of it."""
+
+    faultpath_version: str
+    packages: dict[str, str]
+    rows: int
+    vehicle_seconds: float
+    ended_early: int
+    """Episodes that diverged before their time was over."""
+    rows_sha256: str
+    episodes_sha256: str
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
+
+
+def provenance_path(path: Path) -> Path:
+    """Return where the provenance of the pool whose rows are in `path` stands."""
+    return path.with_suffix(".json")
+
+
+@cache
+def code_sha256() -> str:
+    """Return a hash of the files that draw and fly episodes: another code, another pool."""
+    package = files("faultpath")
+    parts = [package.joinpath(name) for name in _DECISIVE]
+    digest = hashlib.sha256()
+    while parts:
+        part = parts.pop()
+        if part.is_dir():
+            parts += sorted(part.iterdir(), key=lambda child: child.name)
+        elif part.name.endswith(".py"):
+            digest.update(part.name.encode() + part.read_bytes())
+    return digest.hexdigest()
+
+
+def read_provenance(path: Path) -> Provenance | None:
+    """Return the provenance of the pool at `path`, `None` without one; `UserError` if damaged."""
+    place = provenance_path(path)
+    try:
+        return Provenance.model_validate_json(place.read_bytes())
+    except FileNotFoundError:
+        return None
+    except (OSError, ValidationError) as error:
+        raise UserError(
+            f"{place} cannot be read as a pool's provenance: delete the pool and collect it again."
+        ) from error

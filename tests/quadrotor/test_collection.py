@@ -1,0 +1,183 @@
+"""What a pool of training episodes holds, whoever flies it and however often it is interrupted."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.quadrotor import wind
+from faultpath.quadrotor.training import collection, flight
+from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.flight import COMPONENTS
+from faultpath.quadrotor.training.pool import episodes_path, read_pool
+from faultpath.quadrotor.training.provenance import code_sha256, provenance_path, read_provenance
+
+SMALL = {"nominal": 5, "wind": 7}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def short():
+    """Ten steps an episode and three episodes a shard, in this process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(flight, "EPISODE_STEPS", 10)
+        patch.setattr(flight, "EPISODE_S", 0.5)
+        patch.setattr(collection, "EPISODE_STEPS", 10)
+        patch.setattr(collection, "SHARD", 3)
+        yield
+
+
+@pytest.fixture(scope="module")
+def pools(short, tmp_path_factory):
+    return collect(tmp_path_factory.mktemp("data"), workers=1, episodes=SMALL)
+
+
+def contents(paths):
+    every = [f(path) for path in paths.values() for f in (Path, episodes_path, provenance_path)]
+    return [path.read_bytes() for path in every]
+
+
+def channel(pool, name):
+    return pool.values[COMPONENTS.index(name)]
+
+
+def test_a_pool_has_a_row_for_each_control_instant_in_single_precision(pools):
+    for name, path in pools.items():
+        table = pq.ParquetFile(path).read(use_threads=False)
+        pool = read_pool(path)
+        assert table.column_names == ["episode", "step", *COMPONENTS]
+        assert {str(table.schema.field(name).type) for name in COMPONENTS} == {"float"}
+        assert len(pool.steps) == SMALL[name]
+        assert table.num_rows == (pool.steps + 1).sum() == pool.provenance.rows
+        expected = np.concatenate([np.arange(steps + 1) for steps in pool.steps])
+        assert np.array_equal(table.column("step").to_numpy(), expected)
+        assert (np.diff(table.column("episode").to_numpy()[expected == 0]) == 1).all()
+
+
+def test_every_state_and_command_is_finite_and_only_an_episode_s_end_has_no_command(pools):
+    for path in pools.values():
+        pool = read_pool(path)
+        last = pool.first_row + pool.steps
+        for name in COMPONENTS:
+            missing = np.flatnonzero(np.isnan(channel(pool, name)))
+            has_none = "command" in name or name == "thrust_n"
+            assert missing.tolist() == (last.tolist() if has_none else [])
+
+
+def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(pools):
+    still, windy = read_pool(pools["nominal"]), read_pool(pools["wind"])
+    for axis, name in enumerate(("wind_x_mps", "wind_y_mps", "wind_z_mps")):
+        assert not channel(still, name).any()
+        for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
+            series = wind.pool_series(0, episode, 6.1)[:, axis]
+            expected = series[: 25 * steps + 1 : 25].astype(np.float32)
+            assert np.array_equal(channel(windy, name)[first : first + steps + 1], expected)
+
+
+def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
+    monkeypatch.setattr(collection, "SHARD", 4)
+    again = collect(tmp_path, workers=1, episodes=SMALL)
+    for name, path in pools.items():
+        one, two = read_pool(path), read_pool(again[name])
+        assert np.array_equal(one.values, two.values, equal_nan=True)
+        assert np.array_equal(one.steps, two.steps)
+        assert all(np.array_equal(one.vehicles[key], two.vehicles[key]) for key in one.vehicles)
+
+
+def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, tmp_path):
+    class Interrupted(Exception):
+        pass
+
+    def interrupt(done, _):
+        if done > 0:
+            raise Interrupted
+
+    with pytest.raises(Interrupted):
+        collect(tmp_path, workers=1, episodes=SMALL, progress=interrupt)
+    seen = []
+    paths = collect(tmp_path, workers=1, episodes=SMALL, progress=lambda *told: seen.append(told))
+    assert seen[0] == (3 * 6.0, 12 * 6.0)
+    assert seen[-1] == (12 * 6.0, 12 * 6.0)
+    assert contents(paths) == contents(pools)
+    assert not any(path.is_dir() for path in tmp_path.iterdir())
+
+
+def test_a_killed_collection_of_two_workers_ends_as_one_of_this_process(tmp_path, monkeypatch):
+    monkeypatch.setattr(flight, "EPISODE_S", 6.0)
+    monkeypatch.setattr(flight, "EPISODE_STEPS", 120)  # other processes fly whole episodes
+    monkeypatch.setattr(collection, "EPISODE_STEPS", 120)
+    monkeypatch.setattr(collection, "SHARD", 1)
+    killed, whole = tmp_path / "killed", tmp_path / "whole"
+    script = (
+        "from pathlib import Path; from faultpath.quadrotor.training import collection;"
+        "collection.SHARD = 1;"
+        f"collection.collect(Path({str(killed)!r}), ('wind',), 2, {{'wind': 3}})"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script])
+    while process.poll() is None and not list(killed.glob(".*/*.rows.parquet")):
+        time.sleep(0.01)
+    process.send_signal(signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    finished = collect(killed, ("wind",), 1, {"wind": 3})
+    assert contents(finished) == contents(collect(whole, ("wind",), 1, {"wind": 3}))
+
+
+def test_a_pool_that_is_there_is_kept(pools, tmp_path):
+    first = collect(tmp_path, pools=("nominal",), workers=1, episodes=SMALL)["nominal"]
+    stamp = first.stat().st_mtime_ns
+    seen = []
+    collect(tmp_path, ("nominal",), 1, SMALL, progress=lambda *told: seen.append(told))
+    assert first.stat().st_mtime_ns == stamp
+    assert seen == [(0.0, 0.0)]
+
+
+def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):
+    path = collect(tmp_path, ("nominal",), 1, SMALL, seed=1)["nominal"]
+    assert not np.array_equal(
+        read_pool(path).values[:, 0], read_pool(pools["nominal"]).values[:, 0]
+    )
+    with pytest.raises(UserError, match="collected with another 'seed'"):
+        collect(tmp_path, ("nominal",), 1, SMALL, seed=2)
+
+
+def test_provenance_says_how_the_pool_was_made(pools):
+    for name, path in pools.items():
+        told = json.loads(provenance_path(path).read_text())
+        assert told["pool"] == name
+        assert told["seed"] == 0
+        assert told["episodes"] == SMALL[name]
+        assert told["flight"]["controller"]["speed_mps"]
+        assert told["flight"]["perturbation"]["correlation"]
+        assert told["vehicle"]["mass"] == 0.5
+        assert bool(told["wind"]) == (name == "wind")
+        assert told["code_sha256"] == code_sha256()
+        assert {"numpy", "torch", "pyarrow"} <= told["packages"].keys()
+        assert told["vehicle_seconds"] <= SMALL[name] * 6.0
+        assert told["ended_early"] == (read_pool(path).steps < 10).sum()
+        assert read_provenance(path) == read_pool(path).provenance
+
+
+def test_mistakes_are_told(pools, tmp_path):
+    with pytest.raises(UserError, match="no pool 'storm': choose from nominal, wind"):
+        collect(tmp_path, pools=("storm",))
+    with pytest.raises(UserError, match="cannot have 0 episodes"):
+        collect(tmp_path, episodes={"wind": 0})
+    with pytest.raises(UserError, match="no finished pool"):
+        read_pool(tmp_path / "nominal.parquet")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UserError, match="choose a folder"):
+        collect(tmp_path / "file")
+
+
+@pytest.mark.parametrize("damaged", ["nominal.parquet", "nominal.episodes.parquet", "nominal.json"])
+def test_a_damaged_pool_is_not_read(damaged, tmp_path):
+    path = collect(tmp_path, ("nominal",), 1, {"nominal": 1})["nominal"]
+    (tmp_path / damaged).write_bytes(b"?" + (tmp_path / damaged).read_bytes()[1:])
+    with pytest.raises(UserError, match="collect it again"):
+        read_pool(path)

@@ -1,0 +1,168 @@
+"""Windows: which states and commands they hold, and how they are parted."""
+
+from dataclasses import fields
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.quadrotor import wind
+from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.pool import read_pool
+from faultpath.quadrotor.training.windows import (
+    COMMANDS,
+    HISTORY,
+    HORIZON,
+    STRIDE,
+    Windows,
+    starts,
+    windows_of,
+)
+from faultpath.quadrotor.vehicle import CONTROL_DT_S
+
+torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def pools(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("data")
+    return collect(folder, workers=1, episodes={"nominal": 40, "wind": 40})
+
+
+@pytest.fixture(scope="module")
+def nominal(pools):
+    return windows_of(pools["nominal"])
+
+
+@pytest.fixture(scope="module")
+def windy(pools):
+    return windows_of(pools["wind"])
+
+
+def test_a_window_is_twelve_steps_of_history_and_twenty_ahead():
+    assert (HISTORY, HORIZON, COMMANDS) == (12, 20, 32)
+
+
+def test_windows_have_the_shapes_that_models_expect(windy):
+    count = len(windy)
+    shapes = {field.name: tuple(getattr(windy, field.name).shape) for field in fields(Windows)[:-1]}
+    assert shapes == {
+        "position": (3, 33, count),
+        "velocity": (3, 33, count),
+        "rotation": (3, 3, 33, count),
+        "rate": (3, 33, count),
+        "command": (4, 32, count),
+        "wind_mps": (3, 33, count),
+        "mass_kg": (count,),
+        "thrust_scale": (count,),
+        "inertia_kgm2": (3, count),
+        "torque_scale": (count,),
+        "motor_time_constant_s": (count,),
+        "drag_kgps": (3, count),
+        "motor_thrust_n": (33, count),
+        "episode": (count,),
+    }
+    for field in fields(Windows)[:-1]:
+        tensor = getattr(windy, field.name)
+        assert tensor.dtype == (torch.int64 if field.name == "episode" else torch.float32)
+        assert torch.isfinite(tensor).all()
+        assert tensor.is_contiguous()
+
+
+def test_a_full_episode_has_four_windows_spread_from_end_to_end():
+    assert starts(120) == [0, 29, 58, 88]
+
+
+@pytest.mark.parametrize("steps", range(121))
+def test_shorter_episodes_have_fewer_windows_and_none_reaches_beyond(steps):
+    first = starts(steps)
+    assert len(first) == (0 if steps < 32 else 1 + (steps - 32) // STRIDE)
+    assert all(b - a >= STRIDE for a, b in pairwise(first))
+    assert all(0 <= start <= steps - 32 for start in first)
+
+
+def test_command_k_acts_from_state_k_to_state_k_plus_1(nominal):
+    """The motors' sum approaches the collective of command k, and of no other, with their lag.
+
+    The sum is that of a single motor wherever none is at its limit, which is nearly everywhere.
+    """
+    left = torch.exp(-CONTROL_DT_S / nominal.motor_time_constant_s)
+
+    def error(k, command):
+        expected = torch.lerp(nominal.command[0, command], nominal.motor_thrust_n[k], left)
+        return float((expected - nominal.motor_thrust_n[k + 1]).abs().median())
+
+    for k in (1, 11, 12, 30):
+        assert error(k, k) < 1e-4
+        assert min(error(k, k - 1), error(k, k + 1)) > 0.1
+
+
+def test_position_is_the_integral_of_velocity(nominal):
+    mean = 0.5 * (nominal.velocity[:, 1:] + nominal.velocity[:, :-1])
+    error = nominal.position[:, 1:] - nominal.position[:, :-1] - mean * 0.05
+    assert error.abs().max() < 5e-3
+
+
+def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, pools):
+    assert not nominal.wind_mps.any()
+    steps = read_pool(pools["wind"]).steps
+    for w in (0, 5, len(windy) - 1):
+        episode, number = int(windy.episode[w]), int(windy.ids[w].rpartition("/")[2])
+        first = starts(int(steps[episode]))[number]
+        series = wind.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
+        assert np.array_equal(windy.wind_mps[..., w].T.numpy(), series.astype(np.float32))
+
+
+def test_ids_name_pool_episode_and_window(windy):
+    assert windy.ids[:4] == tuple(f"wind/00000/{i}" for i in range(4))
+    assert len(set(windy.ids)) == len(windy)
+    assert [int(name.split("/")[1]) for name in windy.ids] == windy.episode.tolist()
+
+
+def test_windows_carry_the_vehicle_of_their_episode(windy, pools):
+    pool = read_pool(pools["wind"])
+    for name in ("mass_kg", "drag_kgps", "inertia_kgm2"):
+        expected = pool.vehicles[name][..., windy.episode].astype(np.float32)
+        assert np.array_equal(getattr(windy, name).numpy(), expected)
+
+
+def test_no_episode_is_on_both_sides_of_the_split(nominal, windy):
+    both = Windows.join([nominal, windy])
+    training, validation = both.split(0.3)
+    episodes = [{name.rpartition("/")[0] for name in part.ids} for part in (training, validation)]
+    assert not episodes[0] & episodes[1]
+    assert len(training) + len(validation) == len(both)
+    assert len(episodes[1]) == pytest.approx(0.3 * 80, abs=13)
+
+
+def test_the_split_of_an_episode_does_not_depend_on_the_others(nominal, windy):
+    _, validation = Windows.join([nominal, windy]).split(0.3)
+    _, alone = windy.split(0.3)
+    _, fewer = windy.take(torch.arange(20)).split(0.3)
+    assert alone.ids == tuple(name for name in validation.ids if name.startswith("wind/"))
+    assert set(fewer.ids) == set(alone.ids) & set(windy.ids[:20])
+
+
+def test_the_usual_split_keeps_about_one_episode_in_twenty():
+    count = 4000
+    nothing = torch.zeros(count)
+    shape = {field.name: nothing for field in fields(Windows)[:-1]}
+    windows = Windows(**shape, ids=tuple(f"wind/{i:05d}/0" for i in range(count)))
+    training, validation = windows.split()
+    assert len(validation) == pytest.approx(200, abs=60)
+    assert len(training) == count - len(validation)
+
+
+def test_take_and_join_keep_windows_whole(nominal, windy):
+    both = Windows.join([nominal, windy])
+    index = torch.tensor([len(nominal) + 3, 1])
+    picked = both.take(index)
+    assert picked.ids == (windy.ids[3], nominal.ids[1])
+    for field in fields(Windows)[:-1]:
+        tensor = getattr(picked, field.name)
+        assert torch.equal(tensor[..., 0], getattr(windy, field.name)[..., 3])
+        assert torch.equal(tensor[..., 1], getattr(nominal, field.name)[..., 1])
+    state = picked.state(12)
+    assert torch.equal(state.rotation, picked.rotation[:, :, 12])
+    assert state.batch == (2,)
