@@ -22,7 +22,7 @@ class _NoWind:
     """Sensors whose true wind is a hole; who reads it shows."""
 
     @classmethod
-    def read(cls, world):
+    def read(cls, world, depth=None):
         sensors = Sensors.read(world)
         hole = torch.full_like(sensors.true_wind.value, torch.nan)
         return replace(sensors, true_wind=Reading(hole, "true_wind", sensors.true_wind.step))
@@ -30,7 +30,7 @@ class _NoWind:
 
 class _NoPhysics:
     @classmethod
-    def read(cls, world):
+    def read(cls, world, depth=None):
         sensors = Sensors.read(world)
         old = sensors.readings["physics"]
         hole = Reading(torch.full_like(old.value, torch.nan), old.source, old.step)

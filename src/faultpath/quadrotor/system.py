@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
+from typing import Self
 
 import torch
 from torch import Tensor
@@ -35,7 +36,7 @@ from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, Syst
 def create(**options: str) -> System:
     """Build the quadrotor from options of the command line; `UserError` for a wrong one."""
     torch.set_num_threads(1)  # a block is small: a second thread costs more than it brings
-    return Quadrotor(QuadrotorOptions.parse(**options))
+    return Quadrotor.parse(**options)
 
 
 class Quadrotor(System):
@@ -53,6 +54,11 @@ class Quadrotor(System):
             name: variant(wiring, quadrotor_interface(), options)
             for name, wiring in self._wirings.items()
         }
+
+    @classmethod
+    def parse(cls, **options: str) -> Self:
+        """Return the system of some options; see `QuadrotorOptions.parse`."""
+        return cls(QuadrotorOptions.parse(**options))
 
     @property
     def interface(self) -> Interface:
@@ -78,7 +84,7 @@ class Quadrotor(System):
 
     def floor_plan(self, scene: str) -> FloorPlan:
         """See `System.floor_plan`."""
-        return floor_plan(self._scene(scene), free_space=self.options.free_space)
+        return floor_plan(self.scene(scene), free_space=self.options.free_space)
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`."""
@@ -99,7 +105,7 @@ class Quadrotor(System):
 
     def flight(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Flight:
         """Return a flight over some scenes, ready to start."""
-        records = [self._scene(scene) for scene in scenes]
+        records = [self.scene(scene) for scene in scenes]
         world = World(records, self.options.wind, self.options.free_space)
         navigator = self._navigator(variant, records, taps, seed, world)
         return Flight(world, navigator, self._camera(records), taps)
@@ -130,7 +136,7 @@ class Quadrotor(System):
             return TrueClearance(_field(tuple(scenes), self.options.free_space))
         return SeenClearance(DepthClearance(clearance_model()), taps.for_module("perception"))
 
-    def _scene(self, scene: str) -> Scene:
+    def scene(self, scene: str) -> Scene:
         """Return a scene of a library that was asked for before, or of a frozen one."""
         if scene not in self._scenes:
             self.library(scene.rpartition("/")[0])

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.training.flight import FlightSettings
@@ -37,7 +37,10 @@ class Recipe(BaseModel):
     pool: str
     episodes: int
     seed: int
-    flight: FlightSettings = FlightSettings()
+    flight: FlightSettings | None = FlightSettings()
+    """`None` for a pool that was recorded in closed loop."""
+    closed_loop: dict[str, JsonValue] | None = None
+    """What flew where in closed loop."""
     vehicle: VehicleRanges = VehicleRanges()
     wind: dict[str, float | tuple[float, float]]
     """Ranges and constants of the wind; empty in still air."""

@@ -1,0 +1,197 @@
+"""Closed-loop flights as a pool: what the trajectory-trained reconstruction learns from.
+
+The wind-conditioned predictor flies selection scenes 0 to 69 among their obstacles, with its wind
+input at zero and with the true wind, at every windy level (paper, Section V-A: "uses selection
+scenes 0-69"). Clearance is the geometry's, so that the pool does not depend on the depth model.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from itertools import product
+from multiprocessing import get_context
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+import faultpath
+from faultpath.execution.provenance import packages
+from faultpath.quadrotor.system import Quadrotor
+from faultpath.quadrotor.training.flight import COMPONENTS, Flights
+from faultpath.quadrotor.training.pool import (
+    encode_episodes,
+    encode_rows,
+    join,
+    steps_of,
+    vehicle_seconds,
+    write_pool,
+)
+from faultpath.quadrotor.training.provenance import Provenance
+from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
+from faultpath.quadrotor.world import CONTROL_STEPS, World
+from faultpath.store import atomic
+from faultpath.store.lock import locked
+from faultpath.taps import Taps
+
+POOL = "trajectory"
+LIBRARY = "selection"
+SCENES = 70
+LEVELS = ("L1", "L2", "L3")
+VARIANTS = ("wm-a-wind/zero-wind", "wm-a-wind/true-wind")
+SEED = 0
+BLOCK = 14
+
+Progress = Callable[[float, float], None]
+
+
+@dataclass(frozen=True)
+class Shard:
+    """Flights of one block of scenes, and its place in the pool."""
+
+    level: str
+    variant: str
+    first: int
+
+    @property
+    def name(self) -> str:
+        """Name of its files, without their ending; sorted, they are in the pool's order."""
+        return f"{self.level}-{VARIANTS.index(self.variant)}-{self.first:03d}"
+
+    @property
+    def episodes(self) -> range:
+        """Numbers of its flights in the pool."""
+        arm = LEVELS.index(self.level) * len(VARIANTS) + VARIANTS.index(self.variant)
+        return range(arm * SCENES + self.first, arm * SCENES + self.first + BLOCK)
+
+
+def shards() -> list[Shard]:
+    """Return every shard of the pool, in its order."""
+    return [Shard(*parts) for parts in product(LEVELS, VARIANTS, range(0, SCENES, BLOCK))]
+
+
+def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> Path:
+    """Fly and write the pool, from wherever an earlier call left it; return its file.
+
+    `progress` is called with the flights done and those in all. Raises `UserError` where the
+    predictor's checkpoint is missing.
+    """
+    path = folder / f"{POOL}.parquet"
+    place = folder / f".{POOL}-{_recipe()[:16]}"
+    place.mkdir(parents=True, exist_ok=True)
+    with locked(folder, lambda text: None):
+        atomic.sweep(place)
+        todo = [shard for shard in shards() if not (place / f"{shard.name}.rows").exists()]
+        done = len(shards()) - len(todo)
+        for finished in (0, *_fly_all(todo, place, workers)):
+            done += finished
+            if progress is not None:
+                progress(done * BLOCK, len(shards()) * BLOCK)
+        _assemble(path, place)
+    return path
+
+
+def _fly_all(todo: Sequence[Shard], place: Path, workers: int) -> Iterator[int]:
+    if workers < 2:
+        for shard in todo:
+            fly(shard, place)
+            yield 1
+        return
+    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
+    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+        for _ in pool.map(fly, todo, [place] * len(todo)):
+            yield 1
+
+
+@torch.inference_mode()
+def fly(shard: Shard, place: Path) -> None:
+    """Fly a shard and write its two files, the rows last."""
+    torch.set_num_threads(1)
+    system = Quadrotor.parse(wind=shard.level, clearance="true")
+    scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
+    scenes = scenes[shard.first : shard.first + BLOCK]
+    variant = system.variants[shard.variant]
+    taps = Taps(
+        system.interface,
+        scenes=scenes,
+        dt_s=system.control_dt_s,
+        seed=SEED,
+        bindings=variant.bindings,
+        consumers=variant.consumers,
+        privileged=variant.privileged,
+    )
+    flight = system.flight(shard.variant, scenes, taps, SEED)
+    world = flight.world
+    rows = [_row(world, command) for command in flight.commands()]
+    rows.append(_row(world, torch.full((4, len(world.lanes)), torch.nan)))
+    flights = _flights(torch.stack(rows, 1), world, system, scenes)
+    atomic.write(place / f"{shard.name}.episodes", encode_episodes(shard.episodes, flights))
+    atomic.write(place / f"{shard.name}.rows", encode_rows(shard.episodes, flights))
+
+
+def _row(world: World, command: Tensor) -> Tensor:
+    """Return what is recorded at an instant, `[C, L]`, in the order of `COMPONENTS`."""
+    state = world.state
+    return torch.cat(
+        [
+            state.position,
+            state.velocity,
+            state.rotation.flatten(0, 1),
+            state.rate,
+            command,
+            world.wind_mps,
+            world.plant_state.thrusts.sum(0, keepdim=True),
+        ]
+    ).float()
+
+
+def _flights(rows: Tensor, world: World, system: Quadrotor, scenes: Sequence[str]) -> Flights:
+    """Cut flights off at the last instant before their trial ended."""
+    assert rows.shape[0] == len(COMPONENTS)
+    values = np.full((len(COMPONENTS), CONTROL_STEPS + 1, len(scenes)), np.nan, np.float32)
+    values[:, : rows.shape[1]] = rows[..., : len(scenes)].numpy()
+    steps = np.floor(world.progress.time_s.numpy()[: len(scenes)] * CONTROL_RATE_HZ + 1e-6)
+    vehicles = tuple(system.scene(scene).vehicle for scene in scenes)
+    return Flights(values, steps.astype(np.int64), vehicles)
+
+
+def _recipe() -> str:
+    """Hash of what decides the pool: the system's code and checkpoints, and the settings here."""
+    system = Quadrotor.parse(clearance="true")
+    content = repr((system.fingerprint(), LIBRARY, SCENES, LEVELS, VARIANTS, SEED, BLOCK))
+    return hashlib.sha256(content.encode()).hexdigest()
+
+
+def _assemble(path: Path, place: Path) -> None:
+    rows = join((place / f"{shard.name}.rows").read_bytes() for shard in shards())
+    episodes = join((place / f"{shard.name}.episodes").read_bytes() for shard in shards())
+    steps = steps_of(episodes)
+    provenance = Provenance(
+        pool=POOL,
+        episodes=len(steps),
+        seed=SEED,
+        flight=None,
+        closed_loop={
+            "library": LIBRARY,
+            "scenes": SCENES,
+            "levels": list(LEVELS),
+            "variants": list(VARIANTS),
+        },
+        wind={},
+        code_sha256=_recipe(),
+        faultpath_version=faultpath.__version__,
+        packages=packages(),
+        rows=int(steps.sum()) + len(steps),
+        vehicle_seconds=vehicle_seconds(steps),
+        ended_early=0,
+        rows_sha256=hashlib.sha256(rows).hexdigest(),
+        episodes_sha256=hashlib.sha256(episodes).hexdigest(),
+    )
+    write_pool(path, rows, episodes, provenance)
+    for shard in shards():
+        for ending in ("rows", "episodes"):
+            (place / f"{shard.name}.{ending}").unlink()
+    place.rmdir()
