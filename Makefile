@@ -15,7 +15,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit test lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit train test lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -24,9 +24,12 @@ setup: $(STAMPS)/dev ## Create .venv with everything needed to develop
 
 setup-runtime: $(STAMPS)/runtime ## Create .venv with what an audit needs
 
-audit: $(STAMPS)/runtime ## Audit the quadrotor's observer; more options in ARGS="..."
-	$(BIN)/faultpath audit quadrotor --baseline zero-wind --repair observer \
+audit: $(STAMPS)/runtime ## Audit a repair of the quadrotor's wind reconstruction; more in ARGS="..."
+	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc \
 	  --fault calibration=+0.1 --library held-out --wind L3 $(ARGS)
+
+train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the quadrotor
+	$(BIN)/faultpath train quadrotor $(ARGS)
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)

@@ -39,8 +39,8 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     assert question.library_hash == json.loads((tmp_path / "mine.json").read_text())["content_hash"]
     assert [path.name for path in read_record(tmp_path / "run").paths] == [
         "correct",
-        "dob",
         "predictor",
+        "reconstruction",
         "shared",
     ]
 

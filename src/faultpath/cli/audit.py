@@ -27,13 +27,18 @@ def command(
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
     scenes: Annotated[int | None, typer.Option(help="Run only the first so many scenes.")] = None,
-    seeds: Annotated[str, typer.Option(help="Seeds of the planner's noise.")] = "0",
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the noise; quadrotor: also of the trained models.")
+    ] = "0",
     wind: Annotated[str | None, typer.Option(help="Quadrotor: wind level, L0 to L3.")] = None,
     environment: Annotated[
         str | None, typer.Option(help="Quadrotor: obstacles or free-space.")
     ] = None,
     predictor: Annotated[
-        str | None, typer.Option(help="Quadrotor: dki, dki-drag or true-parameter.")
+        str | None, typer.Option(help="Quadrotor: wm-a-wind (default), dki, dki-drag, …")
+    ] = None,
+    clearance: Annotated[
+        str | None, typer.Option(help="Quadrotor: depth (default among obstacles) or true.")
     ] = None,
     planner: Annotated[str | None, typer.Option(help="Quadrotor: terminal or running.")] = None,
     set_: Annotated[
@@ -56,6 +61,7 @@ def command(
         "wind": wind,
         "environment": environment,
         "predictor": predictor,
+        "clearance": clearance,
         "planner": planner,
     }
     options = settings(set_ or []) | {k: v for k, v in named.items() if v is not None}
