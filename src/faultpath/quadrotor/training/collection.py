@@ -32,7 +32,8 @@ from faultpath.store.lock import locked
 
 EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
 SHARD = 1024
-"""Episodes flown together: the plant's cost a vehicle falls with the batch up to about here."""
+"""Episodes flown together. The plant's cost a vehicle still falls beyond this; a larger shard would
+need more memory for its winds, and a kill would lose more."""
 
 Progress = Callable[[float, float], None]
 """Called with the vehicle-seconds done and those in all; its first call counts what was there."""
