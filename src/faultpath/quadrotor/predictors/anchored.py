@@ -6,7 +6,11 @@ from torch import Tensor
 
 from faultpath.quadrotor.predictors.base import History, Memory, Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
-from faultpath.quadrotor.predictors.network import LatentNetwork, history_features
+from faultpath.quadrotor.predictors.network import (
+    FoldedNetwork,
+    LatentNetwork,
+    history_features,
+)
 from faultpath.quadrotor.state import State
 
 HIDDEN = 64  # paper, Section IV-A
@@ -20,6 +24,7 @@ ANGULAR_BOUND_RADPS2 = 40.0
 
 @dataclass(frozen=True)
 class _Memory:
+    network: FoldedNetwork
     latent: Tensor
     constants: Constants
     mass_kg: Tensor
@@ -52,16 +57,18 @@ class AnchoredPredictor(Predictor):
         """Start every candidate with the history code."""
         assert inputs.code is not None
         assert inputs.thrust_mass_kg is not None
-        return _Memory(inputs.code, self._kinematics.begin(inputs), inputs.thrust_mass_kg)
+        return _Memory(
+            self.network.fold(), inputs.code, self._kinematics.begin(inputs), inputs.thrust_mass_kg
+        )
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
         now: _Memory = memory
-        latent, outputs = self.network.roll(now.latent, state, command, now.mass_kg)
+        latent, outputs = now.network.roll(now.latent, state, command, now.mass_kg)
         bounded = outputs.tanh()
         residual = Residual(
             bounded[:3] * LINEAR_BOUND_MPS2,
             bounded[3:] * ANGULAR_BOUND_RADPS2,
         )
         ahead = self._kinematics.advance(state, command, now.constants, residual)
-        return ahead, _Memory(latent, now.constants, now.mass_kg)
+        return ahead, _Memory(now.network, latent, now.constants, now.mass_kg)

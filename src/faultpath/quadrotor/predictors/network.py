@@ -6,10 +6,10 @@ other columns are, as long as their number is a multiple of 32.
 """
 
 import math
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
-from torch.nn import functional
 
 from faultpath.quadrotor.predictors.base import Calibration, History
 from faultpath.quadrotor.state import State
@@ -103,13 +103,47 @@ class LatentNetwork(nn.Module):
             latent = self.encoder(self.standardise(row), latent)
         return latent
 
-    def advance(self, latent: Tensor, features: Tensor) -> tuple[Tensor, Tensor]:
-        """Return the next latent `[32, N]` and the outputs `[outputs, N]` of raw `features`."""
-        given = self.standardise(features)
-        action = given[STATE_FEATURES:BASE_FEATURES]
-        latent = self.cell(functional.relu(self.embed(action)), latent)
-        hidden = functional.relu(self.first(torch.cat((latent, given))))
-        return latent, self.last(functional.relu(self.second(hidden)))
+    def fold(self) -> "FoldedNetwork":
+        """Return the network as the horizon loop runs it, with the weights of this moment."""
+        inverse = 1 / self.feature_std
+        acted = slice(STATE_FEATURES, BASE_FEATURES)
+        embed = _folded(
+            self.embed.weight, self.embed.bias, self.feature_mean[acted], inverse[acted]
+        )
+        given, kept = self.cell.from_input, self.cell.from_latent
+        split = 2 * LATENT
+        # Columns of the gates: embedded action, one, latent.
+        gates = torch.cat(
+            (given.weight[:split], given.bias[:split] + kept.bias[:split], kept.weight[:split]), 1
+        )
+        latent, weight = self.first.weight[:, :LATENT], self.first.weight[:, LATENT:]
+        first = _folded(weight, self.first.bias, self.feature_mean, inverse)
+        return FoldedNetwork(
+            embed=_with_one(embed),
+            gates=gates,
+            candidate=torch.cat((given.weight[split:], given.bias[split:]), 1),
+            remembered=torch.cat((kept.bias[split:], kept.weight[split:]), 1),
+            first=_with_one(torch.cat((latent, first), 1)),
+            second=_with_one(torch.cat((self.second.weight, self.second.bias), 1)),
+            last=torch.cat((self.last.weight, self.last.bias), 1),
+        )
+
+
+@dataclass(frozen=True)
+class FoldedNetwork:
+    """The step network as plain matrices over raw features.
+
+    Standardisation is folded into the weights, and biases are columns that meet a row of ones, so
+    that a layer is one product and no copy. Hidden layers pass the one on in their last row.
+    """
+
+    embed: Tensor  # (action, 1) -> (embedding, 1)
+    gates: Tensor  # (embedding, 1, latent) -> (reset, update)
+    candidate: Tensor  # (embedding, 1) -> candidate's part of the input
+    remembered: Tensor  # (1, latent) -> candidate's part of the latent
+    first: Tensor  # (latent, features, 1) -> (hidden, 1)
+    second: Tensor
+    last: Tensor
 
     def roll(
         self,
@@ -123,8 +157,33 @@ class LatentNetwork(nn.Module):
         batch = command.shape[1:]
         motion = (state.velocity, state.rotation, state.rate)
         given = features(*motion, command, mass_kg, conditioning).flatten(1)
-        ahead, outputs = self.advance(latent.expand(LATENT, *batch).flatten(1), given)
-        return ahead.unflatten(1, batch), outputs.unflatten(1, batch)
+        ones = given.new_ones(1, given.shape[1])
+        latent = latent.expand(LATENT, *batch).flatten(1)
+
+        action = torch.cat((given[STATE_FEATURES:BASE_FEATURES], ones))
+        known = torch.cat(((self.embed @ action).relu_(), latent))
+        reset, update = (self.gates @ known).sigmoid_().split(LATENT)
+        split = ACTION_EMBEDDING + 1
+        remembered = self.remembered @ known[split - 1 :]
+        candidate = torch.addcmul(self.candidate @ known[:split], reset, remembered).tanh_()
+        latent = torch.lerp(candidate, latent, update)
+
+        hidden = (self.first @ torch.cat((latent, given, ones))).relu_()
+        outputs = self.last @ (self.second @ hidden).relu_()
+        return latent.unflatten(1, batch), outputs.unflatten(1, batch)
+
+
+def _folded(weight: Tensor, bias: Tensor, mean: Tensor, inverse_std: Tensor) -> Tensor:
+    """Return weights and bias over raw features, as columns for (features, 1)."""
+    scaled = weight * inverse_std.T
+    return torch.cat((scaled, bias - scaled @ mean), 1)
+
+
+def _with_one(weights: Tensor) -> Tensor:
+    """Add the row that passes the last input, a one, on."""
+    row = torch.zeros_like(weights[:1])
+    row[0, -1] = 1
+    return torch.cat((weights, row))
 
 
 def features(

@@ -13,7 +13,11 @@ from faultpath.quadrotor.predictors.base import (
     Predictor,
     PredictorInputs,
 )
-from faultpath.quadrotor.predictors.network import LatentNetwork, history_features
+from faultpath.quadrotor.predictors.network import (
+    FoldedNetwork,
+    LatentNetwork,
+    history_features,
+)
 from faultpath.quadrotor.state import State
 
 HIDDEN = 128  # paper, Section IV-A
@@ -32,6 +36,7 @@ class UnanchoredNetwork(LatentNetwork):
 
 @dataclass(frozen=True)
 class _Memory:
+    network: FoldedNetwork
     latent: Tensor
     mass_kg: Tensor
     conditioning: Calibration
@@ -67,12 +72,12 @@ class UnanchoredPredictor(Predictor):
         assert inputs.code is not None
         assert inputs.thrust_mass_kg is not None
         assert inputs.conditioning is not None
-        return _Memory(inputs.code, inputs.thrust_mass_kg, inputs.conditioning)
+        return _Memory(self.network.fold(), inputs.code, inputs.thrust_mass_kg, inputs.conditioning)
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
         now: _Memory = memory
-        latent, outputs = self.network.roll(
+        latent, outputs = now.network.roll(
             now.latent, state, command, now.mass_kg, now.conditioning
         )
         scale = self.network.increment_std.reshape(-1, *(1,) * (outputs.ndim - 1))
@@ -83,4 +88,4 @@ class UnanchoredPredictor(Predictor):
             so3.compose(state.rotation, so3.exp(turned)),
             state.rate + spun,
         )
-        return ahead, _Memory(latent, now.mass_kg, now.conditioning)
+        return ahead, _Memory(now.network, latent, now.mass_kg, now.conditioning)
