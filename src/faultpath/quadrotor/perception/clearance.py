@@ -7,6 +7,7 @@ query costs no more than with fixed weights: what depends on the code is compute
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import torch
 from torch import Tensor, nn
@@ -74,14 +75,23 @@ class ClearanceModel(nn.Module):
             nn.Linear(_DENSE, CODE),
         )
         widths = (9, HIDDEN, HIDDEN, 1)
-        self._shapes = [
-            (after - (after == HIDDEN), before)
-            for before, after in zip(widths[:-1], widths[1:], strict=True)
-        ]
+        self._shapes = [(after - (after == HIDDEN), before) for before, after in pairwise(widths)]
         self.layers = nn.ModuleList(nn.Linear(CODE, rows * cols) for rows, cols in self._shapes)
-        for layer, (_, fan_in), scale in zip(self.layers, self._shapes, _SCALE, strict=True):
-            nn.init.normal_(layer.weight, std=scale / CODE**0.5)
-            nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5)
+
+    def initialise(self, generator: torch.Generator) -> None:
+        """Draw fresh weights.
+
+        The biases of the layers that make weights are the query network's weights for a blank
+        code, drawn after He (2015); the code moves them.
+        """
+        for module in self.encoder:
+            if isinstance(module, nn.Conv2d | nn.Linear):
+                nn.init.kaiming_uniform_(module.weight, nonlinearity="relu", generator=generator)
+                assert module.bias is not None
+                nn.init.zeros_(module.bias)
+        for layer, (_, fan_in), scale in zip(self._makers(), self._shapes, _SCALE, strict=True):
+            nn.init.normal_(layer.weight, std=scale / CODE**0.5, generator=generator)
+            nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5, generator=generator)
 
     def encode(self, depth: Tensor) -> Tensor:
         """Return the codes of images.
@@ -135,11 +145,14 @@ class ClearanceModel(nn.Module):
         ones = torch.ones_like(hidden[:, :1])
         first, second, last = (
             layer(codes).unflatten(1, shape)
-            for layer, shape in zip(self.layers, self._shapes, strict=True)
+            for layer, shape in zip(self._makers(), self._shapes, strict=True)
         )
         for weight in (first, second):
             hidden = torch.cat((torch.bmm(weight, hidden).relu(), ones), 1)
         return torch.bmm(last, hidden)[:, 0]
+
+    def _makers(self) -> list[nn.Linear]:
+        return [layer for layer in self.layers if isinstance(layer, nn.Linear)]
 
     def _weights(self, code: Tensor) -> list[Tensor]:
         """Return each layer's weights `[S, rows, columns]`, with the row that stays one."""
@@ -147,7 +160,7 @@ class ClearanceModel(nn.Module):
         padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
         padded[:, :count] = code
         found = []
-        for layer, (rows, columns) in zip(self.layers, self._shapes, strict=True):
+        for layer, (rows, columns) in zip(self._makers(), self._shapes, strict=True):
             made = torch.mm(layer.weight, padded).add_(layer.bias[:, None])[:, :count].T
             made = made.reshape(count, rows, columns)
             if rows > 1:

@@ -4,8 +4,8 @@ The image is read as a surface: neighbouring pixels are joined by triangles. Whe
 together a triangle lies on what is seen; where they part it spans the gap along the rays, the
 frontier between what is seen to be free and what is hidden. The two need no telling apart: the
 surface bounds the known free space. Behind it space counts as occupied, as in sdf-nmpc
-(ntnu-arl/sdf-nmpc: a truncated signed distance in [-0.3, 1] m over one depth image). Triangles whose
-corners all read the range are no surface: beyond the range space is free.
+(ntnu-arl/sdf-nmpc: a signed distance truncated to [-0.3, 1] m over one depth image). Triangles
+whose corners all read the range are no surface: beyond the range space is free.
 
 Outside the field of view only what is seen counts: the value is the positive distance to
 the surface, and unseen space by itself costs nothing. Otherwise the vehicle could never turn,
@@ -50,7 +50,7 @@ def visible_distance(depth: Tensor, points: Tensor) -> Tensor:
 
 
 def in_view(points: Tensor) -> Tensor:
-    """Return whether points `[3, ...]` project between the outermost pixel centres, bool `[...]`."""
+    """Return whether points `[3, ...]` project between the outermost pixel centres, `[...]`."""
     x, y, z = points
     ahead = x > 0
     across = (y.abs() * FOCAL_PX) <= (WIDTH - 1) / 2 * x
@@ -79,7 +79,9 @@ def _surface_distance(z: Array, points: Array) -> Array:
     samples, owner = _samples(found)
     tree = cKDTree(samples, balanced_tree=False, compact_nodes=False)
     reach = HIGHEST_M + 2 * _SAMPLE_M
-    _, index = tree.query(points.T, k=_NEIGHBOURS, distance_upper_bound=reach)
+    index = np.asarray(
+        tree.query(points.T, k=_NEIGHBOURS, distance_upper_bound=reach)[1], dtype=np.int64
+    )
     query, slot = np.nonzero(index < len(samples))
     near = _triangle_distance(found[owner[index[query, slot]]], points.T[query])
     np.minimum.at(far, query, near)

@@ -1,10 +1,10 @@
 """Depth images by closed-form ray casting against the prisms that contact uses.
 
-Along a ray every solid occupies one interval: a yawed box by the slab test in its own axes, a pillar
-by the chord of its circle, both cut by their slab of heights. The image is the least entry over
-all solids and the exit from the arena. Solids outside the camera's view are left out. What remains is
-worked off in rounds, one solid of every scene a round, with the scenes that have most to draw in
-front: a round is then a prefix of the batch and nothing is padded.
+Along a ray every solid occupies one interval: a yawed box by the slab test in its own axes, a
+pillar by the chord of its circle, both cut by their slab of heights. The image is the least entry
+over all solids and the exit from the arena. Solids outside the camera's view are left out. What
+remains is worked off in rounds, one solid of every scene a round, with the scenes that have most
+to draw in front: a round is then a prefix of the batch and nothing is padded.
 
 Every pixel is an elementwise function of its own scene, and an image's rows are whole vectors, so
 that a scene's image has the same bits in a batch of any size.
@@ -217,7 +217,7 @@ class DepthRenderer:
 
 
 def _within_arena(geometry: Geometry) -> tuple[Tensor, Tensor]:
-    """Return the lowest and highest parts of solids that can be seen, heights from the centre `[K, B]`.
+    """Return from which to which height above its centre each solid can be seen, `[K, B]`, m.
 
     Solids go on beyond floor and ceiling; no camera inside the arena sees that.
     """

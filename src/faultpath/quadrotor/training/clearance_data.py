@@ -9,9 +9,10 @@ goes on where it was and ends with the same bytes.
 import hashlib
 import json
 import multiprocessing
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 from faultpath.store import atomic
+from faultpath.store.lock import locked
 from faultpath.streams import generator
 
 FORMAT = 1
@@ -124,14 +126,16 @@ def collect(
             f"folder {path.with_suffix('')} to make the data again."
         )
     shards = _shards(folder, recipe, library)
+    place = shards[0][1].parent
     try:
-        path.with_suffix("").mkdir(parents=True, exist_ok=True)
-        atomic.sweep(path.with_suffix(""))
-        todo = [(scene, shard) for scene, shard in shards if not shard.exists()]
-        done = len(shards) - len(todo)
-        for done in _work(recipe, todo, workers, done):
-            if progress is not None:
-                progress(done, len(shards))
+        place.mkdir(parents=True, exist_ok=True)
+        with locked(place, lambda notice: print(notice, file=sys.stderr)):
+            atomic.sweep(place)
+            todo = [(scene, shard) for scene, shard in shards if not shard.exists()]
+            kept = len(shards) - len(todo)
+            for made in _work(recipe, todo, workers):
+                if progress is not None:
+                    progress(kept + made, len(shards))
         atomic.write_text(path, json.dumps(asked, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
@@ -154,8 +158,16 @@ def read(folder: Path, recipe: Recipe | None = None) -> Samples:
         except (OSError, SafetensorError) as error:
             raise UserError(f"{shard} cannot be read: delete {path} and collect again.") from error
         parts.append(Samples(**content, scene=torch.full((recipe.images,), scene.index)))
+    return join(parts)
+
+
+def join(parts: Sequence[Samples]) -> Samples:
+    """Return the images of several sets as one, in their order."""
     return Samples(
-        *(torch.cat([vars(part)[name] for part in parts]) for name in Samples.__annotations__)
+        **{
+            field.name: torch.cat([getattr(part, field.name) for part in parts])
+            for field in fields(Samples)
+        }
     )
 
 
@@ -229,23 +241,19 @@ def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene,
     return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
 
 
-def _work(
-    recipe: Recipe, todo: Sequence[tuple[Scene, Path]], workers: int, done: int
-) -> Iterator[int]:
-    """Make shards and yield how many there are, counting the `done` from before."""
-    for _, shard in todo[:1]:
-        shard.parent.mkdir(exist_ok=True)
+def _work(recipe: Recipe, todo: Sequence[tuple[Scene, Path]], workers: int) -> Iterator[int]:
+    """Make shards and yield how many there are."""
     if workers < 2:
-        for count, (scene, shard) in enumerate(todo, done + 1):
+        for made, (scene, shard) in enumerate(todo, 1):
             _make(recipe, scene, shard)
-            yield count
+            yield made
         return
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(workers, context, torch.set_num_threads, (1,)) as pool:
-        futures: Iterable = [pool.submit(_make, recipe, *each) for each in todo]
-        for count, future in enumerate(as_completed(futures), done + 1):
+        futures = [pool.submit(_make, recipe, *each) for each in todo]
+        for made, future in enumerate(as_completed(futures), 1):
             future.result()
-            yield count
+            yield made
 
 
 def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:

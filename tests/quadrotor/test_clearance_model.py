@@ -1,0 +1,136 @@
+"""The clearance model: bounded, blind to its batch, and encoded once a capture."""
+
+import pytest
+import torch
+from safetensors.torch import load, save
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
+from faultpath.quadrotor.perception.clearance import ClearanceModel, DepthClearance
+from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+
+POINTS = 96
+
+
+def draws(seed: int = 0) -> torch.Generator:
+    return torch.Generator().manual_seed(seed)
+
+
+@pytest.fixture(scope="module")
+def model() -> ClearanceModel:
+    blank = ClearanceModel()
+    blank.initialise(draws())
+    return blank.eval().requires_grad_(False)
+
+
+def images(count: int) -> torch.Tensor:
+    return torch.rand(count, HEIGHT, WIDTH, generator=draws(1)) * RANGE_M
+
+
+def points(count: int, each: int = POINTS) -> torch.Tensor:
+    return torch.randn(3, count, each, generator=draws(2)) * 2
+
+
+def test_a_scenes_code_has_the_same_bits_in_any_batch(model: ClearanceModel):
+    depth = images(40)
+    together = model.encode(depth)
+    assert together.shape == (64, 40)
+    for chosen in ([7], [39, 0, 20], list(range(3, 36))):
+        assert torch.equal(model.encode(depth[chosen]), together[:, chosen])
+
+
+@pytest.mark.parametrize("each", [POINTS, 2560 + 32])
+def test_a_scenes_clearance_has_the_same_bits_in_any_chunk(model: ClearanceModel, each: int):
+    code, at = model.encode(images(13)), points(13, each)
+    together = model.query(code, at)
+    assert together.shape == (13, each)
+    for chosen in ([5], [12, 1], [0, 3, 4, 6]):
+        alone = model.query(code[:, chosen].contiguous(), at[:, chosen].contiguous())
+        assert torch.equal(alone, together[chosen])
+
+
+def test_clearance_is_bounded_and_is_what_training_sees_between_the_bounds(model: ClearanceModel):
+    depth, at = images(6), points(6)
+    found = model.query(model.encode(depth), at)
+    assert found.min() >= LOWEST_M
+    assert found.max() <= HIGHEST_M
+    free = model.estimate(model.encode_batch(depth), at.movedim(1, 0))
+    assert free.max() > HIGHEST_M, "training is not bounded"
+    torch.testing.assert_close(found, free.clamp(LOWEST_M, HIGHEST_M), atol=1e-5, rtol=1e-5)
+
+
+def test_clearance_depends_on_the_image_and_on_the_point(model: ClearanceModel):
+    found = model.query(model.encode(images(2)), points(1).expand(3, 2, POINTS))
+    assert not torch.allclose(found[0], found[1], atol=0.01)
+    assert found[0].std() > 0.01
+
+
+def test_erased_and_huge_depths_give_finite_clearance(model: ClearanceModel):
+    for depth in (0.0, -1.0, 1e6):
+        code = model.encode(torch.full((1, HEIGHT, WIDTH), depth))
+        assert model.query(code, points(1)).isfinite().all()
+
+
+def captured(
+    model: ClearanceModel, count: int
+) -> tuple[DepthClearance, torch.Tensor, torch.Tensor]:
+    perception = DepthClearance(model)
+    position = torch.randn(count, 3, generator=draws(3), dtype=torch.float64)
+    rotation = so3.exp(torch.randn(3, count, generator=draws(4), dtype=torch.float64))
+    perception.capture(images(count), position, rotation.movedim(-1, 0))
+    return perception, position, rotation
+
+
+def test_the_encoder_runs_once_a_capture_however_often_it_is_queried(model: ClearanceModel):
+    seen: list[int] = []
+    hook = model.encoder.register_forward_hook(lambda module, given, code: seen.append(len(code)))
+    try:
+        perception, _, _ = captured(model, 5)
+        assert len(seen) == 1
+        for _ in range(3):
+            perception.query(points(2), [0, 4])
+        assert len(seen) == 1
+    finally:
+        hook.remove()
+
+
+def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: ClearanceModel):
+    perception, position, rotation = captured(model, 4)
+    local = points(2)
+    chosen = [3, 1]
+    world = so3.rotate(rotation[..., chosen, None], local.double()) + position.T[:, chosen, None]
+    found = perception.query(world.float(), chosen)
+    expected = model.query(model.encode(images(4))[:, chosen].contiguous(), local)
+    torch.testing.assert_close(found, expected, atol=1e-3, rtol=0)
+
+
+def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):
+    perception, position, rotation = captured(model, 2)
+    before = perception.query(points(2), [0, 1])
+    perception.capture(images(3)[1:], position, rotation.movedim(-1, 0))
+    assert not torch.equal(perception.query(points(2), [0, 1]), before)
+
+
+def test_a_query_without_an_image_is_refused(model: ClearanceModel):
+    with pytest.raises(RuntimeError, match="captured"):
+        DepthClearance(model).query(points(1), [0])
+
+
+def test_weights_come_back_from_safetensors(model: ClearanceModel):
+    data = save({name: value.clone() for name, value in model.state_dict().items()})
+    again = ClearanceModel().eval()
+    again.load_state_dict(load(data))
+    depth, at = images(2), points(2)
+    with torch.no_grad():
+        found = again.query(again.encode(depth), at)
+    assert torch.equal(found, model.query(model.encode(depth), at))
+
+
+def test_initial_weights_depend_on_the_generator_only():
+    one, same, other = ClearanceModel(), ClearanceModel(), ClearanceModel()
+    one.initialise(draws(5))
+    same.initialise(draws(5))
+    other.initialise(draws(6))
+    for name, value in one.state_dict().items():
+        assert torch.equal(value, same.state_dict()[name]), name
+    assert not torch.equal(one.layers[0].weight, other.layers[0].weight)

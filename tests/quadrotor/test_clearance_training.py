@@ -1,0 +1,173 @@
+"""Data and fitting of the clearance model: deterministic, resumable, split by scene, judged."""
+
+import json
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import torch
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.perception.evaluation import summarise
+from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, in_view, visible_distance
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.training import clearance_data
+from faultpath.quadrotor.training.clearance_data import Recipe, Samples
+from faultpath.quadrotor.training.clearance_task import (
+    VALIDATION_FROM,
+    ClearanceTask,
+    censored_loss,
+    evaluate,
+)
+
+SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
+
+
+@pytest.fixture(scope="module")
+def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("data")
+    clearance_data.collect(folder, SMALL, workers=1)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def samples(collected: Path) -> Samples:
+    return clearance_data.read(collected, SMALL)
+
+
+def test_labels_are_those_of_the_stored_images(samples: Samples):
+    assert len(samples) == 100
+    assert samples.points.shape == (100, 3, SMALL.points)
+    for i in (0, 37, 99):
+        label = visible_distance(samples.depth_m()[i], samples.points[i]).float()
+        assert torch.equal(label, samples.clearance[i])
+    assert in_view(samples.points.movedim(1, 0)).float().mean() > 0.4
+    assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
+
+
+def test_a_scenes_samples_depend_on_the_recipe_and_the_scene_alone(samples: Samples):
+    scene = load_library("training")[42]
+    again = clearance_data.draw(SMALL, scene)
+    kept = samples.take((samples.scene == 42).nonzero()[:, 0])
+    other = clearance_data.draw(SMALL.model_copy(update={"seed": 1}), scene)
+    for field in fields(Samples):
+        assert torch.equal(getattr(kept, field.name), getattr(again, field.name)), field.name
+    assert not torch.equal(other.points, again.points)
+
+
+def test_a_killed_collection_goes_on_and_ends_with_the_same_bytes(collected: Path):
+    path = clearance_data.provenance_path(collected)
+    shards = sorted(path.with_suffix("").glob("*/*.safetensors"))
+    before = {shard: shard.read_bytes() for shard in shards}
+    made = shards[10].stat().st_mtime_ns
+    path.unlink()
+    shards[3].unlink()
+    told: list[tuple[int, int]] = []
+    clearance_data.collect(collected, SMALL, 1, lambda done, total: told.append((done, total)))
+    assert told == [(100, 100)], "only what is missing is made"
+    assert shards[10].stat().st_mtime_ns == made
+    assert {shard: shard.read_bytes() for shard in shards} == before
+
+
+def test_another_recipe_and_missing_data_are_refused(collected: Path, tmp_path: Path):
+    with pytest.raises(UserError, match="another recipe"):
+        clearance_data.collect(collected, SMALL.model_copy(update={"seed": 9}))
+    with pytest.raises(UserError, match="collect it first"):
+        clearance_data.read(tmp_path, SMALL)
+
+
+@pytest.mark.slow
+def test_two_processes_make_what_one_makes(tmp_path: Path, samples: Samples, monkeypatch):
+    library = load_library("training")
+    few = library.of("training", library.scenes[:3])
+    monkeypatch.setattr(clearance_data, "load_library", lambda name: few)
+    clearance_data.collect(tmp_path, SMALL, workers=2)
+    found = clearance_data.read(tmp_path, SMALL)
+    assert torch.equal(found.points, samples.points[: len(found)])
+    assert torch.equal(found.clearance, samples.clearance[: len(found)])
+
+
+@pytest.fixture(scope="module")
+def task(samples: Samples) -> ClearanceTask:
+    made = ClearanceTask(0, Path(), SMALL)
+    made.use(samples)
+    return made
+
+
+def test_validation_scenes_are_never_trained_on(task: ClearanceTask):
+    assert task._training.scene.max() < VALIDATION_FROM <= task._validation.scene.min()
+    assert task.count + len(task._validation) == 100
+    topologies = [load_library("training")[i].topology for i in task._validation.scene.unique()]
+    assert len(set(topologies)) == 5
+
+
+def test_an_epoch_draws_the_same_augmentation_whatever_came_before(task: ClearanceTask):
+    task.begin_epoch(3)
+    mirrored, chosen = task._mirrored, task._chosen
+    task.begin_epoch(4)
+    assert not torch.equal(chosen, task._chosen)
+    task.begin_epoch(3)
+    assert torch.equal(mirrored, task._mirrored)
+    assert torch.equal(chosen, task._chosen)
+
+
+def test_fitting_lowers_the_loss(task: ClearanceTask):
+    model = task.module()
+    optimiser = torch.optim.Adam(model.parameters(), lr=1e-3)
+    task.begin_epoch(0)
+    losses = []
+    for _ in range(40):
+        loss = task.loss(model, torch.arange(32))
+        optimiser.zero_grad()
+        loss.backward()
+        optimiser.step()
+        losses.append(loss.item())
+    assert losses[-1] < 0.6 * losses[0]
+    found = task.validate(model.eval())
+    assert next(iter(found)) == "error_m"
+    assert all(value > 0 for value in found.values())
+
+
+def test_the_task_describes_itself_in_json(task: ClearanceTask):
+    content = json.loads(json.dumps(task.describe()))
+    assert len(content["data_sha256"]["clearance"]) == 64
+
+
+def test_beyond_a_bound_that_the_truth_is_at_an_estimate_costs_nothing():
+    truth = torch.tensor([HIGHEST_M, LOWEST_M, 0.5])
+    right = torch.tensor([HIGHEST_M + 1, LOWEST_M - 1, 0.5])
+    assert censored_loss(right, truth) == 0
+    for i, wrong in enumerate((0.9, -0.2, 1.5)):
+        changed = right.clone()
+        changed[i] = wrong
+        assert censored_loss(changed, truth) > 0
+
+
+def test_a_perfect_estimate_is_perfectly_calibrated(samples: Samples):
+    found = summarise(samples.clearance, samples.clearance, samples.points)
+    assert found["overall"]["absolute_m"] == [0.0] * 5
+    assert found["overall"]["wrong_sign"] == 0
+    assert sum(row["count"] for row in found["calibration"]) == found["overall"]["count"]
+    for row in found["calibration"]:
+        assert row["low_m"] - 1e-6 <= row["estimate_m"][0] <= row["estimate_m"][-1]
+        assert row["estimate_m"][-1] <= row["high_m"] + 1e-6
+
+
+def test_a_constant_error_shows_as_such_everywhere(samples: Samples):
+    found = summarise(samples.clearance + 0.07, samples.clearance, samples.points)
+    rows = [*found["by_range"], *found["by_visibility"].values()]
+    for row in (row for row in rows if row["count"]):
+        assert row["signed_m"] == pytest.approx([0.07] * 5, abs=1e-6)
+
+
+def test_evaluation_is_plain_data_of_another_library(task: ClearanceTask, monkeypatch):
+    library = load_library("selection")
+    few = library.of("selection", library.scenes[:2])
+    monkeypatch.setattr(
+        "faultpath.quadrotor.training.clearance_task.load_library", lambda name: few
+    )
+    found = evaluate(task.module().eval(), images=1)
+    assert json.loads(json.dumps(found)) == found
+    assert found["library"] == "selection"
+    assert found["images"] == 2
+    assert set(found["by_visibility"]) == {"in view", "occluded", "outside"}

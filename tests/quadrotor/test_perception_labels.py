@@ -1,0 +1,99 @@
+"""What counts as free in one image: signs behind surfaces, frontiers, and what is not seen."""
+
+import numpy as np
+import pytest
+import torch
+from test_perception_render import flown
+
+from faultpath.quadrotor.perception import labels
+from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
+from faultpath.quadrotor.perception.labels import in_view, visible_distance
+from faultpath.quadrotor.perception.render import DepthRenderer
+from faultpath.quadrotor.scenes.library import load_library
+
+WALL = torch.full((HEIGHT, WIDTH), 3.0)
+
+
+def along_axis(*depths: float) -> torch.Tensor:
+    return torch.tensor([[depth, 0.02, 0.01] for depth in depths]).T
+
+
+def real_images(count: int) -> torch.Tensor:
+    scenes = list(load_library("training").scenes[:count])
+    return DepthRenderer(scenes).render(flown(scenes, seed=5))
+
+
+def test_before_a_wall_the_label_is_the_distance_and_behind_it_minus_the_depth():
+    found = visible_distance(WALL, along_axis(1.0, 2.5, 2.9, 3.1, 3.25, 3.31, 5.0, 7.0))
+    expected = torch.tensor([1.0, 0.5, 0.1, -0.1, -0.25, -0.3, -0.3, -0.3]).double()
+    torch.testing.assert_close(found, expected, atol=1e-6, rtol=0)
+
+
+def test_along_a_ray_the_sign_turns_once_where_the_pixel_is_hit():
+    image = real_images(1)[0]
+    inner = torch.arange(HEIGHT * WIDTH).view(HEIGHT, WIDTH)[1:-1, 1:-1].flatten()[::23]
+    inner = inner[image.flatten()[inner] < RANGE_M - 0.5]
+    assert len(inner) > 50
+    depth = image.flatten()[inner].double()
+    for fraction in (0.3, 0.9, 0.99, 1.01, 1.1, 1.5):
+        found = visible_distance(image, rays().flatten(1)[:, inner] * depth * fraction)
+        assert ((found > 0) == (fraction < 1)).all()
+
+
+def test_an_occlusion_frontier_counts_like_a_surface():
+    image = WALL.clone()
+    image[:, : WIDTH // 2] = 1.0  # the left half is a near screen that ends straight ahead
+    beside, behind = visible_distance(image, torch.tensor([[2.0, 2.0], [-0.2, 0.2], [0.0, 0.0]]))
+    # The frontier runs along the ray between columns 31 and 32, whose directions differ by a pixel.
+    assert 0.2 - 1 / FOCAL_PX < beside < 0.2 + 1 / FOCAL_PX
+    assert -0.2 - 1 / FOCAL_PX < behind < -0.2 + 1 / FOCAL_PX
+
+
+def test_outside_the_view_only_what_is_seen_counts():
+    left = torch.tensor([[0.5, 0.0, -2.0], [1.5, 0.3, 0.0], [0.0, 0.0, 0.0]])
+    assert not in_view(left).any()
+    torch.testing.assert_close(visible_distance(WALL, left), torch.ones(3).double())
+    near = torch.full((HEIGHT, WIDTH), 0.5)
+    edge = 0.5 * (WIDTH - 1) / 2 / FOCAL_PX  # how far to the left the near wall is seen
+    beyond = torch.tensor([[0.5, 0.7], [edge + 0.3, edge + 0.4], [0.0, 0.0]])
+    expected = torch.tensor([0.3, np.hypot(0.2, 0.4)]).double()
+    torch.testing.assert_close(visible_distance(near, beyond), expected, atol=1e-6, rtol=0)
+
+
+def test_the_vehicles_own_place_is_free_unless_something_is_seen_there():
+    draws = torch.Generator().manual_seed(1)
+    around = torch.randn(3, 200, generator=draws)
+    around = around / around.norm(dim=0) * 0.3
+    assert (visible_distance(WALL, around) == 1).all()
+    close = torch.full((HEIGHT, WIDTH), 0.25)
+    assert visible_distance(close, along_axis(0.28)) < 0
+
+
+def test_beyond_the_range_nothing_is_known_to_be_there():
+    empty = torch.full((HEIGHT, WIDTH), RANGE_M)
+    assert (visible_distance(empty, along_axis(1.0, 5.99, 6.5, 9.0)) == 1).all()
+
+
+def test_the_distance_is_that_of_the_nearest_of_all_triangles():
+    draws = torch.Generator().manual_seed(2)
+    for image in real_images(2):
+        pixel = torch.randint(0, HEIGHT * WIDTH, (30,), generator=draws)
+        points = (rays().flatten(1) * image.flatten())[:, pixel]
+        points = points + 0.4 * torch.randn(3, 30, generator=draws)
+        every = labels.triangles(image.double().numpy())
+        slow = np.array(
+            [
+                labels._triangle_distance(every, np.tile(point, (len(every), 1))).min()
+                for point in points.double().numpy().T
+            ]
+        )
+        found = visible_distance(image, points).abs().numpy()
+        ours = np.where(found < 0.3, slow, np.maximum(slow, 0.3)).clip(max=1)
+        assert np.abs(found - ours)[found != 0.3].max() < 0.01
+
+
+@pytest.mark.parametrize("depth", [0.0, 1e-4])
+def test_a_camera_inside_a_solid_gives_finite_labels(depth: float):
+    found = visible_distance(torch.full((HEIGHT, WIDTH), depth), along_axis(0.1, 1.0, 3.0))
+    assert found.isfinite().all()
+    assert (found < 0).all()

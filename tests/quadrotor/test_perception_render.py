@@ -1,0 +1,151 @@
+"""What the camera sees against the geometry that contact uses, and against MuJoCo's rays."""
+
+import math
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH, rays
+from faultpath.quadrotor.perception.render import DepthRenderer
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import VehicleParameters
+
+BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
+
+
+def scene_of(*things: Box | Cylinder) -> Scene:
+    return Scene(
+        id="test/000",
+        index=0,
+        library="test",
+        topology="clutter",
+        obstacles=True,
+        occluded=False,
+        bounds=BOUNDS,
+        boxes=tuple(thing for thing in things if isinstance(thing, Box)),
+        cylinders=tuple(thing for thing in things if isinstance(thing, Cylinder)),
+        start_m=(-3.0, 0.0, 1.0),
+        goal_m=(3.0, 0.0, 1.0),
+        start_yaw_rad=0.0,
+        vehicle=VehicleParameters(),
+    )
+
+
+def posed(position: torch.Tensor, rotation: torch.Tensor) -> State:
+    return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
+
+
+def at(*position: float, yaw: float = 0.0) -> State:
+    place = torch.tensor(position, dtype=torch.float64)[:, None]
+    return State.hover(place, torch.tensor([yaw], dtype=torch.float64))
+
+
+def flown(scenes: list[Scene], seed: int = 0) -> State:
+    """Free poses, tilted at will, one a scene."""
+    draws = np.random.default_rng(seed)
+    geometry = Geometry.stack(scenes)
+    position = torch.zeros(3, len(scenes), dtype=torch.float64)
+    free = torch.zeros(len(scenes), dtype=torch.bool)
+    low = np.array([scene.bounds.low_m for scene in scenes])
+    high = np.array([scene.bounds.high_m for scene in scenes])
+    while not free.all():
+        drawn = torch.from_numpy(draws.uniform(low, high).T.copy())
+        position = torch.where(free, position, drawn)
+        free = geometry.distance(position) > 0.2
+    tilt = torch.from_numpy(draws.normal(0, 0.4, (3, len(scenes))))
+    yaw = torch.from_numpy(draws.uniform(0, 2 * math.pi, len(scenes)))
+    return posed(position, so3.compose(so3.from_yaw(yaw), so3.exp(tilt)))
+
+
+@pytest.mark.parametrize("free_space", [False, True])
+def test_depth_ends_on_the_first_surface_of_the_contact_geometry(free_space: bool):
+    scenes = list(load_library("training").scenes[:12])
+    state = flown(scenes)
+    depth = DepthRenderer(scenes, free_space).render(state).double()
+    geometry = Geometry.stack(scenes, free_space)
+    world = so3.rotate(state.rotation[..., None], rays().flatten(1)[:, None])
+
+    def distance(fraction: float) -> torch.Tensor:
+        along = world * (depth.flatten(1) * fraction)
+        return geometry.distance(state.position[..., None] + along)
+
+    hit = depth.flatten(1) < RANGE_M
+    assert hit.double().mean() > 0.8
+    assert distance(1.0)[hit].abs().max() < 2e-5
+    for fraction in np.linspace(0, 0.999, 25):
+        assert (distance(fraction) > -2e-5).all(), "no surface lies before it"
+
+
+def test_an_image_has_the_same_bits_in_a_batch_of_any_size():
+    scenes = list(load_library("selection").scenes[:40])
+    state = flown(scenes)
+    together = DepthRenderer(scenes).render(state)
+    for chosen in ([0], [39, 3], list(range(20, 37))):
+        few = DepthRenderer([scenes[i] for i in chosen]).render(state.take(torch.tensor(chosen)))
+        assert torch.equal(few, together[chosen])
+    assert torch.equal(DepthRenderer(scenes[:5]).render(state), together[:5]), "spare lanes"
+
+
+def test_walls_straight_ahead_read_their_distance_across_the_image():
+    image = DepthRenderer([scene_of()]).render(at(1.0, 0.0, 1.5))[0]
+    assert image.shape == (HEIGHT, WIDTH)
+    middle = image[HEIGHT // 2 - 4 : HEIGHT // 2 + 4, WIDTH // 2 - 4 : WIDTH // 2 + 4]
+    torch.testing.assert_close(middle, torch.full_like(middle, 3.0), msg="depth, not range")
+    far = DepthRenderer([scene_of()]).render(at(-3.5, 0.0, 1.5))[0]
+    assert far[HEIGHT // 2, WIDTH // 2] == RANGE_M
+    assert far.max() == RANGE_M
+
+
+def test_rays_parallel_to_faces_and_eyes_in_solids_are_well_defined():
+    box = Box(centre_m=(0.0, 0.0, 1.5), half_extents_m=(0.5, 0.5, 0.5))
+    pillar = Cylinder(centre_m=(2.0, 1.0), radius_m=0.3, low_m=0.0, high_m=3.0)
+    renderer = DepthRenderer([scene_of(box, pillar)])
+    for yaw in (0.0, math.pi / 2, math.pi / 4):
+        assert (renderer.render(at(0.0, 0.0, 1.5, yaw=yaw)) == 0).all()
+        assert (renderer.render(at(2.0, 1.0, 1.5, yaw=yaw)) == 0).all()
+        outside = renderer.render(at(-2.0, 0.5, 1.5, yaw=yaw))
+        assert outside.isfinite().all()
+        assert (outside > 0).all()
+
+
+def test_boxes_look_the_same_to_mujocos_rays():
+    mujoco = pytest.importorskip("mujoco")
+    boxes = [
+        Box(centre_m=(1.0, 0.4, 0.9), half_extents_m=(0.2, 0.5, 0.6), yaw_rad=0.6),
+        Box(centre_m=(2.2, -0.9, 1.8), half_extents_m=(0.3, 0.2, 0.4), yaw_rad=-1.1),
+        Box(centre_m=(0.4, -0.8, 2.2), half_extents_m=(0.1, 0.1, 0.3), yaw_rad=2.0),
+    ]
+    solid = "".join(
+        f'<geom type="box" pos="{" ".join(map(str, box.centre_m))}" '
+        f'size="{" ".join(map(str, box.half_extents_m))}" euler="0 0 {box.yaw_rad}"/>'
+        for box in boxes
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f'<mujoco><compiler angle="radian"/><worldbody>{solid}</worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    state = at(-1.2, 0.1, 1.3)
+    tilted = so3.compose(state.rotation, so3.exp(torch.tensor([[0.2], [0.1], [0.3]]).double()))
+    state = posed(state.position, tilted)
+    depth = DepthRenderer([scene_of(*boxes)]).render(state)[0].double().flatten().numpy()
+    empty = DepthRenderer([scene_of()]).render(state)[0].double().flatten().numpy()
+
+    seen = rays().flatten(1)
+    length = seen.norm(dim=0).numpy()
+    world = so3.rotate(state.rotation, seen).T.numpy() / length[:, None]
+    count = len(length)
+    found, geom = np.zeros(count), np.zeros(count, dtype=np.int32)
+    mujoco.mj_multiRay(
+        model, data, state.position[:, 0].numpy(), world.flatten(), None, True, -1, geom, found,
+        None, count, 100.0,
+    )  # fmt: skip
+    theirs = np.where(geom >= 0, found / length, np.inf)
+    expected = np.minimum(theirs, empty)
+    assert (theirs < empty).sum() > 300
+    assert np.abs(depth - expected).max() < 1e-5
