@@ -40,20 +40,17 @@ def features(points: Tensor) -> Tensor:
     """
     x, y, z = points.unbind(0)
     distance = (x * x).add_(y * y).add_(z * z).sqrt_()
-    inverse = (x.clamp_min(0) + 0.25).reciprocal_()
-    return torch.stack(
-        (
-            x * 0.5 - 0.5,
-            y * 0.5,
-            z * 0.5,
-            distance * 0.5 - 0.7,
-            inverse - 0.7,
-            (y * inverse).clamp_(-1.5, 1.5),
-            (z * inverse).clamp_(-1.5, 1.5),
-            (distance + 0.25).reciprocal_().sub_(0.7),
-            torch.ones_like(x),
-        )
-    )
+    inverse = x.clamp_min(0).add_(0.25).reciprocal_()
+    found = points.new_empty(9, *x.shape)
+    torch.mul(points, 0.5, out=found[:3])
+    found[0] -= 0.5
+    torch.mul(distance, 0.5, out=found[3]).sub_(0.7)
+    torch.sub(inverse, 0.7, out=found[4])
+    torch.mul(points[1:], inverse, out=found[5:7]).clamp_(-1.5, 1.5)
+    distance.add_(0.25).reciprocal_()
+    torch.sub(distance, 0.7, out=found[7])
+    found[8] = 1
+    return found
 
 
 class ClearanceModel(nn.Module):

@@ -40,7 +40,7 @@ class ClearanceTask(Task):
 
     def __init__(self, seed: int, data_folder: Path, recipe: Recipe | None = None) -> None:
         self.seed = seed
-        self.schedule = Schedule(epochs=30, batch_size=64, learning_rate=5e-4)
+        self.schedule = Schedule(epochs=50, batch_size=64, learning_rate=5e-4)
         self._folder = data_folder
         self._recipe = recipe or Recipe()
 
