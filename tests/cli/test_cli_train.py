@@ -98,6 +98,23 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
     assert "Collecting nominal" in ended.out
 
 
+def test_data_that_models_fly_are_collected_when_those_are_fitted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def collect(folder: Path, pools, workers: int, progress) -> None:
+        assert Path("runs/train/one-0.safetensors").exists()
+        progress(1.0, 1.0)
+
+    needy = catalogue.Entry(
+        "needy", entry("needy").factory, ("flown",), "", 9.0, seeds=(0,), after=("one",)
+    )
+    monkeypatch.setattr(jobs, "collect", collect)
+    monkeypatch.setattr(catalogue, "ALL", (needy, entry("one")))
+    ended = _train("needy", "one")
+    assert ended.status == 0, ended.err
+    assert Path("runs/train/needy-0.safetensors").exists()
+
+
 def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     begin = Toy.begin_epoch
 

@@ -10,8 +10,8 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training import catalogue, jobs
-from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose
+from faultpath.quadrotor.training import catalogue, jobs, trajectories
+from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
 from faultpath.quadrotor.training.fitting import Moment, fit
 from faultpath.quadrotor.training.jobs import Interrupted, Report, missing_pools, run_jobs
@@ -30,9 +30,12 @@ def _run(tmp_path: Path, wanted: list[Job], workers: int = 0, **more) -> Report:
 def test_without_names_everything_comes_in_order_of_dependence() -> None:
     stems = [job.stem for job in choose([])]
     assert len(stems) == len(set(stems)) == sum(len(each.seeds) for each in ALL)
-    places = {name: i for i, name in enumerate(dict.fromkeys(job.entry.name for job in choose([])))}
-    for each in ALL:
-        assert all(places[needed] < places[each.name] for needed in each.after)
+    before: set[str] = set()
+    for stage in stages(choose([])):
+        assert all(set(job.entry.after) <= before for job in stage)
+        before |= {job.entry.name for job in stage}
+    assert before == {each.name for each in ALL}
+    assert any(each.after for each in ALL)
 
 
 def test_names_groups_and_seeds() -> None:
@@ -64,7 +67,7 @@ def test_a_corrupted_variant_stands_beside_its_baseline_in_everything_else() -> 
 
 
 def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
-    known = {*EPISODES, catalogue.CLEARANCE_POOL}
+    known = {*EPISODES, catalogue.CLEARANCE_POOL, trajectories.POOL}
     assert {pool for each in ALL for pool in each.pools} == known
 
 
@@ -93,11 +96,18 @@ def test_each_missing_pool_is_made_by_its_own_collector(
         progress(3, 4)
 
     monkeypatch.setattr(jobs, "collect", flights)
+
+    def closed_loop(folder: Path, workers: int, progress) -> None:
+        made.append(f"{folder.name}/closed loop by {workers}")
+        progress(5, 6)
+
     monkeypatch.setattr(jobs.clearance_data, "collect", images)
+    monkeypatch.setattr(jobs.trajectories, "record", closed_loop)
     (tmp_path / "wind.json").touch()
     jobs.collect_missing(choose([]), tmp_path, 2, lambda *news: told.append(news))
-    assert made == [f"{tmp_path.name}/nominal by 2", f"{tmp_path.name}/images by 2"]
-    assert told == [("nominal", 1.0, 2.0), ("clearance", 3, 4)]
+    what = ("nominal", "closed loop", "images")
+    assert made == [f"{tmp_path.name}/{each} by 2" for each in what]
+    assert told == [("nominal", 1.0, 2.0), ("trajectory", 5, 6), ("clearance", 3, 4)]
 
 
 @pytest.mark.slow
@@ -126,34 +136,21 @@ def _order(tmp_path: Path, wanted: list[Job]) -> list[str]:
     return seen
 
 
-def test_the_longest_goes_first_but_not_before_what_it_needs(tmp_path: Path) -> None:
-    wanted = [
-        Job(entry("short", cost=1.0), 0),
-        Job(entry("needy", cost=9.0, after=("flies",)), 0),
-        Job(entry("flies", cost=2.0), 0),
-        Job(entry("flies", cost=2.0), 1),
-        Job(entry("long", cost=5.0), 0),
-    ]
-    assert _order(tmp_path, wanted) == ["long-0", "flies-0", "needy-0", "flies-1", "short-0"]
+def test_the_longest_goes_first(tmp_path: Path) -> None:
+    costs = {"short": 1.0, "long": 5.0, "middle": 2.0}
+    wanted = [Job(entry(name, cost=cost), 0) for name, cost in costs.items()]
+    assert _order(tmp_path, wanted) == ["long-0", "middle-0", "short-0"]
 
 
-def test_a_model_that_fails_stops_only_those_that_need_it(tmp_path: Path) -> None:
-    wanted = [
-        Job(entry("bug"), 0),
-        Job(entry("mistake"), 0),
-        Job(entry("needy", after=("mistake",)), 0),
-        Job(entry("good"), 0),
-    ]
-    report = _run(tmp_path, wanted)
+def test_a_model_that_fails_stops_no_other(tmp_path: Path) -> None:
+    report = _run(tmp_path, [Job(entry(name), 0) for name in ("bug", "mistake", "good")])
     assert [card.stem for card in report.cards] == ["good-0"]
-    errors = {failure.job.stem: failure for failure in report.failures}
-    assert list(errors) == ["bug-0", "mistake-0", "needy-0"]
-    assert errors["mistake-0"].error == "the toy has no data: make some."
-    assert "mistake-0, which was not fitted" in errors["needy-0"].error
-    assert errors["bug-0"].error == "ZeroDivisionError: the toy is broken"
-    assert errors["bug-0"].details is not None
-    assert "Traceback" in errors["bug-0"].details.read_text()
-    assert errors["mistake-0"].details is None
+    bug, mistake = report.failures
+    assert mistake.error == "the toy has no data: make some."
+    assert mistake.details is None
+    assert bug.error == "ZeroDivisionError: the toy is broken"
+    assert bug.details is not None
+    assert "Traceback" in bug.details.read_text()
 
 
 def test_force_fits_again(tmp_path: Path) -> None:
@@ -233,14 +230,14 @@ run_jobs([Job(entry("slow"), 0)], places, 1, lambda _: None, print)
 @pytest.mark.slow
 @pytest.mark.usefixtures("gate")
 def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
-    parent = subprocess.Popen([sys.executable, "-c", RUN, str(HERE), str(tmp_path)])
     journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
-    limit = time.monotonic() + 60
-    while not journal.exists():
-        assert time.monotonic() < limit
-        time.sleep(0.02)
-    parent.kill()
-    parent.wait()
+    with subprocess.Popen([sys.executable, "-c", RUN, str(HERE), str(tmp_path)]) as parent:
+        limit = time.monotonic() + 300
+        while not journal.exists():
+            assert parent.poll() is None
+            assert time.monotonic() < limit
+            time.sleep(0.02)
+        parent.kill()
     time.sleep(0.5)  # several epochs of a worker that went on
     before = journal.read_bytes()
     time.sleep(0.5)

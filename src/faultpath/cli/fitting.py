@@ -49,25 +49,22 @@ def list_models() -> None:
 
 
 def train(wishes: Wishes) -> int:
-    """Collect what is missing, fit, print the table; return the number of models that failed.
+    """Collect what is missing, fit, print tables; return the number of models that failed.
 
-    Raises `Stopped` on Ctrl-C and `UserError` for names that are not known or folders that cannot
-    be used.
+    Models whose data are flown with other models come in a second stage, after those. Raises
+    `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
+    and data that cannot be collected.
     """
-    from faultpath.quadrotor.training.catalogue import choose
+    from faultpath.quadrotor.training.catalogue import choose, stages
 
     console = Console()
-    jobs = choose(wishes.names, wishes.seeds)
-    _collect(console, jobs, wishes)
-    report = _fit(console, jobs, wishes)
-    for failure in report.failures:
-        line = f"{failure.job.stem} was not fitted: {failure.error}"
-        line += f" ({failure.details})" if failure.details else ""
-        console.print(Text(line, style="bold red"), soft_wrap=True)
-    if report.cards:
-        console.print(result_table(report.cards))
-        console.print(f"Checkpoints: {wishes.out}", markup=False, soft_wrap=True)
-    return len(report.failures)
+    failed = 0
+    for jobs in stages(choose(wishes.names, wishes.seeds)):
+        _collect(console, jobs, wishes)
+        report = _fit(console, jobs, wishes)
+        _tell(console, report, wishes.out)
+        failed += len(report.failures)
+    return failed
 
 
 def result_table(cards: Sequence[ModelCard]) -> Table:
@@ -85,6 +82,16 @@ def result_table(cards: Sequence[ModelCard]) -> Table:
             _duration(card.duration_s),
         )
     return table
+
+
+def _tell(console: Console, report: Report, out: Path) -> None:
+    for failure in report.failures:
+        line = f"{failure.job.stem} was not fitted: {failure.error}"
+        line += f" ({failure.details})" if failure.details else ""
+        console.print(Text(line, style="bold red"), soft_wrap=True)
+    if report.cards:
+        console.print(result_table(report.cards))
+        console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
 
 
 def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:

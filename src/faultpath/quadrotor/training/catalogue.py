@@ -33,7 +33,7 @@ class Entry:
     the time left until a fit has shown its pace."""
     seeds: tuple[int, ...] = MODEL_SEEDS
     after: tuple[str, ...] = ()
-    """Models whose seed 0 flies for its data."""
+    """Models whose seed 0 flies for its data, with the checkpoint in the package."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ RECONSTRUCTIONS = (
     Entry(
         "gru-trajectory",
         _reconstruction,
-        (),
+        ("trajectory",),
         "gru on closed-loop flights of selection scenes",
         2,
         after=("wm-a-wind",),
@@ -118,6 +118,13 @@ def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
     wanted = {entry.name for name in names or ("all",) for entry in _named(name)}
     entries = [entry for entry in ALL if entry.name in wanted]
     return tuple(_jobs(entries, seeds))
+
+
+def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
+    """Part the jobs into those that come first and those whose data are flown with them."""
+    first = tuple(job for job in jobs if not job.entry.after)
+    rest = tuple(job for job in jobs if job.entry.after)
+    return tuple(stage for stage in (first, rest) if stage)
 
 
 def _named(name: str) -> tuple[Entry, ...]:

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training import clearance_data
+from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath.quadrotor.training.checkpoint import ModelCard, read_card, ship
 from faultpath.quadrotor.training.collection import collect
@@ -81,7 +81,7 @@ def collect_missing(
     workers: int,
     progress: Callable[[str, float, float], None] | None = None,
 ) -> None:
-    """Collect the pools that are missing: flights, and the images of the clearance model.
+    """Collect the pools that are missing: training flights, closed-loop flights, depth images.
 
     `progress` is called with the name of a pool, what is done of it and what was asked for.
     """
@@ -89,6 +89,8 @@ def collect_missing(
         report = None if progress is None else partial(progress, pool)
         if pool == CLEARANCE_POOL:
             clearance_data.collect(data, workers=max(workers, 1), progress=report)
+        elif pool == trajectories.POOL:
+            trajectories.record(data, max(workers, 1), progress=report)
         else:
             collect(data, [pool], max(workers, 1), progress=report)
 
@@ -164,17 +166,12 @@ class _Ledger:
         return len(self.cards) + len(self._failures) == len(self._jobs)
 
     def take(self) -> Order | None:
-        """Return the longest job that may start, or None while there is none."""
-        for job in tuple(self._waiting):
-            needed = [f"{name}-0" for name in job.entry.after]
-            if failed := [stem for stem in needed if stem in self._failures]:
-                self._waiting.remove(job)
-                self.settle(job, Failed(f"its data need {failed[0]}, which was not fitted"))
-            elif not any(each.stem in needed for each in self._jobs if self._open(each)):
-                self._waiting.remove(job)
-                self._pace.start(job)
-                return Order(job, self._places)
-        return None
+        """Return the longest job that waits, or None when none is left."""
+        if not self._waiting:
+            return None
+        job = self._waiting.pop(0)
+        self._pace.start(job)
+        return Order(job, self._places)
 
     def tell(self, job: Job, message: Message) -> None:
         """Take in what a fit says."""
@@ -211,9 +208,6 @@ class _Ledger:
             tuple(self.cards[stem] for stem in stems if stem in self.cards),
             tuple(self._failures[stem] for stem in stems if stem in self._failures),
         )
-
-    def _open(self, job: Job) -> bool:
-        return job.stem not in self.cards and job.stem not in self._failures
 
 
 def _run_here(ledger: _Ledger) -> None:
