@@ -8,16 +8,19 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, in_view, visible_distance
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
+from faultpath.quadrotor.training.checkpoint import checkpoint_path, load_checkpoint
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
 from faultpath.quadrotor.training.clearance_task import (
     VALIDATION_FROM,
     ClearanceTask,
     censored_loss,
     evaluate,
+    predict,
 )
 
 SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
@@ -171,3 +174,17 @@ def test_evaluation_is_plain_data_of_another_library(task: ClearanceTask, monkey
     assert found["library"] == "selection"
     assert found["images"] == 2
     assert set(found["by_visibility"]) == {"in view", "occluded", "outside"}
+
+
+def test_the_shipped_model_tells_clearance_in_scenes_it_never_saw():
+    model = ClearanceModel()
+    card = load_checkpoint(model, checkpoint_path("clearance", 0))
+    assert card.final["error_m"] < 0.08
+    scenes = load_library("selection").scenes[:5]
+    drawn = [clearance_data.draw(Recipe(library="selection", images=4), each) for each in scenes]
+    unseen = clearance_data.join(drawn)
+    found = summarise(predict(model.eval(), unseen), unseen.clearance, unseen.points)
+    assert found["overall"]["absolute_m"][2] < 0.06
+    assert found["overall"]["wrong_sign"] < 0.07
+    for row in (row for row in found["calibration"] if 0 <= row["low_m"] < 0.5):
+        assert abs(row["estimate_m"][2] - (row["low_m"] + row["high_m"]) / 2) < 0.05
