@@ -24,15 +24,28 @@ from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.trials import Arm
 
-# name: (variant, options, fault). All are baselines: no wind is reconstructed.
-CELLS = {
-    "free-space": ("zero-wind", {"environment": "free-space"}, None),
-    "nominal": ("zero-wind", {}, None),
-    "e=+0.1": ("zero-wind", {}, "calibration=+0.1"),
-    "e=-0.1": ("zero-wind", {}, "calibration=-0.1"),
-    "zero-wind L3": ("zero-wind", {"wind": "L3"}, None),
-    "true-wind L3": ("true-wind", {"wind": "L3"}, None),
+# name: (variant, options, fault). All are baselines: no wind is reconstructed, nothing is repaired.
+_ANALYTIC = {"predictor": "dki-drag", "clearance": "true"}
+ANALYTIC = {
+    "free-space": ("zero-wind", {**_ANALYTIC, "environment": "free-space"}, None),
+    "nominal": ("zero-wind", _ANALYTIC, None),
+    "e=+0.1": ("zero-wind", _ANALYTIC, "calibration=+0.1"),
+    "e=-0.1": ("zero-wind", _ANALYTIC, "calibration=-0.1"),
+    "zero-wind L3": ("zero-wind", {**_ANALYTIC, "wind": "L3"}, None),
+    "true-wind L3": ("true-wind", {**_ANALYTIC, "wind": "L3"}, None),
 }
+LEARNED = {
+    "free-space": ("wm-a", {"environment": "free-space"}, None),
+    "nominal": ("wm-a", {}, None),
+    "true clearance": ("wm-a", {"clearance": "true"}, None),
+    "e=+0.1": ("wm-a", {}, "calibration=+0.1"),
+    "e=-0.1": ("wm-a", {}, "calibration=-0.1"),
+    "zero-wind L3": ("wm-a-wind/zero-wind", {"wind": "L3"}, None),
+    "true-wind L3": ("wm-a-wind/true-wind", {"wind": "L3"}, None),
+    "dki": ("dki", {}, None),
+    "true-parameter": ("true-parameter", {}, None),
+}
+MODELS = {"analytic": ANALYTIC, "learned": LEARNED}
 
 GRID = {
     "temperature": [0.03, 0.06, 0.12],
@@ -59,10 +72,11 @@ def settings(temperature: float, rate_sigma: float, rate_effort: float, margin_m
 
 def fly(job):
     """Fly one cell of one grid point; return its counts."""
-    point, planner, cell, count = job
+    models, point, planner, cell, count = job
     torch.set_num_threads(1)
-    variant, options, fault = CELLS[cell]
-    system = Quadrotor(QuadrotorOptions(planner=planner, settings=settings(**point), **options))
+    variant, options, fault = MODELS[models][cell]
+    parsed_options = QuadrotorOptions.parse(planner=planner, **options)
+    system = Quadrotor(parsed_options.model_copy(update={"settings": settings(**point)}))
     scenes = [scene.id for scene in system.library("selection").scenes[:count]]
     faults = ()
     if fault:
@@ -77,6 +91,7 @@ def fly(job):
         outcomes += reply.outcomes
     times = [o.time_s for o in outcomes if o.status == "success"]
     return {
+        "models": models,
         "point": point,
         "planner": planner,
         "cell": cell,
@@ -91,19 +106,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--scenes", type=int, default=20)
     parser.add_argument("--planners", default="terminal")
-    parser.add_argument("--cells", default=",".join(CELLS))
+    parser.add_argument("--models", choices=MODELS, default="learned")
+    parser.add_argument("--cells", help="comma-separated; default: all of the models")
     parser.add_argument("--grid", type=json.loads, default=GRID, help="JSON: name to values")
     parser.add_argument("--out", type=Path, required=True)
     args = parser.parse_args()
+    cells = args.cells.split(",") if args.cells else list(MODELS[args.models])
     points = [dict(zip(args.grid, v, strict=True)) for v in itertools.product(*args.grid.values())]
     jobs = [
-        (point, planner, cell, args.scenes)
+        (args.models, point, planner, cell, args.scenes)
         for point in points
         for planner in args.planners.split(",")
-        for cell in args.cells.split(",")
+        for cell in cells
     ]
     done = json.loads(args.out.read_text()) if args.out.exists() else []
-    known = {json.dumps([d["point"], d["planner"], d["cell"], d["scenes"]]) for d in done}
+    known = {
+        json.dumps([d[k] for k in ("models", "point", "planner", "cell", "scenes")]) for d in done
+    }
     jobs = [job for job in jobs if json.dumps(list(job)) not in known]
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         for number, result in enumerate(pool.map(fly, jobs), 1):

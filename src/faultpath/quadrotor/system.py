@@ -193,4 +193,4 @@ def _field(scenes: tuple[Scene, ...], free_space: bool) -> DistanceField:
 
 @lru_cache(maxsize=4)
 def _renderer(scenes: tuple[Scene, ...], free_space: bool) -> DepthRenderer:
-    return DepthRenderer.build(scenes, free_space)
+    return DepthRenderer(scenes, free_space)
