@@ -8,7 +8,7 @@ from pydantic import JsonValue
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import models
-from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.predictors import AnchoredPredictor, Predictor, UnanchoredPredictor
 from faultpath.quadrotor.reconstruction import (
     Reconstruction,
     RecurrentReconstruction,
@@ -70,6 +70,7 @@ class Checkpoints:
         """Return a predictor with its weights; `UserError` when they cannot be read."""
         made = models.PREDICTORS[name].load(name, None)
         if seed is not None:
+            assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
             load_checkpoint(made.network, checkpoint_path(name, seed, self._folder))
         return made
 
