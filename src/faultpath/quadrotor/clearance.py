@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from torch import Tensor
 
-from faultpath.quadrotor.perception import DepthClearance
+from faultpath.quadrotor.perception import DepthClearance, mounted
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.taps import ModuleTaps
@@ -52,15 +52,19 @@ class SeenClearance(ClearanceSource):
         self._taps = taps
 
     def look(self, sensors: Sensors, step: int) -> None:
-        """Encode the image that the taps deliver, as seen from the pose that they deliver."""
+        """Encode the image that the taps deliver, as seen from the pose that they deliver.
+
+        Where the mount holds the camera follows from the delivered attitude.
+        """
 
         def take(channel: str, place: str) -> Tensor:
             return self._taps.deliver(channel, place, sensors.readings[channel], step)
 
+        attitude = take("attitude", "capture_frame").movedim(0, -1)
         self._model.capture(
             take("depth", "encoder"),
             take("position", "capture_frame"),
-            take("attitude", "capture_frame"),
+            mounted(attitude).movedim(-1, 0),
         )
 
     def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:

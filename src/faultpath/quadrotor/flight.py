@@ -1,11 +1,12 @@
 """One closed-loop flight of a block of scenes, step by step."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from torch import Tensor
 
 from faultpath.quadrotor.navigator import Navigator
-from faultpath.quadrotor.perception import DepthRenderer
+from faultpath.quadrotor.perception import DepthRenderer, mounted
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Taps
@@ -30,7 +31,13 @@ class Flight:
             if not running.any():
                 return
             self._taps.set_active(running.numpy())
-            sensors = Sensors.read(world, self._camera and self._camera.render(world.state))
+            sensors = Sensors.read(world, self._depth())
             command = self.navigator.act(sensors, step, running.nonzero()[:, 0].tolist())
             yield command
             world.advance(command)
+
+    def _depth(self) -> Tensor | None:
+        if self._camera is None:
+            return None
+        state = self.world.state
+        return self._camera.render(replace(state, rotation=mounted(state.rotation)))

@@ -1,8 +1,15 @@
 """Depth perception: the camera, what it sees, and the clearance that can be told from it."""
 
-from faultpath.quadrotor.perception.camera import CaptureFrame
+from faultpath.quadrotor.perception.camera import CaptureFrame, mounted
 from faultpath.quadrotor.perception.clearance import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.labels import visible_distance
 from faultpath.quadrotor.perception.render import DepthRenderer
 
-__all__ = ["CaptureFrame", "ClearanceModel", "DepthClearance", "DepthRenderer", "visible_distance"]
+__all__ = [
+    "CaptureFrame",
+    "ClearanceModel",
+    "DepthClearance",
+    "DepthRenderer",
+    "mounted",
+    "visible_distance",
+]

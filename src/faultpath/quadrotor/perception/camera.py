@@ -1,6 +1,7 @@
-"""The depth camera: a pin-hole at the body's centre that looks along the body's x axis.
+"""The depth camera: a pin-hole at the body's centre, level, that looks where the body heads.
 
-Its frame has the body's axes: x forward (the optical axis), y left, z up. Depth is z-depth, as
+Its frame: x forward (the optical axis), y left, z up. A stabilised mount keeps it level, because a
+vehicle that accelerates pitches by more than half the image is high. Depth is z-depth, as
 depth cameras deliver it: the distance along the optical axis, not along the ray. A pixel therefore
 sees the point `depth * ray`, where the first component of every ray is one. The capture frame is
 the camera's pose when the image was taken.
@@ -22,6 +23,11 @@ the square pixels, 56 degrees]."""
 RANGE_M = 6.0
 """Depth beyond which nothing is seen; such a pixel reads the range itself."""
 FOCAL_PX = WIDTH / 2 / tan(radians(FIELD_OF_VIEW_DEG / 2))
+
+
+def mounted(rotation: Tensor) -> Tensor:
+    """Return the camera's attitude `[3, 3, *b]` on a body of attitude `rotation`: its heading."""
+    return so3.from_yaw(torch.atan2(rotation[1, 0], rotation[0, 0]))
 
 
 def slopes() -> tuple[Tensor, Tensor]:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
-from faultpath.quadrotor.perception.camera import RANGE_M, CaptureFrame
+from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 CODE = 64
@@ -175,10 +175,19 @@ def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:
     return torch.mm(last, hidden)[0]
 
 
+UNSEEN_M = 0.25
+"""Most clearance that space outside the field of view is said to have: the collision radius and
+5 cm. A planner may go there where nothing better offers, and would rather look first (derived,
+docs/design/perception.md)."""
+NEAR_M = 0.4
+"""Around the camera the field of view does not matter: the vehicle has just come through there."""
+
+
 class DepthClearance:
     """The clearance that the latest depth images show, for planners that ask about many points.
 
-    It sees what it is given and nothing else: images and the poses they were taken from.
+    It sees what it is given and nothing else: images and the poses they were taken from. Points
+    that no pixel can show have a clearance of at most `UNSEEN_M`.
     """
 
     def __init__(self, model: ClearanceModel) -> None:
@@ -211,4 +220,18 @@ class DepthClearance:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
         chosen = list(scenes)
         local = self._frame.take(chosen).from_world(points)
-        return self._model.query(self._code[:, chosen].contiguous(), local)
+        seen = self._model.query(self._code[:, chosen].contiguous(), local)
+        return torch.where(in_view(local) | near(local), seen, seen.clamp(max=UNSEEN_M))
+
+
+def in_view(points: Tensor) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame the camera's image covers, `[*b]`."""
+    x, y, z = points
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    return (x > 0) & (y.abs() < left * x) & (z.abs() < up * x)
+
+
+def near(points: Tensor) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame are within `NEAR_M`, `[*b]`."""
+    x, y, z = points
+    return (x * x).add_(y * y).add_(z * z) < NEAR_M**2

@@ -1,9 +1,9 @@
 """Depth images and labelled points for the clearance model: one file a scene, made from its id.
 
-Poses are as flown: anywhere the vehicle fits, any heading, tilted as when it accelerates. Points
-lie where the planner asks: over the field of view, close to what is seen, and all round the
-vehicle. A scene's file depends on nothing but the recipe and the scene, so a run that was killed
-goes on where it was and ends with the same bytes.
+Poses are as flown: anywhere the vehicle fits, any heading, level as the camera's mount. Points lie
+where the planner asks: over the field of view, close to what is seen, and all round the vehicle. A
+scene's file depends on nothing but the recipe and the scene, so a run that was killed goes on where
+it was and ends with the same bytes.
 """
 
 import hashlib
@@ -36,7 +36,7 @@ from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.streams import generator
 
-FORMAT = 1
+FORMAT = 2
 PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
 
@@ -60,8 +60,6 @@ class Recipe(BaseModel):
     around: int = 64
     """Points all round the vehicle."""
     height_m: tuple[float, float] = (0.4, 2.5)
-    tilt_deg: float = 40.0
-    """Largest tilt; the draw is squared, so that a quarter of it is the median."""
     depth_m: float = 4.5
     """Depth to which points are spread: what a second at the top speed reaches, and a margin."""
     scatter_m: float = 0.35
@@ -211,11 +209,7 @@ def _poses(recipe: Recipe, scene: Scene, random: np.random.Generator) -> State:
         free = geometry.distance(drawn[:, None])[0] > COLLISION_RADIUS_M
         found = torch.cat((found, drawn[:, free]), 1)
     position = found[:, : recipe.images]
-    yaw, azimuth, part = torch.from_numpy(random.random((3, recipe.images)))
-    tilt = np.radians(recipe.tilt_deg) * part.square()
-    azimuth = azimuth * 2 * np.pi
-    lean = torch.stack((tilt * azimuth.cos(), tilt * azimuth.sin(), torch.zeros_like(tilt)))
-    rotation = so3.compose(so3.from_yaw(yaw * 2 * np.pi), so3.exp(lean))
+    rotation = so3.from_yaw(torch.from_numpy(random.random(recipe.images)) * 2 * np.pi)
     return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
 
 
