@@ -1,8 +1,8 @@
 """Closed-loop flights as a pool: what the trajectory-trained reconstruction learns from.
 
-The wind-conditioned predictor flies selection scenes 0 to 69 among their obstacles, with its wind
-input at zero and with the true wind, at every windy level (paper, Section V-A: "uses selection
-scenes 0-69"). Clearance is the geometry's, so that the pool does not depend on the depth model.
+The wind-conditioned predictor, given the true wind, flies selection scenes 0 to 69 among their
+obstacles at every windy level (paper, Section IV-B: selection scenes 0-69). Clearance is the
+geometry's, so that the pool does not depend on the depth model.
 """
 
 import hashlib
@@ -41,7 +41,7 @@ POOL = "trajectory"
 LIBRARY = "selection"
 SCENES = 70
 LEVELS = ("L1", "L2", "L3")
-VARIANTS = ("wm-a-wind/zero-wind", "wm-a-wind/true-wind")
+VARIANT = "wm-a-wind/true-wind"
 SEED = 0
 BLOCK = 14
 
@@ -53,24 +53,23 @@ class Shard:
     """Flights of one block of scenes, and its place in the pool."""
 
     level: str
-    variant: str
     first: int
 
     @property
     def name(self) -> str:
         """Name of its files, without their ending; sorted, they are in the pool's order."""
-        return f"{self.level}-{VARIANTS.index(self.variant)}-{self.first:03d}"
+        return f"{self.level}-{self.first:03d}"
 
     @property
     def episodes(self) -> range:
         """Numbers of its flights in the pool."""
-        arm = LEVELS.index(self.level) * len(VARIANTS) + VARIANTS.index(self.variant)
-        return range(arm * SCENES + self.first, arm * SCENES + self.first + BLOCK)
+        first = LEVELS.index(self.level) * SCENES + self.first
+        return range(first, first + BLOCK)
 
 
 def shards() -> list[Shard]:
     """Return every shard of the pool, in its order."""
-    return [Shard(*parts) for parts in product(LEVELS, VARIANTS, range(0, SCENES, BLOCK))]
+    return [Shard(*parts) for parts in product(LEVELS, range(0, SCENES, BLOCK))]
 
 
 def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> Path:
@@ -113,7 +112,7 @@ def fly(shard: Shard, place: Path) -> None:
     system = Quadrotor.parse(wind=shard.level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
     scenes = scenes[shard.first : shard.first + BLOCK]
-    variant = system.variants[shard.variant]
+    variant = system.variants[VARIANT]
     taps = Taps(
         system.interface,
         scenes=scenes,
@@ -123,7 +122,7 @@ def fly(shard: Shard, place: Path) -> None:
         consumers=variant.consumers,
         privileged=variant.privileged,
     )
-    flight = system.flight(shard.variant, scenes, taps, SEED)
+    flight = system.flight(VARIANT, scenes, taps, SEED)
     world = flight.world
     rows = [_row(world, command) for command in flight.commands()]
     rows.append(_row(world, torch.full((4, len(world.lanes)), torch.nan)))
@@ -161,7 +160,7 @@ def _flights(rows: Tensor, world: World, system: Quadrotor, scenes: Sequence[str
 def _recipe() -> str:
     """Hash of what decides the pool: the system's code and checkpoints, and the settings here."""
     system = Quadrotor.parse(clearance="true")
-    content = repr((system.fingerprint(), LIBRARY, SCENES, LEVELS, VARIANTS, SEED, BLOCK))
+    content = repr((system.fingerprint(), LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK))
     return hashlib.sha256(content.encode()).hexdigest()
 
 
@@ -178,7 +177,7 @@ def _assemble(path: Path, place: Path) -> None:
             "library": LIBRARY,
             "scenes": SCENES,
             "levels": list(LEVELS),
-            "variants": list(VARIANTS),
+            "variant": VARIANT,
         },
         wind={},
         code_sha256=_recipe(),
