@@ -1,0 +1,149 @@
+"""The controller with its learned modules: who reads what, and what a fault on it does."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import torch
+from flights import HELD_OUT, bits, fault, fly, quadrotor
+
+from faultpath.quadrotor.history import STEPS as HISTORY
+from faultpath.quadrotor.models import predictor
+from faultpath.quadrotor.predictors import History
+from faultpath.quadrotor.presets import STATE_NOISE_STD
+
+STEPS = 5
+LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
+VARIANTS = ("zero-wind", "gru", "gru+dcc", "dob", "wm-a", "wm-u", "dki-drag/gru")
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_every_variant_reads_what_it_declares_and_needs_no_privilege(name):
+    system = quadrotor(**LEARNED)
+    assert system.variants[name].privileged == frozenset()
+    _, taps = fly(system, name)
+    assert {consumer for _, consumer in taps.log} == system.variants[name].consumers
+    assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+
+
+def test_a_scene_does_not_depend_on_the_scenes_beside_it():
+    system = quadrotor(**LEARNED)
+    together, _ = fly(system, "gru", HELD_OUT[:3])
+    assert bits(fly(system, "gru", HELD_OUT[1:2])[0][0]) == bits(together[1])
+
+
+def test_a_fault_at_the_predictor_reaches_its_history_too():
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "gru", faults=[fault("calibration=0.1@predictor", system)])
+    altered = {(t.channel, t.consumer) for t in taps.receipts().taps if t.steps_altered.any()}
+    assert {consumer for channel, consumer in altered if channel == "mass"} == {
+        "predictor.dynamics",
+        "predictor.wind_map",
+        "predictor.trim",
+        "predictor.normalise_thrust",
+        "predictor.history",
+    }
+
+
+def test_the_withheld_reconstruction_has_no_calibration_to_strike():
+    system = quadrotor(**LEARNED)
+    consumers = system.variants["gru-withheld"].consumers
+    assert "reconstruction.head" not in consumers
+    assert "reconstruction.history" in consumers
+
+
+def test_freezing_the_history_code_holds_the_first_one():
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "wm-a", faults=[fault("history_code:freeze", system)])
+    codes = taps.delivered("history_code", "predictor.latent")
+    made = np.stack([reading for reading, _ in taps.log["history_code", "predictor.latent"]])
+    assert np.array_equal(codes, np.broadcast_to(codes[0], codes.shape))
+    assert not np.array_equal(made[-1], made[0])
+
+
+def test_shuffling_the_history_code_keeps_its_numbers_and_moves_them():
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "wm-a", faults=[fault("history_code:shuffle", system)])
+    for made, code in taps.log["history_code", "predictor.latent"]:
+        assert np.array_equal(np.sort(made), np.sort(code))
+        assert not np.array_equal(made, code)
+
+
+def test_a_noisy_state_is_late_and_the_same_for_everyone():
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "gru", faults=[fault("noisy_state=1", system)])
+    for channel in STATE_NOISE_STD:
+        readers = [consumer for name, consumer in taps.log if name == channel]
+        assert len(readers) > 1
+        got = [taps.delivered(channel, reader) for reader in readers]
+        assert all(np.array_equal(value, got[0]) for value in got)
+    truth = np.stack([reading for reading, _ in taps.log["velocity", "predictor.history"]])
+    late = taps.delivered("velocity", "predictor.history")[2:] - truth[1:-1]
+    assert 0.2 * STATE_NOISE_STD["velocity"] < late.std() < 3 * STATE_NOISE_STD["velocity"]
+    position = taps.delivered("position", "predictor.initial_state")[2:]
+    error = (
+        position - np.stack([r for r, _ in taps.log["position", "predictor.initial_state"]])[1:-1]
+    )
+    assert abs(np.corrcoef(error.ravel(), late.ravel())[0, 1]) < 0.9
+
+
+def test_without_noise_a_noisy_state_is_only_late():
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "wm-a", faults=[fault("noisy_state=0", system)])
+    for channel in STATE_NOISE_STD:
+        log = taps.log[channel, "predictor.initial_state"]
+        for (before, _), (_, got) in pairwise(log):
+            assert np.array_equal(got, before)
+
+
+@torch.inference_mode()
+def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
+    """After 12 intervals the code is that of the last 12 states and commands, oldest first."""
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", HISTORY + 2)
+    system = quadrotor(**LEARNED)
+    _, taps = fly(system, "wm-a")
+    now = HISTORY + 1
+
+    def past(channel, shift):
+        rows = taps.delivered(channel, "predictor.history")[now - HISTORY + shift : now + shift, 0]
+        return torch.from_numpy(rows).float().movedim(0, -1)[..., None].repeat_interleave(32, -1)
+
+    model = predictor("wm-a", 0)
+    mass = torch.from_numpy(taps.delivered("mass", "predictor.history")[now]).float()
+    code = model.encode(
+        History(
+            velocity_mps=past("velocity", 0),
+            rotation=past("attitude", 0),
+            rate_radps=past("body_rate", 0),
+            commands=past("action", 1),
+            mass_kg=mass.expand(32),
+        )
+    )
+    deployed = taps.delivered("history_code", "predictor.latent")[now, 0]
+    assert np.allclose(code[:, 0].numpy(), deployed, atol=1e-6)
+
+
+def test_a_blind_camera_sees_free_space_and_no_wall():
+    system = quadrotor(**LEARNED)
+    _, clear = fly(system, "wm-a", faults=[fault("depth:erase", system)])
+    _, plain = fly(system, "wm-a")
+    blind = clear.delivered("clearance", "planner.risk_cost")[0]
+    seen = plain.delivered("clearance", "planner.risk_cost")[0]
+    assert blind.mean() > seen.mean()
+    assert (blind > 0.2).mean() > 0.99
+
+
+def test_perception_takes_the_pose_that_it_is_given():
+    system = quadrotor(**LEARNED)
+    _, plain = fly(system, "wm-a")
+    shifted = fault("position:offset=0/0/1.5@perception", system)
+    _, other = fly(system, "wm-a", faults=[shifted])
+    first = [t.delivered("clearance", "planner.risk_cost")[0] for t in (plain, other)]
+    assert not np.array_equal(*first)
+    positions = [t.delivered("position", "predictor.initial_state")[0] for t in (plain, other)]
+    assert np.array_equal(*positions)
