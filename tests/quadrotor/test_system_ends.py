@@ -79,7 +79,7 @@ def test_terminal_distance_and_clearance_are_those_of_the_trace():
     system = quadrotor(wind="L2")
     outcomes, _ = fly(system, "zero-wind", HELD_OUT)
     for outcome in outcomes:
-        scene = system._scene(outcome.scene)
+        scene = system.scene(outcome.scene)
         path = trace(outcome)
         assert path.dtype == np.float32
         assert path[0] == pytest.approx(scene.start_m, abs=1e-6)
