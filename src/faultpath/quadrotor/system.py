@@ -173,14 +173,18 @@ def _outcomes(
 
 @cache
 def _code_digest() -> str:
-    """Hash of every file that decides a trial: results of two codes never mix in a folder."""
+    """Hash of every file that decides a trial: results of two codes never mix in a folder.
+
+    Trained weights are among them; how they were trained is not.
+    """
     package = files("faultpath")
     parts = [package / name for name in ("quadrotor", "taps", "faults", "arrays.py", "streams.py")]
     digest = hashlib.sha256()
     while parts:
         part = parts.pop()
         if part.is_dir():
-            parts += sorted(part.iterdir(), key=lambda child: child.name)
+            children = (child for child in part.iterdir() if child.name != "training")
+            parts += sorted(children, key=lambda child: child.name)
         elif part.name.endswith((".py", ".yaml", ".safetensors")):
             digest.update(part.name.encode() + part.read_bytes())
     return digest.hexdigest()

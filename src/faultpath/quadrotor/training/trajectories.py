@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -85,7 +85,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
         atomic.sweep(place)
         todo = [shard for shard in shards() if not (place / f"{shard.name}.rows").exists()]
         done = len(shards()) - len(todo)
-        for finished in (0, *_fly_all(todo, place, workers)):
+        for finished in chain((0,), _fly_all(todo, place, workers)):
             done += finished
             if progress is not None:
                 progress(done * BLOCK, len(shards()) * BLOCK)
