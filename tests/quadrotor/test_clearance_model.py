@@ -5,8 +5,15 @@ import torch
 from safetensors.torch import load, save
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
-from faultpath.quadrotor.perception.clearance import ClearanceModel, DepthClearance
+from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
+from faultpath.quadrotor.perception.clearance import (
+    NEAR_M,
+    UNSEEN_M,
+    ClearanceModel,
+    DepthClearance,
+    in_view,
+    near,
+)
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 POINTS = 96
@@ -101,7 +108,42 @@ def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: Cl
     world = so3.rotate(rotation[..., chosen, None], local.double()) + position.T[:, chosen, None]
     found = perception.query(world.float(), chosen)
     expected = model.query(model.encode(images(4))[:, chosen].contiguous(), local)
-    torch.testing.assert_close(found, expected, atol=1e-3, rtol=0)
+    shown = in_view(local) | near(local)
+    assert shown.any()
+    torch.testing.assert_close(found[shown], expected[shown], atol=1e-3, rtol=0)
+
+
+def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_its_own(
+    model: ClearanceModel,
+):
+    perception = DepthClearance(model)
+    level = torch.eye(3, dtype=torch.float64)
+    perception.capture(images(1), torch.zeros(1, 3, dtype=torch.float64), level[None])
+    at = points(1, 960)
+    found = perception.query(at, [0])
+    free = model.query(model.encode(images(1)), at)
+    shown = in_view(at) | near(at)
+    capped = ~shown & (free > UNSEEN_M)
+    assert capped.sum() > 10
+    assert (found[capped] == UNSEEN_M).all()
+    assert torch.equal(found[~capped], free[~capped]), "less is kept, inside and outside the view"
+    assert (found[shown] > UNSEEN_M).any()
+
+
+def test_the_view_is_the_images_pyramid_and_the_vehicles_own_place_needs_no_pixel():
+    inside = torch.tensor([2.0, 0.0, 0.0])
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    for point, expected in (
+        (inside, True),
+        (torch.tensor([2.0, 2 * left - 0.01, 2 * up - 0.01]), True),
+        (torch.tensor([2.0, 2 * left + 0.01, 0.0]), False),
+        (torch.tensor([2.0, 0.0, -2 * up - 0.01]), False),
+        (-inside, False),
+    ):
+        assert bool(in_view(point)) is expected
+    behind = torch.tensor([-1.0, 0.0, 0.0])
+    assert near(behind * (NEAR_M - 0.01))
+    assert not near(behind * (NEAR_M + 0.01))
 
 
 def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):

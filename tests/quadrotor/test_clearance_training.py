@@ -8,9 +8,11 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.perception.camera import mounted
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, in_view, visible_distance
+from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.checkpoint import checkpoint_path, load_checkpoint
@@ -22,6 +24,8 @@ from faultpath.quadrotor.training.clearance_task import (
     evaluate,
     predict,
 )
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+from faultpath.streams import generator
 
 SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
 
@@ -46,6 +50,14 @@ def test_labels_are_those_of_the_stored_images(samples: Samples):
         assert torch.equal(label, samples.clearance[i])
     assert in_view(samples.points.movedim(1, 0)).float().mean() > 0.4
     assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
+
+
+def test_images_are_level_as_the_mount_and_from_where_the_vehicle_fits():
+    scene = load_library("training")[7]
+    random = generator("clearance-data", scene.id, 0)
+    state = clearance_data._poses(SMALL.model_copy(update={"images": 40}), scene, random)
+    torch.testing.assert_close(mounted(state.rotation), state.rotation)
+    assert Geometry.stack([scene]).distance(state.position[:, None]).min() > COLLISION_RADIUS_M
 
 
 def test_a_scenes_samples_depend_on_the_recipe_and_the_scene_alone(samples: Samples):
