@@ -1,5 +1,7 @@
 """The clearance model: bounded, blind to its batch, and encoded once a capture."""
 
+import copy
+
 import pytest
 import torch
 from safetensors.torch import load, save
@@ -116,15 +118,17 @@ def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: Cl
 def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_its_own(
     model: ClearanceModel,
 ):
-    perception = DepthClearance(model)
+    generous = copy.deepcopy(model)
+    generous.layers[2].bias[-1] += 0.5  # the query network's own bias
+    perception = DepthClearance(generous)
     level = torch.eye(3, dtype=torch.float64)
     perception.capture(images(1), torch.zeros(1, 3, dtype=torch.float64), level[None])
     at = points(1, 960)
     found = perception.query(at, [0])
-    free = model.query(model.encode(images(1)), at)
+    free = generous.query(generous.encode(images(1)), at)
     shown = in_view(at) | near(at)
     capped = ~shown & (free > UNSEEN_M)
-    assert capped.sum() > 10
+    assert capped.sum() > 20
     assert (found[capped] == UNSEEN_M).all()
     assert torch.equal(found[~capped], free[~capped]), "less is kept, inside and outside the view"
     assert (found[shown] > UNSEEN_M).any()
