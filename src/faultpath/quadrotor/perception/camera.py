@@ -26,8 +26,17 @@ FOCAL_PX = WIDTH / 2 / tan(radians(FIELD_OF_VIEW_DEG / 2))
 
 
 def mounted(rotation: Tensor) -> Tensor:
-    """Return the camera's attitude `[3, 3, *b]` on a body of attitude `rotation`: its heading."""
-    return so3.from_yaw(torch.atan2(rotation[1, 0], rotation[0, 0]))
+    """Return the camera's attitude `[3, 3, *b]` on a body of attitude `rotation`: its heading.
+
+    From roots and quotients alone, which are rounded correctly: a lane's bits do not depend on the
+    others. A body that points straight up has no heading; its camera looks along world x.
+    """
+    x, y = rotation[0, 0], rotation[1, 0]
+    length = (x * x + y * y).sqrt()
+    up = length == 0
+    c, s = torch.where(up, 1, x / length), torch.where(up, 0, y / length)
+    zero, one = torch.zeros_like(c), torch.ones_like(c)
+    return torch.stack((c, -s, zero, s, c, zero, zero, zero, one)).view(3, 3, *c.shape)
 
 
 def slopes() -> tuple[Tensor, Tensor]:
