@@ -41,9 +41,9 @@ def _cell(result: dict | None) -> str:
     return counts if time is None else f"{counts} ({time:.2f})"
 
 
-def frozen() -> str:
-    """Return the frozen planner and wind levels as a Markdown table."""
-    record = json.loads((RECORDS / "frozen.json").read_text())
+def frozen(name: str) -> str:
+    """Return a frozen planner and wind levels as a Markdown table."""
+    record = json.loads((RECORDS / f"{name}.json").read_text())
     planner, wind = record["platform"]["planner"], record["platform"]["wind"]
     parts = {
         "sampler": planner["sampler"],
@@ -52,6 +52,8 @@ def frozen() -> str:
         "temperature": {"fraction of the spread": planner["temperature"]},
         "mean wind, m/s": {name: level["mean_mps"] for name, level in wind.items()},
     }
+    if "perception" in record["platform"]:
+        parts["perception"] = record["platform"]["perception"]
     lines = ["| frozen | settings |", "|---|---|"]
     for name, values in parts.items():
         shown = ", ".join(f"{key} {value}" for key, value in values.items())
@@ -68,7 +70,7 @@ def main() -> None:
         (RECORDS / "frozen.json").write_text(json.dumps(now, indent=1) + "\n")
     text = NOTE.read_text()
     for record in sorted(RECORDS.glob("*.json")):
-        made = frozen() if record.stem == "frozen" else table(record.stem)
+        made = (frozen if record.stem.startswith("frozen") else table)(record.stem)
         block = re.compile(
             rf"(<!-- begin:{record.stem} -->\n).*?(<!-- end:{record.stem} -->)", re.S
         )

@@ -14,12 +14,18 @@ def test_the_code_is_the_frozen_platform():
     assert platform_hash() == frozen["hash"]
 
 
+def test_both_frozen_records_stay():
+    first = json.loads((FROZEN.parent / "frozen-analytic.json").read_text())
+    assert first["hash"] != json.loads(FROZEN.read_text())["hash"]
+    assert first["platform"]["wind"] == json.loads(FROZEN.read_text())["platform"]["wind"]
+
+
 def test_the_chosen_record_flew_the_frozen_planner():
     """The last stage of the search flew, among others, exactly what is frozen."""
     planner = platform()["planner"]
     flown = [
         result
-        for result in json.loads((FROZEN.parent / "3-chosen.json").read_text())
+        for result in json.loads((FROZEN.parent / "6-learned-chosen.json").read_text())
         if result["planner"] == "terminal"
     ]
     assert flown

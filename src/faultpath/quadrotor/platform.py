@@ -6,13 +6,22 @@ from dataclasses import asdict
 from typing import Any
 
 from faultpath.quadrotor.options import PlannerSettings
+from faultpath.quadrotor.perception import camera, clearance
 from faultpath.quadrotor.vehicle import VehicleParameters, VehicleRanges
 from faultpath.quadrotor.wind import WIND_LEVELS
 
 
 def platform() -> dict[str, Any]:
-    """Return planner settings, wind levels and vehicles as plain data."""
+    """Return planner settings, wind levels, vehicles and what perception decides, as plain data."""
     return {
+        "perception": {
+            "width": camera.WIDTH,
+            "height": camera.HEIGHT,
+            "field_of_view_deg": camera.FIELD_OF_VIEW_DEG,
+            "range_m": camera.RANGE_M,
+            "unseen_m": clearance.UNSEEN_M,
+            "near_m": clearance.NEAR_M,
+        },
         "planner": PlannerSettings().model_dump(mode="json"),
         "wind": {name: asdict(level) for name, level in WIND_LEVELS.items()},
         "vehicle": VehicleParameters().model_dump(mode="json"),

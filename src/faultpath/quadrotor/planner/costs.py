@@ -22,7 +22,7 @@ class CostWeights(BaseModel):
     goal: float = 10.0
     risk: float = 40.0
     hit: float = 400.0
-    margin_m: float = 0.25
+    margin_m: float = 0.35
     """Clearance beyond the collision radius below which risk starts."""
     speed: float = 20.0
     v_max_mps: float = 3.4  # paper, Table I
