@@ -8,9 +8,10 @@ import torch
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
 from faultpath.quadrotor.history import STEPS as HISTORY
-from faultpath.quadrotor.models import predictor
+from faultpath.quadrotor.models import predictor, reconstruction
 from faultpath.quadrotor.predictors import History
 from faultpath.quadrotor.presets import STATE_NOISE_STD
+from faultpath.quadrotor.variants import wirings
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -29,6 +30,16 @@ def test_every_variant_reads_what_it_declares_and_needs_no_privilege(name):
     _, taps = fly(system, name)
     assert {consumer for _, consumer in taps.log} == system.variants[name].consumers
     assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+
+
+def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():
+    found = {wiring.name: wiring for wiring in wirings(quadrotor(**LEARNED).options)}
+    assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
+    assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)
+    assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2)
+    assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2)
+    other = {w.name: w for w in wirings(quadrotor(**LEARNED, predictor_seed="1").options)}
+    assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1)
 
 
 def test_a_scene_does_not_depend_on_the_scenes_beside_it():
