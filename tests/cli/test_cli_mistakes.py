@@ -69,12 +69,13 @@ def test_a_setting_given_twice_is_refused():
 
 
 QUADROTOR_MISTAKES = {
-    "variant": ({"repair": "wind"}, ["'wind'", "observer, true-wind, zero-wind"]),
+    "variant": ({"repair": "wind"}, ["'wind'", "dob", "gru+dcc", "zero-wind"]),
     "wind": ({"wind": "L4"}, ["'L4'", "L0, L1, L2, L3"]),
     "environment": ({"environment": "sea"}, ["'sea'", "obstacles, free-space"]),
     "predictor": ({"predictor": "oracle"}, ["'oracle'", "dki, dki-drag, true-parameter"]),
+    "clearance": ({"clearance": "radar"}, ["'radar'", "depth, true"]),
     "planner": ({"planner": "rrt"}, ["'rrt'", "terminal, running"]),
-    "option": ({"set": "colour=red"}, ["'colour'", "wind, environment, predictor, planner"]),
+    "option": ({"set": "colour=red"}, ["'colour'", "wind, environment, clearance, predictor"]),
     "library": ({"library": "heldout"}, ["'heldout'", "training, selection, held-out"]),
     "calibration -1": ({"fault": "calibration=-1"}, ["between -1 and 1"]),
     "calibration -1.5": ({"fault": "calibration=-1.5"}, ["-1.5", "between -1 and 1"]),
@@ -83,9 +84,9 @@ QUADROTOR_MISTAKES = {
     "calibration infinite": ({"fault": "calibration=-inf"}, ["finite", "'-inf'"]),
     "calibration in words": ({"fault": "calibration=abc"}, ["'abc'"]),
     "calibration without size": ({"fault": "calibration"}, ["needs a size", "calibration=+0.1"]),
-    "consumer": ({"fault": "wind:scale=2@observer"}, ["does not read it", "predictor.wind_map"]),
+    "consumer": ({"fault": "wind:scale=2@reconstruction"}, ["does not read it", "predictor.wind_map"]),
     "reaches nobody": (
-        {"repair": "true-wind", "fault": "mass:scale=1.1@observer"},
+        {"repair": "true-wind", "fault": "mass:scale=1.1@reconstruction"},
         ["neither 'zero-wind' nor 'true-wind'"],
     ),
     "scenes": ({"scenes": 101}, ["'held-out'", "1 to 100"]),
@@ -97,7 +98,7 @@ def test_a_mistake_about_the_quadrotor(options, says, tmp_path):
     asked = {
         "system": "quadrotor",
         "baseline": "zero-wind",
-        "repair": "observer",
+        "repair": "dob",
         "fault": "calibration=0.1",
         "library": "held-out",
     }
