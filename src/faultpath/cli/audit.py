@@ -80,7 +80,7 @@ def command(
     )
     folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
     count = (os.cpu_count() or 1) if workers is None else workers
-    failed = run_audit(built, audit, folder, count, tuple(sys.argv))
+    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]))
     return FAILED_TRIALS if failed else 0
 
 
