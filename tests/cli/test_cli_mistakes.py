@@ -84,7 +84,10 @@ QUADROTOR_MISTAKES = {
     "calibration infinite": ({"fault": "calibration=-inf"}, ["finite", "'-inf'"]),
     "calibration in words": ({"fault": "calibration=abc"}, ["'abc'"]),
     "calibration without size": ({"fault": "calibration"}, ["needs a size", "calibration=+0.1"]),
-    "consumer": ({"fault": "wind:scale=2@reconstruction"}, ["does not read it", "predictor.wind_map"]),
+    "consumer": (
+        {"fault": "wind:scale=2@reconstruction"},
+        ["does not read it", "predictor.wind_map"],
+    ),
     "reaches nobody": (
         {"repair": "true-wind", "fault": "mass:scale=1.1@reconstruction"},
         ["neither 'zero-wind' nor 'true-wind'"],

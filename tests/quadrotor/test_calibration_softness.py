@@ -12,7 +12,7 @@ import torch
 from faultpath.quadrotor.options import PlannerName, QuadrotorOptions
 from faultpath.quadrotor.planner import shift
 from faultpath.quadrotor.plant import Plant
-from faultpath.quadrotor.predictors import Calibration, PredictorInputs
+from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, Vehicle
 
@@ -22,7 +22,8 @@ SECONDS = 4.0
 
 def hover_heights(planner_name):
     """Mean height offset over the second half of a hover, m, for each of `ERRORS`."""
-    planner = QuadrotorOptions(planner=planner_name).build_planner()
+    predictor = KinematicIntegrator(drag=True)
+    planner = QuadrotorOptions(planner=planner_name).build_planner(predictor)
     lanes = 32
     plant = Plant(Vehicle.nominal(lanes))
     rest = torch.zeros(3, lanes, dtype=torch.float64)

@@ -17,7 +17,7 @@ from faultpath.quadrotor.planner import (
     shift,
 )
 from faultpath.quadrotor.planner.sampler import standard_normals
-from faultpath.quadrotor.predictors import Calibration, PredictorInputs
+from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
@@ -74,7 +74,7 @@ def test_candidates_are_bounded_evenly_around_hover():
 
 def test_trim_follows_the_supplied_calibration():
     """The hover centre moves with m~ and T~; nothing else of the sampler does."""
-    planner = QuadrotorOptions().build_planner()
+    planner = QuadrotorOptions().build_planner(KinematicIntegrator(drag=True))
     wrong = planner_inputs(mass=1.1)
     plan = planner.initial_plan(wrong.trim.hover_thrust(GRAVITY_MPS2)[:, 0])
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
@@ -109,7 +109,7 @@ def test_temperatures():
 
 
 def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
-    planner = QuadrotorOptions().build_planner()
+    planner = QuadrotorOptions().build_planner(KinematicIntegrator(drag=True))
     given = planner_inputs()
     plan = planner.initial_plan(torch.full((4,), GRAVITY_MPS2))
     goal = torch.zeros(3, 4)
