@@ -91,9 +91,12 @@ def _calibration(supplied: Supplied, place: str) -> Calibration:
 
 
 def _column(state: State) -> State:
+    """Add the candidate axis."""
     return State(
-        *(part[..., None] for part in (state.position, state.velocity)),
-        *(part[..., None] for part in (state.rotation, state.rate)),
+        state.position[..., None],
+        state.velocity[..., None],
+        state.rotation[..., None],
+        state.rate[..., None],
     )
 
 
