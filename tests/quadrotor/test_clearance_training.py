@@ -11,7 +11,12 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.perception.camera import mounted
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
-from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, in_view, visible_distance
+from faultpath.quadrotor.perception.labels import (
+    HIGHEST_M,
+    LOWEST_M,
+    between_pixels,
+    visible_distance,
+)
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
@@ -48,7 +53,7 @@ def test_labels_are_those_of_the_stored_images(samples: Samples):
     for i in (0, 37, 99):
         label = visible_distance(samples.depth_m()[i], samples.points[i]).float()
         assert torch.equal(label, samples.clearance[i])
-    assert in_view(samples.points.movedim(1, 0)).float().mean() > 0.4
+    assert between_pixels(samples.points.movedim(1, 0)).float().mean() > 0.4
     assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
 
 

@@ -105,7 +105,7 @@ def test_the_seed_decides_the_weights(reference: bytes, tmp_path: Path) -> None:
 
 def test_the_global_generator_has_no_say(reference: bytes, tmp_path: Path) -> None:
     with torch.random.fork_rng():
-        torch.manual_seed(987)
+        torch.manual_seed(987)  # on purpose: fitting must not look at it
         assert _fit(Toy(), tmp_path) == reference
 
 

@@ -138,7 +138,7 @@ def test_curves_go_to_tensorboard_when_asked(tmp_path, monkeypatch: pytest.Monke
             written.append((self._run, name, value, epoch))
 
     stand_in = ModuleType("torch.utils.tensorboard")
-    stand_in.SummaryWriter = Writer  # type: ignore[attr-defined]
+    stand_in.SummaryWriter = Writer  # type: ignore[attr-defined] - a module made here
     monkeypatch.setitem(sys.modules, "torch.utils.tensorboard", stand_in)
     path = fit(Toy(epochs=2), tmp_path, tensorboard=tmp_path / "board")
     card = read_card(path)

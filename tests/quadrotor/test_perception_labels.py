@@ -7,7 +7,7 @@ from test_perception_render import flown
 
 from faultpath.quadrotor.perception import labels
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
-from faultpath.quadrotor.perception.labels import in_view, visible_distance
+from faultpath.quadrotor.perception.labels import between_pixels, visible_distance
 from faultpath.quadrotor.perception.render import DepthRenderer
 from faultpath.quadrotor.scenes.library import load_library
 
@@ -51,7 +51,7 @@ def test_an_occlusion_frontier_counts_like_a_surface():
 
 def test_outside_the_view_only_what_is_seen_counts():
     left = torch.tensor([[0.5, 0.0, -2.0], [1.5, 0.3, 0.0], [0.0, 0.0, 0.0]])
-    assert not in_view(left).any()
+    assert not between_pixels(left).any()
     torch.testing.assert_close(visible_distance(WALL, left), torch.ones(3).double())
     near = torch.full((HEIGHT, WIDTH), 0.5)
     edge = 0.5 * (WIDTH - 1) / 2 / FOCAL_PX  # how far to the left the near wall is seen

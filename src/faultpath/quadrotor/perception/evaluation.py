@@ -7,7 +7,7 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, in_view
+from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M, between_pixels
 
 CALIBRATION_BIN_M = 0.1
 RANGES_M = (0.0, 1.0, 2.0, 3.0, 4.0, 6.0)
@@ -35,7 +35,7 @@ def summarise(estimate: Tensor, truth: Tensor, points: Tensor) -> dict[str, Any]
     """
     x, y, z = points.unbind(1)
     distance = (x * x + y * y + z * z).sqrt()
-    seen = in_view(points.movedim(1, 0))
+    seen = between_pixels(points.movedim(1, 0))
     places = {"in view": seen & (truth >= 0), "occluded": truth < 0, "outside": ~seen}
     return {
         "images": len(truth),

@@ -49,7 +49,7 @@ def visible_distance(depth: Tensor, points: Tensor) -> Tensor:
     return torch.from_numpy(signed.clip(LOWEST_M, HIGHEST_M))
 
 
-def in_view(points: Tensor) -> Tensor:
+def between_pixels(points: Tensor) -> Tensor:
     """Return whether points `[3, ...]` project between the outermost pixel centres, `[...]`."""
     x, y, z = points
     ahead = x > 0
@@ -121,7 +121,7 @@ def _behind(z: Array, points: Array) -> NDArray[np.bool_]:
     A plane's inverse depth is affine in the image, so inside a triangle it is the weighted mean of
     the corners' inverse depths.
     """
-    seen = in_view(torch.from_numpy(points)).numpy()
+    seen = between_pixels(torch.from_numpy(points)).numpy()
     x, y, up = points[:, seen]
     column = (WIDTH - 1) / 2 - FOCAL_PX * y / x
     row = (HEIGHT - 1) / 2 - FOCAL_PX * up / x

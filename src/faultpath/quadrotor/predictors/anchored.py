@@ -6,11 +6,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.predictors.base import History, Memory, Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
-from faultpath.quadrotor.predictors.network import (
-    FoldedNetwork,
-    LatentNetwork,
-    history_features,
-)
+from faultpath.quadrotor.predictors.network import FoldedNetwork, LatentNetwork
 from faultpath.quadrotor.state import State
 
 HIDDEN = 64  # paper, Section IV-A
@@ -50,8 +46,7 @@ class AnchoredPredictor(Predictor):
 
     def encode(self, history: History) -> Tensor:
         """See `Predictor.encode`."""
-        code = self.network.encode(history_features(history))
-        return code.unflatten(1, history.mass_kg.shape)
+        return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Start every candidate with the history code."""

@@ -35,6 +35,15 @@ class Affine(nn.Module):
         return torch.addmm(self.bias, self.weight, x)
 
 
+def draw_weights(module: nn.Module, generator: torch.Generator) -> None:
+    """Draw every affine layer of `module` uniformly within one over the root of its inputs."""
+    for layer in module.modules():
+        if isinstance(layer, Affine):
+            bound = 1 / math.sqrt(layer.weight.shape[1])
+            for weights in (layer.weight, layer.bias):
+                nn.init.uniform_(weights, -bound, bound, generator=generator)
+
+
 class GatedCell(nn.Module):
     """One step of a gated recurrent unit (Cho et al. 2014, in the form of cuDNN)."""
 
@@ -84,11 +93,7 @@ class LatentNetwork(nn.Module):
 
     def initialise(self, generator: torch.Generator) -> None:
         """Draw all weights; the last layer starts at zero, so that a rollout starts sane."""
-        for layer in self.modules():
-            if isinstance(layer, Affine):
-                bound = 1 / math.sqrt(layer.weight.shape[1])
-                for weights in (layer.weight, layer.bias):
-                    nn.init.uniform_(weights, -bound, bound, generator=generator)
+        draw_weights(self, generator)
         nn.init.zeros_(self.last.weight)
         nn.init.zeros_(self.last.bias)
 
@@ -96,12 +101,13 @@ class LatentNetwork(nn.Module):
         """Return `features` `[19 + conditioning, N]` in units of the training pool's spread."""
         return (features - self.feature_mean) / self.feature_std
 
-    def encode(self, features: Tensor) -> Tensor:
-        """Return the history code `[32, N]` of raw `features` `[T, 19 + conditioning, N]`."""
-        latent = features.new_zeros(LATENT, features.shape[-1])
-        for row in features:
+    def encode(self, history: History) -> Tensor:
+        """Return the history code `[32, *batch]`."""
+        rows = history_features(history)
+        latent = rows.new_zeros(LATENT, rows.shape[-1])
+        for row in rows:
             latent = self.encoder(self.standardise(row), latent)
-        return latent
+        return latent.unflatten(1, history.mass_kg.shape)
 
     def fold(self) -> "FoldedNetwork":
         """Return the network as the horizon loop runs it, with the weights of this moment."""

@@ -16,7 +16,6 @@ from faultpath.quadrotor.predictors.base import (
 from faultpath.quadrotor.predictors.network import (
     FoldedNetwork,
     LatentNetwork,
-    history_features,
 )
 from faultpath.quadrotor.state import State
 
@@ -64,8 +63,7 @@ class UnanchoredPredictor(Predictor):
 
     def encode(self, history: History) -> Tensor:
         """See `Predictor.encode`."""
-        code = self.network.encode(history_features(history))
-        return code.unflatten(1, history.mass_kg.shape)
+        return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Start every candidate with the history code."""

@@ -4,13 +4,11 @@ Components first: features are `[F, *batch]`. A column of a product has the same
 other columns are, as long as their number is a multiple of 32.
 """
 
-import math
-
 import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
-from faultpath.quadrotor.predictors.network import Affine, GatedCell
+from faultpath.quadrotor.predictors.network import Affine, GatedCell, draw_weights
 
 INTERVALS = 12  # paper, appendix: completed 20 Hz intervals
 STATE = 18  # position, velocity, rotation matrix, body rate (paper, Section IV-A)
@@ -52,11 +50,7 @@ class WindNetwork(nn.Module):
 
     def initialise(self, generator: torch.Generator) -> None:
         """Draw all weights uniformly within one over the root of a layer's inputs."""
-        for layer in self.modules():
-            if isinstance(layer, Affine):
-                bound = 1 / math.sqrt(layer.weight.shape[1])
-                for weights in (layer.weight, layer.bias):
-                    nn.init.uniform_(weights, -bound, bound, generator=generator)
+        draw_weights(self, generator)
 
     def measure(self, states: Tensor, commands: Tensor, calibration: Tensor, wind: Tensor) -> None:
         """Take the scales from a training pool; shapes as in `estimate`, wind `[3, N]` m/s."""

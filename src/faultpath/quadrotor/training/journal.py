@@ -73,7 +73,7 @@ def read_journal(
     try:
         with safe_open(path, framework="pt") as file:
             header = json.loads((file.metadata() or {}).get(_ENTRY, "{}"))
-            state = {key: file.get_tensor(key).clone() for key in file.keys()}  # noqa: SIM118
+            state = {key: file.get_tensor(key).clone() for key in file.keys()}  # noqa: SIM118 - a file is no mapping: it has keys, and no iterator
     except (SafetensorError, OSError, json.JSONDecodeError):
         return None
     if header.get("format") != FORMAT or header.get("recipe") != recipe:

@@ -38,6 +38,7 @@ def require_tensorboard() -> None:
 
 def _writer_class() -> Any:
     try:
+        # torch re-exports the class without saying so in its annotations.
         from torch.utils.tensorboard import SummaryWriter  # pyright: ignore[reportPrivateImportUsage]
     except ModuleNotFoundError as error:
         raise UserError(
