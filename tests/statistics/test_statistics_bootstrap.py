@@ -23,6 +23,7 @@ from faultpath.statistics import (
     success_effect,
     success_rate,
 )
+from faultpath.streams import generator
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
@@ -53,6 +54,21 @@ def test_resamples_are_keyed_and_complete():
     assert (RESAMPLES.seed_counts(3).sum(axis=1) == 3).all()
     with pytest.raises(ValueError, match="read-only"):
         RESAMPLES.counts[0, 0] = 3
+
+
+@pytest.mark.parametrize(
+    ("n_resamples", "n_scenes"), [(10_000, 100), (10_000, 1), (3001, 37), (3, 70_001)]
+)
+def test_counts_are_those_of_the_scenes_drawn_one_resample_after_another(n_resamples, n_scenes):
+    """However the counting is done: every reported interval comes of these very numbers."""
+    drawn = generator("bootstrap", "plain", 4).integers(0, n_scenes, size=(n_resamples, n_scenes))
+    plain = np.stack([np.bincount(row, minlength=n_scenes) for row in drawn]).astype(np.float64)
+    resamples = Resamples.draw("plain", n_scenes, seed=4, n_resamples=n_resamples)
+    assert resamples.counts.dtype == np.float64
+    np.testing.assert_array_equal(resamples.counts, plain, strict=True)
+    blocks = list(resamples.blocks())
+    assert len(blocks) > 1 or n_scenes == 1
+    np.testing.assert_array_equal(np.concatenate(blocks), plain, strict=True)
 
 
 @fewer
@@ -239,6 +255,16 @@ def test_medians_are_those_of_the_resampled_joint_scenes(pair, data):
     np.testing.assert_allclose(effect.draws, expected, atol=1e-9)
     assert effect.value == pytest.approx(np.median([w for w in within if w is not None]))
     assert effect.n_scenes == joint.any(axis=1).sum()
+
+
+def test_medians_take_every_resample_in_order():
+    resamples = Resamples.draw("several blocks", 100, n_resamples=1501)
+    assert len(list(resamples.blocks())) > 1
+    first, second = np.random.default_rng(0).normal(size=(2, 100))
+    joint = np.arange(100) % 3 == 0
+    expected = [np.median((first - second)[row[joint[row]]]) for row in rows(resamples)]
+    draws = median_effect(first, second, joint, resamples).draws
+    np.testing.assert_array_equal(draws, expected, strict=True)
 
 
 def test_times_of_scenes_that_are_not_joint_are_not_read():

@@ -1,20 +1,22 @@
 """The few distribution functions that the tests and power need, typed.
 
 SciPy ships no type stubs, so everything untyped is kept in this file. ``scipy.special`` is used
-rather than ``scipy.stats``: it is exact enough, far faster on arrays and quick to import.
+rather than ``scipy.stats``: it is exact enough, far faster on arrays and quick to import. It loads
+with the first call all the same, so that what only reads estimates does without.
 """
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import special
 
 from faultpath.statistics.inputs import Floats
 
 
 def binomial_cdf(successes: ArrayLike, trials: ArrayLike, probability: ArrayLike) -> Floats:
     """Return P(X <= successes), broadcast; 0 below 0 and 1 from ``trials`` on."""
+    from scipy import special
+
     k, n, p = np.broadcast_arrays(
         *(np.asarray(x, dtype=np.float64) for x in (successes, trials, probability))
     )
@@ -26,6 +28,8 @@ def binomial_cdf(successes: ArrayLike, trials: ArrayLike, probability: ArrayLike
 
 def binomial_pmf(successes: ArrayLike, trials: int, probability: float) -> Floats:
     """Return P(X = successes)."""
+    from scipy import special
+
     k = np.asarray(successes, dtype=np.float64)
     choose = special.gammaln(trials + 1.0) - special.gammaln(k + 1.0)
     choose = choose - special.gammaln(trials - k + 1.0)
@@ -47,6 +51,8 @@ def sign_mid_p_value(first: int, second: int) -> float:
 
 def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> float:
     """Return the upper end of the two-sided Clopper-Pearson interval."""
+    from scipy import special
+
     if successes >= trials:
         return 1.0
     tail = (1.0 + level) / 2.0
@@ -55,4 +61,6 @@ def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> f
 
 def normal_quantile(probability: float) -> float:
     """Return the standard normal quantile."""
+    from scipy import special
+
     return float(special.ndtri(probability))

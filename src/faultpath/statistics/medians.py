@@ -56,11 +56,16 @@ def _masked(values: Numbers, mask: NDArray[np.bool_], name: str) -> Floats:
 def _resampled_medians(values: Floats, scenes: NDArray[np.intp], resamples: Resamples) -> Floats:
     """Return the median of ``values``, which belong to ``scenes``, in every resample with any."""
     order = np.argsort(values, kind="stable")
-    ordered = values[order]
-    reached = np.cumsum(resamples.counts[:, scenes[order]], axis=1)
+    ordered, columns = values[order], scenes[order]
+    return np.concatenate([_medians(ordered, block[:, columns]) for block in resamples.blocks()])
+
+
+def _medians(ordered: Floats, counts: Floats) -> Floats:
+    """Return the median of ascending values [n] that occur ``counts`` [resamples, n] times."""
+    reached = np.cumsum(counts, axis=1, dtype=np.int32)
     reached = reached[reached[:, -1] > 0]
     total = reached[:, -1:]
     # The middle one, or the two middle ones, of the resampled values in ascending order.
-    lower = (reached < np.ceil(total / 2.0)).sum(axis=1)
-    upper = (reached < np.floor(total / 2.0) + 1.0).sum(axis=1)
+    lower = (2 * reached < total).sum(axis=1)
+    upper = (2 * reached <= total).sum(axis=1)
     return (ordered[lower] + ordered[upper]) / 2.0

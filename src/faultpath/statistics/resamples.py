@@ -1,5 +1,6 @@
 """Scene resamples, drawn once and shared by every effect that is to be bootstrapped jointly."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Self
@@ -9,6 +10,9 @@ from numpy.typing import NDArray
 
 from faultpath.statistics.inputs import Floats
 from faultpath.streams import generator
+
+_BLOCK = 50_000
+"""Counts worked on at a time: with what comes between, they fit into a core's own cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +51,11 @@ class Resamples:
         """Return [resamples, seeds]: how often each seed occurs; the same array at every call."""
         return _seed_counts(self.label, self.seed, self.n_resamples, n_seeds)
 
+    def blocks(self) -> Iterator[Floats]:
+        """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
+        for rows in _blocks(self.n_resamples, self.n_scenes):
+            yield self.counts[rows]
+
     def reordered(self, order: NDArray[np.intp]) -> "Resamples":
         """Return the same resamples for outcomes whose scenes were reordered as ``x[order]``."""
         return Resamples(label=self.label, seed=self.seed, counts=self.counts[:, order])
@@ -64,6 +73,19 @@ def _seed_counts(label: str, seed: int, n_resamples: int, n_seeds: int) -> Float
 
 
 def _counts(stream: np.random.Generator, rows: int, items: int) -> Floats:
-    chosen = stream.integers(0, items, size=(rows, items))
-    flat = (chosen + items * np.arange(rows)[:, np.newaxis]).ravel()
-    return np.bincount(flat, minlength=rows * items).reshape(rows, items).astype(np.float64)
+    """Return [rows, items]: how often each item comes up in ``items`` equally likely draws.
+
+    Where the blocks end does not matter: the stream goes on from one to the next.
+    """
+    counts = np.empty((rows, items))
+    for block in _blocks(rows, items):
+        part = counts[block]
+        chosen = stream.integers(0, items, size=part.shape)
+        chosen += items * np.arange(len(part))[:, np.newaxis]
+        part[:] = np.bincount(chosen.ravel(), minlength=part.size).reshape(part.shape)
+    return counts
+
+
+def _blocks(rows: int, items: int) -> Iterator[slice]:
+    step = max(1, _BLOCK // items)
+    return (slice(start, start + step) for start in range(0, rows, step))
