@@ -7,7 +7,7 @@ ARGS ?=
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-INPUTS := pyproject.toml constraints.txt
+INPUTS := pyproject.toml constraints.txt hatch_build.py $(wildcard src/faultpath/quadrotor/native/source/*)
 SOURCES := src tests examples benchmarks
 
 # --no-compile leaves byte code to the first import: most of what is installed is never imported.

@@ -14,7 +14,6 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from faultpath.quadrotor.vehicle import PLANT_RATE_HZ
 from faultpath.streams import generator
@@ -128,6 +127,8 @@ def dryden(
     covariance and stationary covariance are exact: the series has its standard deviation from
     its first sample on, at any rate.
     """
+    from scipy.signal import lfilter  # slow to load, and only those who fly need it
+
     time_constant = length_m / airspeed_mps
     ratio = 1.0 / (rate_hz * time_constant)
     decay = math.exp(-ratio)

@@ -15,7 +15,6 @@ and its own place, which no forward camera sees, would be occupied.
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from torch import Tensor
 
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
@@ -72,6 +71,8 @@ def _surface_distance(z: Array, points: Array) -> Array:
     Points along each triangle's longest edge find the few triangles that may be nearest; the
     distance to those is exact.
     """
+    from scipy.spatial import cKDTree  # slow to load, and only those who label need it
+
     found = triangles(z)
     far = np.full(points.shape[1], np.inf)
     if not len(found):

@@ -36,8 +36,8 @@ class AnchoredPredictor(Predictor):
 
     def __init__(self, network: LatentNetwork, wind: bool) -> None:
         self.network = network
-        self._kinematics = KinematicIntegrator(wind=wind)
-        self.reads = self._kinematics.reads | {"normalise_thrust", "history", "latent"}
+        self.kinematics = KinematicIntegrator(wind=wind)
+        self.reads = self.kinematics.reads | {"normalise_thrust", "history", "latent"}
 
     @staticmethod
     def build_network() -> LatentNetwork:
@@ -53,7 +53,7 @@ class AnchoredPredictor(Predictor):
         assert inputs.code is not None
         assert inputs.thrust_mass_kg is not None
         return _Memory(
-            self.network.fold(), inputs.code, self._kinematics.begin(inputs), inputs.thrust_mass_kg
+            self.network.fold(), inputs.code, self.kinematics.begin(inputs), inputs.thrust_mass_kg
         )
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
@@ -65,5 +65,5 @@ class AnchoredPredictor(Predictor):
             bounded[:3] * LINEAR_BOUND_MPS2,
             bounded[3:] * ANGULAR_BOUND_RADPS2,
         )
-        ahead = self._kinematics.advance(state, command, now.constants, residual)
+        ahead = self.kinematics.advance(state, command, now.constants, residual)
         return ahead, _Memory(now.network, latent, now.constants, now.mass_kg)

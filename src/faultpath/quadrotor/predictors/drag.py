@@ -12,24 +12,24 @@ class LinearDrag:
     """Force of the air on the vehicle, linear in the air's velocity relative to it."""
 
     def __init__(self, coefficients_kgps: Sequence[float] = NOMINAL_DRAG_KGPS) -> None:
-        self._coefficients = tuple(coefficients_kgps)
+        self.coefficients_kgps = tuple(coefficients_kgps)
         # With equal coefficients the rotations cancel: c R R^T v = c v.
-        self._isotropic = len(set(self._coefficients)) == 1
+        self._isotropic = len(set(self.coefficients_kgps)) == 1
 
     def force(self, rotation: Tensor, air_velocity: Tensor) -> Tensor:
         """Return the force in the world frame, N, for `air_velocity` `[3, *batch]` (wind - v)."""
         if self._isotropic:
-            return air_velocity * self._coefficients[0]
+            return air_velocity * self.coefficients_kgps[0]
         body = so3.rotate_back(rotation, air_velocity)
         return so3.rotate(rotation, body * self._column(body))
 
     def inverse(self, rotation: Tensor, force: Tensor) -> Tensor:
         """Return the air velocity that would cause `force` `[3, *batch]`, N."""
         if self._isotropic:
-            return force / self._coefficients[0]
+            return force / self.coefficients_kgps[0]
         body = so3.rotate_back(rotation, force)
         return so3.rotate(rotation, body / self._column(body))
 
     def _column(self, like: Tensor) -> Tensor:
-        column = like.new_tensor(self._coefficients)
+        column = like.new_tensor(self.coefficients_kgps)
         return column.reshape(3, *([1] * (like.ndim - 1)))

@@ -56,10 +56,15 @@ class KinematicIntegrator(Predictor):
         self.reads = frozenset({"initial_state", "trim", "dynamics"})
         if wind:
             self.reads |= {"wind_map"}
-        self._air = LinearDrag()
+        self.air = LinearDrag()
         self._dt = dt_s
         self._keep = math.exp(-dt_s / RATE_LAG_S)
         self._mean = RATE_LAG_S / dt_s * (1 - self._keep)
+
+    @property
+    def step_constants(self) -> tuple[float, float, float]:
+        """Step in s, and what is left of a rate error at its end and on average."""
+        return self._dt, self._keep, self._mean
 
     def begin(self, inputs: PredictorInputs) -> Constants:
         """Return the constants of the horizon; the memory does not change after."""
@@ -100,7 +105,7 @@ class KinematicIntegrator(Predictor):
         gain = (0.5 * constants.thrust_gain) * command[0]
         acceleration = (state.rotation[:, 2] + rotation[:, 2]) * gain
         if constants.wind_acceleration is not None:
-            acceleration += self._air.force(state.rotation, self._air_velocity(state, constants))
+            acceleration += self.air.force(state.rotation, self._air_velocity(state, constants))
         acceleration[2] -= GRAVITY_MPS2
         if residual is not None:
             acceleration += residual.linear_mps2

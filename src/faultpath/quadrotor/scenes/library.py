@@ -1,7 +1,7 @@
 """Libraries of scenes: the three frozen ones of the package, and a user's own files.
 
 A library file is JSON, one scene per line, with a content hash of each scene and of all. The frozen
-files can be made again, to the byte, from the seeds below.
+files can be made again, to the byte, from the seeds below. Only the making needs torch.
 """
 
 import json
@@ -14,7 +14,6 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.scenes.generate import generate_scene
 from faultpath.quadrotor.scenes.scene import Scene, digest
 
 FORMAT = "faultpath-scenes/1"
@@ -106,6 +105,8 @@ def _read(file: Traversable | Path, what: str) -> Library:
 
 def generate_library(name: str, seed: int, count: int) -> Library:
     """Return `count` new scenes; the same name, seed and count give the same scenes."""
+    from faultpath.quadrotor.scenes.generate import generate_scene
+
     return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
 
 

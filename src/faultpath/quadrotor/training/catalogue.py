@@ -1,17 +1,22 @@
 """Everything of the quadrotor that can be fitted, by name.
 
-The tasks load when they are built: the names alone must not cost their imports.
+The tasks load when they are built: the names alone must not cost their imports, torch included.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.checkpoint import stem
-from faultpath.quadrotor.training.task import Task
+from faultpath.quadrotor.training.card import stem
 
-Factory = Callable[[str, int, Path], Task]
+if TYPE_CHECKING:
+    from faultpath.quadrotor.training.task import Task
+
+Factory = Callable[[str, int, Path], "Task"]
 """Makes a task from its name, its seed and the folder of the data; a function of a module, so that
 worker processes find it."""
 

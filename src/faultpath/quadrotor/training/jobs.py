@@ -19,8 +19,9 @@ from typing import Any
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.training import clearance_data, trajectories
+from faultpath.quadrotor.training.card import ModelCard, read_card
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
-from faultpath.quadrotor.training.checkpoint import ModelCard, read_card, ship
+from faultpath.quadrotor.training.checkpoint import ship
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.fitting import Moment, forget
 from faultpath.quadrotor.training.pace import Overview, Pace

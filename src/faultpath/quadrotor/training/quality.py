@@ -15,14 +15,12 @@ from faultpath.quadrotor.reconstruction import (
     WindNetwork,
 )
 from faultpath.quadrotor.training import quality_predictors, quality_reconstructions
+from faultpath.quadrotor.training.card import ModelCard, read_card, stem
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
 from faultpath.quadrotor.training.checkpoint import (
-    ModelCard,
     checkpoint_path,
     load_checkpoint,
-    read_card,
     shipped_folder,
-    stem,
 )
 from faultpath.quadrotor.training.pool import Pool, read_pool
 from faultpath.quadrotor.training.quality_intervals import RESAMPLES, Episodes

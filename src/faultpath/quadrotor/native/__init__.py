@@ -1,0 +1,9 @@
+"""Compiled kernels of what the planner does most, and the way to the portable path without them.
+
+Every kernel repeats arithmetic that stands in torch elsewhere in the application. The torch form is
+the reference: it is what training differentiates and what the tests compare with.
+"""
+
+from faultpath.quadrotor.native.library import Kernels, available, kernels, load
+
+__all__ = ["Kernels", "available", "kernels", "load"]

@@ -1,0 +1,85 @@
+"""Finding and loading the compiled kernels that this processor runs fastest."""
+
+import ctypes
+import os
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from torch import Tensor
+
+from faultpath.errors import UserError
+
+VARIABLE = "FAULTPATH_KERNELS"
+PORTABLE = "portable"
+AUTO = "auto"
+SETS = ("avx512", "avx2", "baseline")
+"""Instruction sets by falling speed."""
+
+_FUSING = {"avx512", "avx2"}
+
+
+@dataclass(frozen=True)
+class Kernels:
+    """The compiled kernels of one instruction set."""
+
+    isa: str
+    library: ctypes.CDLL
+
+    def call(self, name: str, *arguments: object) -> None:
+        """Call a kernel; tensors go as addresses and must be contiguous, numbers as integers."""
+        self.library[name](*(_argument(value) for value in arguments))
+
+    @property
+    def numerics(self) -> str:
+        """What decides the last bits: sets that fuse multiply and add agree to the bit."""
+        return "fused" if self.isa in _FUSING else self.isa
+
+
+def _argument(value: object) -> object:
+    if isinstance(value, Tensor):
+        assert value.is_contiguous()
+        return ctypes.c_void_p(value.data_ptr())
+    return ctypes.c_int64(value) if isinstance(value, int) else value
+
+
+@cache
+def kernels() -> Kernels | None:
+    """Return the kernels to run, or `None` for the portable path.
+
+    `FAULTPATH_KERNELS` names an instruction set, `portable` or `auto`; unset, it is `auto`.
+
+    Raises:
+        UserError: It names something else, or a set that was not built or does not run here.
+    """
+    wanted = os.environ.get(VARIABLE) or AUTO
+    if wanted == PORTABLE:
+        return None
+    if wanted not in (AUTO, *SETS):
+        choices = ", ".join((AUTO, *SETS, PORTABLE))
+        raise UserError(f"{VARIABLE} is '{wanted}': it takes one of {choices}.")
+    for isa in available() if wanted == AUTO else (wanted,):
+        return load(isa)
+    return None
+
+
+def available() -> tuple[str, ...]:
+    """Return the instruction sets that were built and that this processor has, fastest first."""
+    if not _path("baseline").exists():
+        return ()
+    level = ctypes.CDLL(str(_path("baseline"))).faultpath_level()
+    return tuple(isa for isa in SETS[-1 - level :] if _path(isa).exists())
+
+
+def load(isa: str) -> Kernels:
+    """Load the kernels of one instruction set; `UserError` where that cannot be."""
+    if isa not in available():
+        raise UserError(
+            f"kernels '{isa}' were not built or do not run on this processor: "
+            f"set {VARIABLE} to one of {', '.join((*available(), PORTABLE))}."
+        )
+    return Kernels(isa, ctypes.CDLL(str(_path(isa))))
+
+
+def _path(isa: str) -> Path:
+    return Path(__file__).parent / f"kernels-{isa}.so"

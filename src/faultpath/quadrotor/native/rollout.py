@@ -1,0 +1,179 @@
+"""The horizon loop, compiled: what a predictor's `step` does, for a tile of candidates at a time."""
+
+import ctypes
+
+import torch
+from torch import Tensor, nn
+
+from faultpath.quadrotor.native.library import Kernels
+from faultpath.quadrotor.predictors import (
+    AnchoredPredictor,
+    KinematicIntegrator,
+    Predictor,
+    PredictorInputs,
+    UnanchoredPredictor,
+)
+from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
+from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, LATENT, FoldedNetwork
+from faultpath.quadrotor.predictors.unanchored import OUTPUTS, UnanchoredNetwork
+from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+
+_BLOCK = 4
+"""Outputs that a kernel sums at once (`OUTPUTS` in `layers.hpp`); weights lie in such blocks."""
+
+_KINEMATIC, _ANCHORED, _UNANCHORED = range(3)
+_LAYERS = ("embed", "gates", "candidate", "remembered", "first", "second", "last")
+
+
+class _Layer(ctypes.Structure):
+    _fields_ = (
+        ("weights", ctypes.c_void_p),
+        ("inputs", ctypes.c_int64),
+        ("outputs", ctypes.c_int64),
+    )
+
+
+class _Model(ctypes.Structure):
+    """`Predictor` of `rollout.cpp`."""
+
+    _fields_ = (
+        ("kind", ctypes.c_int64),
+        ("windy", ctypes.c_int64),
+        ("dragging", ctypes.c_int64),
+        *((name, _Layer) for name in _LAYERS),
+        *((name, ctypes.c_float) for name in ("dt", "keep", "mean", "gravity")),
+        ("linear_bound", ctypes.c_float),
+        ("angular_bound", ctypes.c_float),
+        ("drag", ctypes.c_float * 3),
+        ("spread", ctypes.c_float * OUTPUTS),
+    )
+
+
+class CompiledRollout:
+    """Rolls candidates of one predictor out, with the weights that it has when this is made."""
+
+    def __init__(self, kernels: Kernels, predictor: Predictor) -> None:
+        self._kernels = kernels
+        self._kept: list[Tensor] = []  # the kernel holds addresses only
+        self._model = _Model(gravity=GRAVITY_MPS2)
+        if isinstance(predictor, UnanchoredPredictor):
+            self._model.kind = _UNANCHORED
+            self._set_network(predictor.network)
+        elif isinstance(predictor, AnchoredPredictor):
+            self._model.kind = _ANCHORED
+            self._set_network(predictor.network)
+            self._set_kinematics(predictor.kinematics)
+        elif isinstance(predictor, KinematicIntegrator):
+            self._model.kind = _KINEMATIC
+            self._set_kinematics(predictor)
+        else:
+            raise TypeError(f"no compiled rollout of {type(predictor).__name__}")
+
+    @staticmethod
+    def covers(predictor: Predictor) -> bool:
+        """Return whether there is a compiled rollout of `predictor`."""
+        kinds = (UnanchoredPredictor, AnchoredPredictor, KinematicIntegrator)
+        return isinstance(predictor, kinds)
+
+    def __call__(self, inputs: PredictorInputs, commands: Tensor) -> Rollout:
+        """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`."""
+        horizon, _, scenes, candidates = commands.shape
+        positions = commands.new_empty(3, scenes, horizon, candidates)
+        velocities = torch.empty_like(positions)
+        ends = commands.new_empty(12, scenes, candidates)
+        starts = _starts(inputs)
+        self._kernels.call(
+            "faultpath_roll",
+            ctypes.byref(self._model),
+            starts,
+            commands.contiguous(),
+            *(horizon, scenes, candidates),
+            *(positions, velocities, ends),
+        )
+        rotation = ends[:9].unflatten(0, (3, 3))
+        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, ends[9:])
+        return Rollout(positions, velocities, final)
+
+    def _set_kinematics(self, integrator: KinematicIntegrator) -> None:
+        self._model.windy = "wind_map" in integrator.reads
+        self._model.dragging = integrator.drag
+        self._model.dt, self._model.keep, self._model.mean = integrator.step_constants
+        self._model.drag[:] = integrator.air.coefficients_kgps
+        self._model.linear_bound = LINEAR_BOUND_MPS2
+        self._model.angular_bound = ANGULAR_BOUND_RADPS2
+
+    @torch.no_grad()
+    def _set_network(self, network: nn.Module) -> None:
+        for name, (weights, block) in _layers(network.fold()).items():
+            packed = _pack(weights, block)
+            self._kept.append(packed)
+            outputs = packed.shape[0] * block
+            layer = _Layer(packed.data_ptr(), packed.shape[1] - 1, outputs)
+            setattr(self._model, name, layer)
+        if isinstance(network, UnanchoredNetwork):
+            self._model.spread[:] = network.increment_std.flatten().tolist()
+
+
+def _layers(folded: FoldedNetwork) -> dict[str, tuple[Tensor, int]]:
+    """Return each layer as (bias, weights) columns without the rows that pass a one on."""
+    split = ACTION_EMBEDDING
+    gates, whole = folded.gates, (folded.first, folded.second)
+    first, second = (_bias_first(layer[:-1]) for layer in whole)
+    return {
+        "embed": (_bias_first(folded.embed[:-1]), _BLOCK),
+        "gates": (
+            torch.cat((gates[:, split : split + 1], gates[:, :split], gates[:, split + 1 :]), 1),
+            _BLOCK,
+        ),
+        "candidate": (_bias_first(folded.candidate), _BLOCK // 2),
+        "remembered": (folded.remembered, _BLOCK // 2),
+        "first": (first, _BLOCK),
+        "second": (second, _BLOCK),
+        "last": (_bias_first(folded.last), _BLOCK),
+    }
+
+
+def _bias_first(weights: Tensor) -> Tensor:
+    return weights.roll(1, dims=1)
+
+
+def _pack(weights: Tensor, block: int) -> Tensor:
+    """Return `[outputs, 1 + inputs]` as `[blocks, 1 + inputs, block]`, padded with zeros."""
+    missing = -len(weights) % block
+    padded = torch.cat((weights, weights.new_zeros(missing, weights.shape[1])))
+    return padded.unflatten(0, (-1, block)).transpose(1, 2).contiguous()
+
+
+def _starts(inputs: PredictorInputs) -> Tensor:
+    """Return `Start` of `rollout.cpp` for every scene, `[S, 58]`; what is not read is zero."""
+    state = inputs.state
+    scenes = state.position.shape[1]
+    blank = state.position.new_zeros(1, scenes)
+
+    def row(value: Tensor | None) -> Tensor:
+        return blank if value is None else value[:, 0][None]
+
+    thrust, wind, inverse = None, blank.expand(3, -1), None
+    if inputs.dynamics is not None:
+        thrust = inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg
+    if inputs.wind_mps is not None and inputs.wind_map_mass_kg is not None:
+        wind = (inputs.wind_mps / inputs.wind_map_mass_kg)[..., 0]
+        inverse = 1 / inputs.wind_map_mass_kg
+    weight = inputs.thrust_mass_kg
+    conditioning = inputs.conditioning
+    rows = (
+        state.position[..., 0],
+        state.velocity[..., 0],
+        state.rotation[..., 0].flatten(0, 1),
+        state.rate[..., 0],
+        row(thrust),
+        wind,
+        row(inverse),
+        row(None if weight is None else 1 / (weight * GRAVITY_MPS2)),
+        row(conditioning and conditioning.mass_kg),
+        row(conditioning and conditioning.thrust_scale),
+        blank.expand(LATENT, -1) if inputs.code is None else inputs.code[..., 0],
+    )
+    return torch.cat(rows).T.contiguous()

@@ -1,0 +1,250 @@
+// Candidate commands rolled through a predictor: the horizon loop of the planner.
+//
+// The same arithmetic as `predictors/` in torch, which is its reference. A tile of candidates stays
+// in cache over all steps, so that memory is touched for commands and results only.
+#include "layers.hpp"
+#include "rotation.hpp"
+
+namespace {
+
+constexpr int LATENT = 32;
+constexpr int EMBEDDING = 16;
+constexpr int MOTION = 15;        // velocity, rotation, body rate
+constexpr int COMMAND = 4;
+constexpr int MOST_FEATURES = 21;
+constexpr int MOST_HIDDEN = 128;
+constexpr int MOST_OUTPUTS = 16;
+
+enum Kind : int64_t { KINEMATIC, ANCHORED, UNANCHORED };
+
+}  // namespace
+
+extern "C" {
+
+struct Predictor {
+  int64_t kind;
+  int64_t windy;        // the integrator has its wind term
+  int64_t dragging;     // and drag
+  Layer embed, gates, candidate, remembered, first, second, last;
+  float dt, keep, mean, gravity;
+  float linear_bound, angular_bound;
+  float drag[3];
+  float spread[12];
+};
+
+// What is the same for all candidates of a scene.
+struct Start {
+  float position[3], velocity[3], rotation[9], rate[3];
+  float thrust_gain;
+  float wind[3];  // over the mass
+  float inverse_mass;
+  float inverse_weight;
+  float conditioning[2];
+  float code[LATENT];
+};
+
+}  // extern "C"
+
+namespace {
+
+struct Motion {
+  Row position[3], velocity[3];
+  Rotation rotation;
+  Row rate[3];
+};
+
+// Rows in the order in which layers read them, so that no layer's input has to be gathered.
+struct Network {
+  Row known[EMBEDDING + LATENT + MOST_FEATURES];
+  Row hidden[2][MOST_HIDDEN];
+  Row gates[2 * LATENT];
+  Row next[LATENT];
+  Row outputs[MOST_OUTPUTS];
+
+  Row* embedding() { return known; }
+  Row* latent() { return known + EMBEDDING; }
+  Row* features() { return known + EMBEDDING + LATENT; }
+};
+
+INLINE Row each(float value) {
+  Row row;
+  for (int v = 0; v < WIDE; ++v) row.part[v] = splat(value);
+  return row;
+}
+
+INLINE void observe(const Motion& now, const Row* command, const Start& start, Row* features) {
+  for (int i = 0; i < 3; ++i) features[i] = now.velocity[i];
+  for (int i = 0; i < 9; ++i) features[3 + i] = now.rotation.at[i];
+  for (int i = 0; i < 3; ++i) features[12 + i] = now.rate[i];
+  for (int v = 0; v < WIDE; ++v)
+    features[MOTION].part[v] = command[0].part[v] * start.inverse_weight;
+  for (int i = 1; i < COMMAND; ++i) features[MOTION + i] = command[i];
+}
+
+// One step of the gated unit: latent <- (1 - update) candidate + update latent.
+INLINE void remember(const Predictor& model, Network& net) {
+  dense(model.gates, net.embedding(), net.gates, sigmoid);
+  constexpr int BLOCK = OUTPUTS / 2;
+  const float* given = model.candidate.weights;
+  const float* kept = model.remembered.weights;
+  for (int first = 0; first < LATENT; first += BLOCK) {
+    Row input[BLOCK], memory[BLOCK];
+    start<BLOCK>(given, input);
+    accumulate<BLOCK>(given + BLOCK, net.embedding(), EMBEDDING, input);
+    start<BLOCK>(kept, memory);
+    accumulate<BLOCK>(kept + BLOCK, net.latent(), LATENT, memory);
+    given += (1 + EMBEDDING) * BLOCK;
+    kept += (1 + LATENT) * BLOCK;
+    for (int o = 0; o < BLOCK; ++o)
+      for (int v = 0; v < WIDE; ++v) {
+        const Vector reset = net.gates[first + o].part[v];
+        const Vector update = net.gates[LATENT + first + o].part[v];
+        const Vector fresh = hyperbolic_tangent(fma(reset, memory[o].part[v], input[o].part[v]));
+        net.next[first + o].part[v] = fma(update, net.latent()[first + o].part[v] - fresh, fresh);
+      }
+  }
+  std::memcpy(net.latent(), net.next, sizeof net.next);
+}
+
+INLINE void think(const Predictor& model, Network& net) {
+  dense(model.embed, net.features() + MOTION, net.embedding(), rectified);
+  remember(model, net);
+  dense(model.first, net.latent(), net.hidden[0], rectified);
+  dense(model.second, net.hidden[0], net.hidden[1], rectified);
+  dense(model.last, net.hidden[1], net.outputs, [](Vector x) { return x; });
+}
+
+INLINE void integrate(const Predictor& model, const Start& start, const Row* command,
+                      const Row* residual, Motion& now) {
+  const float dt = model.dt;
+  for (int v = 0; v < WIDE; ++v) {
+    Vector turn[3];
+    for (int i = 0; i < 3; ++i) {
+      const Vector target = command[1 + i].part[v];
+      const Vector lag = now.rate[i].part[v] - target;
+      turn[i] = fma(lag, splat(model.mean), target) * dt;
+      now.rate[i].part[v] = fma(lag, splat(model.keep), target);
+      if (residual != nullptr) {
+        const Vector angular = hyperbolic_tangent(residual[3 + i].part[v]) * model.angular_bound;
+        turn[i] = fma(angular, splat(0.5f * dt * dt), turn[i]);
+        now.rate[i].part[v] = fma(angular, splat(dt), now.rate[i].part[v]);
+      }
+    }
+    Vector before[9], after[9], by[9];
+    for (int i = 0; i < 9; ++i) before[i] = now.rotation.at[i].part[v];
+    rotation_of(turn, by);
+    compose(before, by, after);
+
+    Vector pushed[3] = {};
+    if (model.windy) {
+      Vector air[3];
+      for (int i = 0; i < 3; ++i) {
+        air[i] = splat(start.wind[i]);
+        if (model.dragging) air[i] = fma(now.velocity[i].part[v], splat(-start.inverse_mass), air[i]);
+      }
+      Vector body[3];
+      rotate_back(before, air, body);
+      for (int i = 0; i < 3; ++i) body[i] = body[i] * model.drag[i];
+      rotate(before, body, pushed);
+    }
+    const Vector gain = command[0].part[v] * (0.5f * start.thrust_gain);
+    for (int i = 0; i < 3; ++i) {
+      Vector acceleration = fma(before[3 * i + 2] + after[3 * i + 2], gain, pushed[i]);
+      if (i == 2) acceleration = acceleration - model.gravity;
+      if (residual != nullptr)
+        acceleration = fma(hyperbolic_tangent(residual[i].part[v]), splat(model.linear_bound),
+                           acceleration);
+      const Vector velocity = now.velocity[i].part[v];
+      const Vector ahead = fma(acceleration, splat(dt), velocity);
+      now.velocity[i].part[v] = ahead;
+      now.position[i].part[v] = fma(velocity + ahead, splat(0.5f * dt), now.position[i].part[v]);
+    }
+    for (int i = 0; i < 9; ++i) now.rotation.at[i].part[v] = after[i];
+  }
+}
+
+INLINE void increment(const Predictor& model, const Row* outputs, Motion& now) {
+  for (int v = 0; v < WIDE; ++v) {
+    Vector turn[3], before[9], after[9], by[9];
+    for (int i = 0; i < 3; ++i) {
+      now.position[i].part[v] =
+          fma(outputs[i].part[v], splat(model.spread[i]), now.position[i].part[v]);
+      now.velocity[i].part[v] =
+          fma(outputs[3 + i].part[v], splat(model.spread[3 + i]), now.velocity[i].part[v]);
+      now.rate[i].part[v] =
+          fma(outputs[6 + i].part[v], splat(model.spread[6 + i]), now.rate[i].part[v]);
+      turn[i] = outputs[9 + i].part[v] * model.spread[9 + i];
+    }
+    for (int i = 0; i < 9; ++i) before[i] = now.rotation.at[i].part[v];
+    rotation_of(turn, by);
+    compose(before, by, after);
+    for (int i = 0; i < 9; ++i) now.rotation.at[i].part[v] = after[i];
+  }
+}
+
+INLINE void begin(const Start& start, Motion& now, Network& net) {
+  for (int i = 0; i < 3; ++i) {
+    now.position[i] = each(start.position[i]);
+    now.velocity[i] = each(start.velocity[i]);
+    now.rate[i] = each(start.rate[i]);
+  }
+  for (int i = 0; i < 9; ++i) now.rotation.at[i] = each(start.rotation[i]);
+  for (int i = 0; i < LATENT; ++i) net.latent()[i] = each(start.code[i]);
+  for (int i = 0; i < 2; ++i) net.features()[MOTION + COMMAND + i] = each(start.conditioning[i]);
+}
+
+INLINE void take(const float* from, int64_t count, Row& row) {
+  if (count == TILE) {
+    std::memcpy(&row, from, sizeof row);
+  } else {
+    row = each(0.0f);
+    std::memcpy(&row, from, count * sizeof(float));
+  }
+}
+
+INLINE void give(const Row& row, int64_t count, float* to) {
+  std::memcpy(to, &row, (count < TILE ? count : TILE) * sizeof(float));
+}
+
+void roll_tile(const Predictor& model, const Start& start, const float* commands, int64_t steps,
+               int64_t scenes, int64_t candidates, int64_t count, float* positions,
+               float* velocities, float* ends) {
+  Network net;
+  Motion now;
+  begin(start, now, net);
+  const int64_t row = scenes * candidates;           // commands [H, 4, S, K], ends [12, S, K]
+  const int64_t axis = scenes * steps * candidates;  // positions [3, S, H, K]
+  for (int64_t h = 0; h < steps; ++h) {
+    Row command[COMMAND];
+    for (int i = 0; i < COMMAND; ++i) take(commands + (h * COMMAND + i) * row, count, command[i]);
+    if (model.kind != KINEMATIC) {
+      observe(now, command, start, net.features());
+      think(model, net);
+    }
+    if (model.kind == UNANCHORED)
+      increment(model, net.outputs, now);
+    else
+      integrate(model, start, command, model.kind == ANCHORED ? net.outputs : nullptr, now);
+    for (int i = 0; i < 3; ++i) {
+      give(now.position[i], count, positions + i * axis + h * candidates);
+      give(now.velocity[i], count, velocities + i * axis + h * candidates);
+    }
+  }
+  for (int i = 0; i < 9; ++i) give(now.rotation.at[i], count, ends + i * row);
+  for (int i = 0; i < 3; ++i) give(now.rate[i], count, ends + (9 + i) * row);
+}
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) void faultpath_roll(
+    const Predictor* model, const Start* starts, const float* commands, int64_t steps,
+    int64_t scenes, int64_t candidates, float* positions, float* velocities, float* ends) {
+  for (int64_t s = 0; s < scenes; ++s)
+    for (int64_t first = 0; first < candidates; first += TILE) {
+      const int64_t left = candidates - first;
+      const int64_t at = s * candidates + first;
+      const int64_t along = s * steps * candidates + first;
+      roll_tile(*model, starts[s], commands + at, steps, scenes, candidates,
+                left < TILE ? left : TILE, positions + along, velocities + along, ends + at);
+    }
+}

@@ -1,0 +1,150 @@
+// One vector type over candidates, and the few functions of it that the kernels need.
+//
+// The width follows from the instruction set that a file is compiled for. Every operation is either
+// correctly rounded or written out here in the same order for all widths, and contraction is off, so
+// that sets with a fused multiply-add give the same bits. The baseline of x86 has none: its results
+// differ from theirs by rounding.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+#define INLINE inline __attribute__((always_inline))
+
+namespace {
+
+#if defined(__AVX512F__)
+constexpr int LANES = 16;
+#elif defined(__AVX2__) && defined(__FMA__)
+constexpr int LANES = 8;
+#else
+constexpr int LANES = 4;
+#endif
+
+typedef float Vector __attribute__((vector_size(4 * LANES)));
+typedef int32_t Integers __attribute__((vector_size(4 * LANES)));
+
+INLINE Vector splat(float value) {
+#if defined(__AVX512F__)
+  return _mm512_set1_ps(value);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return _mm256_set1_ps(value);
+#elif defined(__x86_64__)
+  return _mm_set1_ps(value);
+#else
+  return Vector{value, value, value, value};
+#endif
+}
+
+INLINE Vector load(const float* from) {
+  Vector value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+INLINE void store(float* to, Vector value) { std::memcpy(to, &value, sizeof value); }
+
+INLINE Vector fma(Vector a, Vector b, Vector c) {
+#if defined(__AVX512F__)
+  return _mm512_fmadd_ps(a, b, c);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return _mm256_fmadd_ps(a, b, c);
+#elif defined(__aarch64__)
+  return vfmaq_f32(c, a, b);
+#else
+  return a * b + c;
+#endif
+}
+
+INLINE Vector sqrt(Vector x) {
+#if defined(__AVX512F__)
+  return _mm512_sqrt_ps(x);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return _mm256_sqrt_ps(x);
+#elif defined(__x86_64__)
+  return _mm_sqrt_ps(x);
+#elif defined(__aarch64__)
+  return vsqrtq_f32(x);
+#else
+  for (int i = 0; i < LANES; ++i) x[i] = __builtin_sqrtf(x[i]);
+  return x;
+#endif
+}
+
+INLINE Vector select(Integers mask, Vector yes, Vector no) { return mask ? yes : no; }
+
+// A number that is not a number comes out of these as the bound.
+INLINE Vector at_most(Vector x, Vector bound) { return select(x < bound, x, bound); }
+INLINE Vector at_least(Vector x, Vector bound) { return select(x > bound, x, bound); }
+INLINE Vector bounded(Vector x, Vector low, Vector high) { return at_most(at_least(x, low), high); }
+
+INLINE Vector as_float(Integers bits) {
+  Vector value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+INLINE Integers as_bits(Vector value) {
+  Integers bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  return bits;
+}
+
+INLINE Vector absolute(Vector x) { return as_float(as_bits(x) & 0x7fffffff); }
+
+constexpr float ROUNDER = 12582912.0f;  // 1.5 * 2^23: adding it rounds to a whole number
+
+// e^x for x in [-87, 88], beyond which it stays at the ends; relative error about 1e-7 (Cephes).
+INLINE Vector exponential(Vector x) {
+  x = bounded(x, splat(-87.0f), splat(88.0f));
+  const Vector shifted = fma(x, splat(1.44269504088896341f), splat(ROUNDER));
+  const Vector whole = shifted - ROUNDER;
+  Vector r = fma(whole, splat(-0.693359375f), x);
+  r = fma(whole, splat(2.12194440e-4f), r);
+  Vector p = splat(1.9875691500e-4f);
+  p = fma(p, r, splat(1.3981999507e-3f));
+  p = fma(p, r, splat(8.3334519073e-3f));
+  p = fma(p, r, splat(4.1665795894e-2f));
+  p = fma(p, r, splat(1.6666665459e-1f));
+  p = fma(p, r, splat(5.0000001201e-1f));
+  p = fma(p, r * r, r) + 1.0f;
+  return as_float(as_bits(p) + (as_bits(shifted) << 23));
+}
+
+INLINE Vector sigmoid(Vector x) { return 1.0f / (1.0f + exponential(-x)); }
+
+INLINE Vector hyperbolic_tangent(Vector x) {
+  return fma(splat(2.0f), sigmoid(x + x), splat(-1.0f));
+}
+
+INLINE Vector rectified(Vector x) { return at_least(x, splat(0.0f)); }
+
+// Sine and cosine together, for |x| up to some thousands; absolute error about 1e-7 (Cephes).
+INLINE void sine_cosine(Vector x, Vector& sine, Vector& cosine) {
+  const Vector shifted = fma(x, splat(0.63661977236758134f), splat(ROUNDER));
+  const Integers quadrant = as_bits(shifted);
+  const Vector whole = shifted - ROUNDER;
+  Vector r = fma(whole, splat(-1.5703125f), x);
+  r = fma(whole, splat(-4.837512969970703125e-4f), r);
+  r = fma(whole, splat(-7.549789948768648e-8f), r);
+  const Vector square = r * r;
+  Vector s = fma(square, splat(-1.9515295891e-4f), splat(8.3321608736e-3f));
+  s = fma(s, square, splat(-1.6666654611e-1f));
+  s = fma(s * square, r, r);
+  Vector c = fma(square, splat(2.443315711809948e-5f), splat(-1.388731625493765e-3f));
+  c = fma(c, square, splat(4.166664568298827e-2f));
+  c = fma(c * square, square, fma(square, splat(-0.5f), splat(1.0f)));
+  const Integers odd = (quadrant & 1) == 1;
+  sine = select(odd, c, s);
+  cosine = select(odd, s, c);
+  sine = as_float(as_bits(sine) ^ ((quadrant & 2) << 30));
+  cosine = as_float(as_bits(cosine) ^ (((quadrant + 1) & 2) << 30));
+}
+
+}  // namespace

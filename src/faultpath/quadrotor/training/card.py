@@ -1,0 +1,76 @@
+"""What a fitted model says of itself, in a file beside its weights; read without torch."""
+
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
+
+from faultpath.errors import UserError
+
+FORMAT = "faultpath-model/1"
+
+
+class ModelCard(BaseModel):
+    """Where the weights of one model come from and how good they are.
+
+    It is `<stem>.json` beside `<stem>.safetensors`. Only `weights_sha256` identifies the model:
+    durations and versions differ between fits that gave the same weights.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: str = FORMAT
+    name: str
+    seed: int
+    description: str
+    parameters: int
+    """Numbers that were fitted; constants such as the scales of the inputs do not count."""
+    samples: int
+    """Training samples in an epoch."""
+    schedule: dict[str, JsonValue]
+    data_sha256: dict[str, JsonValue]
+    """Digest of each pool of data."""
+    config: dict[str, JsonValue]
+    """Everything else the task says of itself."""
+    order_key: str
+    """Stream of the minibatch order."""
+    initial_sha256: str
+    """Digest of the model before its first step."""
+    first_loss: float
+    """Loss of the first minibatch before the first step."""
+    training_loss: tuple[float, ...]
+    """Mean over the minibatches of each epoch."""
+    validation: tuple[dict[str, float], ...]
+    """Metrics after each epoch."""
+    weights_sha256: str
+    """Digest of the weights file."""
+    duration_s: float
+    """Time spent in epochs, all processes together."""
+    torch_version: str
+    faultpath_version: str
+
+    @property
+    def stem(self) -> str:
+        """Name of the files without their ending."""
+        return stem(self.name, self.seed)
+
+    @property
+    def final(self) -> dict[str, float]:
+        """Validation metrics of the weights, the main one first."""
+        return self.validation[-1]
+
+
+def stem(name: str, seed: int) -> str:
+    """Return the file name of a model without its ending, for example `wm-a+dcc-0`."""
+    return f"{name}-{seed}"
+
+
+def read_card(path: Path) -> ModelCard:
+    """Read the card beside a weights file; `UserError` when it is missing or damaged."""
+    card = path.with_suffix(".json")
+    try:
+        return ModelCard.model_validate_json(card.read_bytes())
+    except (OSError, ValidationError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is no model card"
+        raise UserError(
+            f"cannot read the model card {card} ({reason}): copy it again or fit the model again."
+        ) from error

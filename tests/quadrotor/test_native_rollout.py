@@ -1,0 +1,108 @@
+"""The compiled horizon loop is the portable one: same weights, same numbers to rounding."""
+
+from dataclasses import replace
+
+import pytest
+import torch
+
+from faultpath.quadrotor import native, so3
+from faultpath.quadrotor.native.rollout import CompiledRollout
+from faultpath.quadrotor.predictors import (
+    AnchoredPredictor,
+    Calibration,
+    KinematicIntegrator,
+    Predictor,
+    PredictorInputs,
+    UnanchoredPredictor,
+)
+from faultpath.quadrotor.rollout import Rollout, rollout
+from faultpath.quadrotor.state import State
+
+TOLERANCE = 1e-5
+SCENES = 3
+
+
+def random_weights(module: torch.nn.Module, seed: int = 0) -> None:
+    """Fill weights and statistics so that outputs are of the size of trained ones."""
+    stream = torch.Generator().manual_seed(seed)
+    with torch.no_grad():
+        for name, value in (*module.named_parameters(), *module.named_buffers()):
+            value.uniform_(-0.25, 0.25, generator=stream)
+            if name.endswith("_std"):
+                value.abs_().add_(0.6 if name == "feature_std" else 0.01)
+
+
+def predictor(name: str) -> Predictor:
+    if name.startswith("dki"):
+        return KinematicIntegrator(drag=name == "dki-drag", wind=name != "dki-still")
+    if name == "wm-u":
+        unanchored = UnanchoredPredictor.build_network()
+        random_weights(unanchored)
+        return UnanchoredPredictor(unanchored)
+    anchored = AnchoredPredictor.build_network()
+    random_weights(anchored)
+    return AnchoredPredictor(anchored, wind=name == "wm-a-wind")
+
+
+def inputs_of(scenes: int = SCENES, seed: int = 1) -> PredictorInputs:
+    stream = torch.Generator().manual_seed(seed)
+
+    def draw(*shape: int, low: float = -1.0, high: float = 1.0) -> torch.Tensor:
+        return torch.empty(*shape, scenes, 1).uniform_(low, high, generator=stream)
+
+    state = State(draw(3), 2 * draw(3), so3.exp(draw(3)), draw(3))
+
+    def calibration() -> Calibration:
+        return Calibration(draw(low=0.6, high=1.4), draw(low=0.6, high=1.4))
+
+    return PredictorInputs(
+        state=state,
+        trim=calibration(),
+        dynamics=calibration(),
+        wind_map_mass_kg=draw(low=0.6, high=1.4),
+        wind_mps=5 * draw(3),
+        thrust_mass_kg=draw(low=0.6, high=1.4),
+        conditioning=calibration(),
+        code=draw(32),
+    )
+
+
+def commands_of(
+    scenes: int = SCENES, candidates: int = 96, horizon: int = 20, seed: int = 2
+) -> torch.Tensor:
+    stream = torch.Generator().manual_seed(seed)
+    commands = torch.randn(horizon, 4, scenes, candidates, generator=stream)
+    commands[:, 0] = (9.8 + 3 * commands[:, 0]).clamp_(min=0)
+    return commands
+
+
+def assert_close(ours: Rollout, theirs: Rollout) -> None:
+    parts = ("positions", "velocities", "rotation", "rate")
+    for name in parts:
+        mine, reference = (
+            getattr(r if name in ("positions", "velocities") else r.final, name)
+            for r in (ours, theirs)
+        )
+        assert mine.shape == reference.shape
+        torch.testing.assert_close(mine, reference, rtol=TOLERANCE, atol=TOLERANCE, msg=name)
+
+
+NAMES = ["dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"]
+
+
+@pytest.fixture(params=native.available())
+def kernels(request: pytest.FixtureRequest) -> native.Kernels:
+    return native.load(request.param)
+
+
+def test_kernels_are_built_where_tests_run() -> None:
+    assert "baseline" in native.available()
+
+
+@torch.inference_mode()
+@pytest.mark.parametrize("name", NAMES)
+def test_compiled_equals_portable(kernels: native.Kernels, name: str) -> None:
+    model, given, commands = predictor(name), inputs_of(), commands_of()
+    assert_close(
+        CompiledRollout(kernels, model)(given, commands), rollout(model, given, commands)
+    )
