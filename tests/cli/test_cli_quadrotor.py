@@ -4,7 +4,7 @@ import json
 
 from cli_runs import audit, faultpath
 
-from faultpath.cli.pages import read_record
+from faultpath.cli.records import read_record
 from faultpath.execution.worker import Hello
 from faultpath.quadrotor.scenes.library import write_library
 from faultpath.trials import SystemSpec, load_system

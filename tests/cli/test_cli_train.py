@@ -8,6 +8,7 @@ from cli_runs import ROOT, faultpath
 
 from faultpath.cli.main import INTERRUPTED
 from faultpath.quadrotor.training import catalogue, checkpoint, jobs
+from faultpath.quadrotor.training.card import read_card
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
 from fitting_toys import Toy, entry
@@ -35,7 +36,7 @@ def test_everything_is_fitted_and_ends_in_a_table() -> None:
     rows = [line.split() for line in ended.out.splitlines()]
     (head,) = (row for row in rows if row[:2] == ["model", "seed"])
     assert head[2:] == ["parameters", "training", "loss", "validation", "time"]
-    card = checkpoint.read_card(Path("runs/train/one+dcc-1.safetensors"))
+    card = read_card(Path("runs/train/one+dcc-1.safetensors"))
     (row,) = (row for row in rows if row[:2] == ["one+dcc", "1"])
     assert row[2:4] == ["32", f"{card.training_loss[-1]:.4g}"]
     assert row[4:6] == ["error", f"{card.final['error']:.4g}"]

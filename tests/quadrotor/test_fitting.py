@@ -10,7 +10,7 @@ from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
 from faultpath.quadrotor.training import fitting
-from faultpath.quadrotor.training.checkpoint import read_card
+from faultpath.quadrotor.training.card import read_card
 from faultpath.quadrotor.training.fitting import Diverged, fit, forget
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.store.atomic import write

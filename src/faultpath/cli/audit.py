@@ -53,7 +53,6 @@ def command(
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
     from faultpath.audit import plan_audit
-    from faultpath.cli.run import run_audit
     from faultpath.faults import parse_fault
     from faultpath.trials import SystemSpec, load_system
 
@@ -80,6 +79,9 @@ def command(
     )
     folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
     count = (os.cpu_count() or 1) if workers is None else workers
+
+    from faultpath.cli.run import run_audit  # pages and workers; no mistake so far waits for them
+
     failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]))
     return FAILED_TRIALS if failed else 0
 

@@ -18,8 +18,8 @@ from rich.text import Text
 from faultpath.cli.options import Stopped
 
 if TYPE_CHECKING:
+    from faultpath.quadrotor.training.card import ModelCard
     from faultpath.quadrotor.training.catalogue import Job
-    from faultpath.quadrotor.training.checkpoint import ModelCard
     from faultpath.quadrotor.training.jobs import Report
     from faultpath.quadrotor.training.pace import Overview
 

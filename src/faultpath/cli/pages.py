@@ -1,23 +1,14 @@
 """From a run folder to its pages."""
 
 from pathlib import Path
-from typing import TypeVar
 
 import pyarrow as pa
-from pydantic import ValidationError
 
+from faultpath.cli.records import read_provenance, read_record
 from faultpath.errors import UserError
-from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import ReportInput, Traces, write_report
 from faultpath.store import read_table, read_traces
 from faultpath.trials import System
-
-_Model = TypeVar("_Model", DecisionRecord, RunProvenance)
-
-
-def read_record(folder: Path) -> DecisionRecord:
-    """Read `record.json`; `UserError` when it is missing, damaged or of another version."""
-    return _read(folder / "record.json", DecisionRecord)
 
 
 def save_pages(system: System, folder: Path) -> list[Path]:
@@ -33,7 +24,7 @@ def save_pages(system: System, folder: Path) -> list[Path]:
             f"library '{asked.library}' has changed since {folder} was made: run the audit again "
             "into a new folder."
         )
-    provenance = _read(folder / "provenance.json", RunProvenance)
+    provenance = read_provenance(folder)
     outcomes = _table(folder / "outcomes.parquet")
     scenes = {str(scene) for scene in outcomes["scene"].to_pylist()}
     plans = {scene: system.floor_plan(scene) for scene in sorted(scenes)}
@@ -56,17 +47,4 @@ def _table(path: Path) -> pa.Table:
     except (OSError, pa.ArrowInvalid):
         raise UserError(
             f"{path} is missing or damaged: run the audit again with the same --out."
-        ) from None
-
-
-def _read(path: Path, model: type[_Model]) -> _Model:
-    try:
-        return model.model_validate_json(path.read_bytes())
-    except FileNotFoundError:
-        raise UserError(
-            f"{path.parent} holds no {path.name}: give the folder of a finished audit."
-        ) from None
-    except ValidationError:
-        raise UserError(
-            f"{path} is damaged or of another version of faultpath: run the audit again."
         ) from None
