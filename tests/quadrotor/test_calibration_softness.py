@@ -14,7 +14,8 @@ from faultpath.quadrotor.planner import shift
 from faultpath.quadrotor.plant import Plant
 from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, Vehicle
+from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 ERRORS = (0.0, 0.1, -0.1)
 SECONDS = 4.0

@@ -15,10 +15,10 @@ from faultpath.quadrotor.vehicle import (
     GRAVITY_MPS2,
     MOTOR_THRUST_MAX_N,
     RATE_GAIN_PER_S,
-    Vehicle,
     VehicleParameters,
     draw,
 )
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 F64 = torch.float64
 

@@ -8,7 +8,8 @@ import torch
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import Plant, PlantState, rigid_body
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, Vehicle, VehicleParameters
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 F64 = torch.float64
 NO_DRAG = (1e-12,) * 3

@@ -7,7 +7,8 @@ import torch
 from faultpath.quadrotor import so3, wind
 from faultpath.quadrotor.plant import Plant
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, Vehicle, draw
+from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, draw
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 mujoco_check = pytest.importorskip("faultpath.quadrotor.plant.mujoco_check")
 

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import Vehicle
+from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.quadrotor.world import World
 from faultpath.taps import Reading
 

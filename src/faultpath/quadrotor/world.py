@@ -19,8 +19,8 @@ from faultpath.quadrotor.vehicle import (
     CONTROL_RATE_HZ,
     PLANT_RATE_HZ,
     STEPS_PER_CONTROL,
-    Vehicle,
 )
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 GOAL_RADIUS_M = 0.5  # paper, Section IV-B
 TIME_LIMIT_S = 12.0  # paper, Section IV-B

@@ -11,13 +11,8 @@ from torch import Tensor
 from faultpath.quadrotor.plant import aerodynamics, motors, rigid_body
 from faultpath.quadrotor.plant.rate_loop import RateLoop
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import (
-    COLLECTIVE_MAX_N,
-    GRAVITY_MPS2,
-    PLANT_DT_S,
-    RATE_LIMIT_RADPS,
-    Vehicle,
-)
+from faultpath.quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, PLANT_DT_S, RATE_LIMIT_RADPS
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 
 @dataclass(frozen=True)

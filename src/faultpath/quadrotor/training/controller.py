@@ -23,8 +23,8 @@ from faultpath.quadrotor.vehicle import (
     CONTROL_RATE_HZ,
     GRAVITY_MPS2,
     RATE_LIMIT_RADPS,
-    Vehicle,
 )
+from faultpath.quadrotor.vehicle_batch import Vehicle
 
 LEAST_LIFT = 0.3
 """The wanted vertical specific force is at least this part of gravity: the vehicle never turns

@@ -25,10 +25,10 @@ from faultpath.quadrotor.vehicle import (
     CONTROL_RATE_HZ,
     PLANT_RATE_HZ,
     STEPS_PER_CONTROL,
-    Vehicle,
     VehicleParameters,
     draw,
 )
+from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.streams import generator
 
 EPISODE_S = 6.0  # paper, Section IV-A

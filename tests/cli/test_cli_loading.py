@@ -1,0 +1,50 @@
+"""What each verb loads: a command that computes nothing must not wait for what computes."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from cli_runs import TOY
+
+HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
+
+AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
+
+MAY_LOAD = {
+    "help": (["--help"], set[str]()),
+    "help of a verb": (["audit", "--help"], set[str]()),
+    "no such verb": (["adit"], set[str]()),
+    "scenes": (["scenes", "list"], {"numpy"}),
+    "no such scenes": (["scenes", "list", "nowhere"], {"numpy"}),
+    "models": (["train", "quadrotor", "--list"], set[str]()),
+    "no such model": (["train", "quadrotor", "gpt"], set[str]()),
+    "no such run": (["report", "nowhere"], {"numpy"}),
+    "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
+    "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
+    "interface": (["interface", TOY], {"jinja2", "numpy", "pyarrow"}),
+    "quadrotor": (["interface", "quadrotor"], {"jinja2", "numpy", "pyarrow", "torch"}),
+}
+
+CODE = """
+import json, sys
+from faultpath.cli.main import main
+heavy = json.loads(sys.argv.pop(1))
+try:
+    main()
+except SystemExit as stop:
+    assert stop.code in (0, 2), stop.code
+print()
+print(json.dumps([name for name in heavy if name in sys.modules]))
+"""
+
+
+@pytest.mark.parametrize(("command", "allowed"), MAY_LOAD.values(), ids=MAY_LOAD)
+def test_a_verb_loads_only_what_it_needs(
+    command: list[str], allowed: set[str], tmp_path: Path
+) -> None:
+    line = [sys.executable, "-c", CODE, json.dumps(sorted(HEAVY)), *command]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert set(json.loads(done.stdout.splitlines()[-1])) <= allowed
