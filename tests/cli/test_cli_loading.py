@@ -15,11 +15,8 @@ AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
 MAY_LOAD = {
     "help": (["--help"], set[str]()),
     "help of a verb": (["audit", "--help"], set[str]()),
-    "no such verb": (["adit"], set[str]()),
     "scenes": (["scenes", "list"], {"numpy"}),
-    "no such scenes": (["scenes", "list", "nowhere"], {"numpy"}),
     "models": (["train", "quadrotor", "--list"], set[str]()),
-    "no such model": (["train", "quadrotor", "gpt"], set[str]()),
     "no such run": (["report", "nowhere"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
