@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import wind as wind_model
+from faultpath.quadrotor.native.plant import CompiledContact, CompiledPlant
 from faultpath.quadrotor.plant import Plant, PlantState
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.scene import Scene
@@ -41,6 +42,10 @@ class Progress:
     min_clearance_m: Tensor
 
 
+_WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
+"""What contact checks change, in the order of `CompiledContact.watch`."""
+
+
 class World:
     """Plant, wind and geometry of a block of scenes, padded to whole groups of lanes.
 
@@ -57,6 +62,7 @@ class World:
         self._winds = _wind_series(scenes, level)[..., self.lanes]
         self.goal = _points([scene.goal_m for scene in lanes])
         self._plant = Plant(self.vehicle)
+        self._contact = CompiledContact(self._geometry, self.goal, CONTACT_EVERY, PLANT_RATE_HZ)
         start = State.hover(
             _points([scene.start_m for scene in lanes]),
             torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
@@ -82,15 +88,32 @@ class World:
     def advance(self, command: Tensor) -> None:
         """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
         first = self.step * STEPS_PER_CONTROL
-        state = self.plant_state
-        progress = self.progress
-        for block in range(0, STEPS_PER_CONTROL, CONTACT_EVERY):
-            at = first + block
-            state = self._plant.advance(state, command, self._winds[at : at + CONTACT_EVERY])
-            progress = self._contact(progress, state, (at + CONTACT_EVERY) / PLANT_RATE_HZ)
-        self.plant_state = state
+        winds = self._winds[first : first + STEPS_PER_CONTROL]
+        if self._plant.compiled is None:
+            self.plant_state, progress = self._fly(command, winds)
+        else:
+            self.plant_state, progress = self._fly_compiled(self._plant.compiled, command, winds)
         self.step += 1
         self.progress = _arrival(progress)
+
+    def _fly(self, command: Tensor, winds: Tensor) -> tuple[PlantState, Progress]:
+        state, progress = self.plant_state, self.progress
+        made = self.step * STEPS_PER_CONTROL
+        for block in winds.split(CONTACT_EVERY):
+            made += len(block)
+            state = self._plant.advance(state, command, block)
+            progress = self._touch(progress, state, made / PLANT_RATE_HZ)
+        return state, progress
+
+    def _fly_compiled(
+        self, plant: CompiledPlant, command: Tensor, winds: Tensor
+    ) -> tuple[PlantState, Progress]:
+        """Do what `_fly` does in one call."""
+        standing = {name: getattr(self.progress, name).clone() for name in _WATCHED}
+        watched = self._contact.watch(self.step * STEPS_PER_CONTROL, tuple(standing.values()))
+        now = self.plant_state
+        flown = plant.fly(now.state, now.thrusts, command, winds, watched)
+        return PlantState(*flown), replace(self.progress, **standing)
 
     def _begin(self) -> Progress:
         none = torch.zeros_like(self.lanes, dtype=torch.bool)
@@ -107,7 +130,7 @@ class World:
     def _clearance(self, state: State) -> Tensor:
         return self._geometry.distance(state.position) - COLLISION_RADIUS_M
 
-    def _contact(self, now: Progress, state: PlantState, time_s: float) -> Progress:
+    def _touch(self, now: Progress, state: PlantState, time_s: float) -> Progress:
         clearance = self._clearance(state.state)
         hit = now.running & (clearance <= 0)
         distance = (state.state.position - self.goal).norm(dim=0)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native.plant import CompiledPlant
 from faultpath.quadrotor.plant import aerodynamics, motors, rigid_body
 from faultpath.quadrotor.plant.rate_loop import RateLoop
 from faultpath.quadrotor.state import State
@@ -34,7 +36,13 @@ class Plant:
     Pure: states go in and new states come out. One step of 2 ms is second order: motor lag and
     its mean over the step are exact, the body turns by the midpoint rule, and translation is
     Strang split into half a kick of thrust and gravity, exact drag, and the other half.
+
+    One batch axis in float64 on the CPU is flown by the compiled kernel where there is one, which
+    repeats these equations; everything else in torch.
     """
+
+    compiled: CompiledPlant | None
+    """The kernel that flies these vehicles, if any."""
 
     def __init__(self, vehicle: Vehicle, dt_s: float = PLANT_DT_S) -> None:
         like = vehicle.mass_kg
@@ -50,6 +58,11 @@ class Plant:
         self._acceleration[0] *= 0.5 * dt_s * 0.5
         self._relaxed = aerodynamics.relaxation(vehicle, dt_s) * 0.25
         self._gravity_kick = motors.column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
+        kernels = native.kernels()
+        fits = like.ndim == 1 and like.dtype == torch.float64 and like.device.type == "cpu"
+        self.compiled = (
+            CompiledPlant(kernels, self._airframes(), dt_s) if kernels and fits else None
+        )
 
     def start(self, state: State) -> PlantState:
         """Return `state` with motors at hover trim."""
@@ -57,7 +70,7 @@ class Plant:
 
     def step(self, plant_state: PlantState, command: Tensor, wind_mps: Tensor) -> PlantState:
         """Advance 2 ms under `command` [4, *b] and `wind_mps` [3, *b] (world frame)."""
-        return self._step(plant_state, *self._limit(command), wind_mps)
+        return self.advance(plant_state, command, wind_mps[None])
 
     def advance(
         self,
@@ -72,12 +85,25 @@ class Plant:
         state, so that contact can be looked for between the ends. Commands beyond the vehicle's
         limits are clipped.
         """
-        level, target = self._limit(command)
-        for count, wind_mps in enumerate(winds.unbind(0), start=1):
-            plant_state = self._step(plant_state, level, target, wind_mps)
-            if observe is not None:
+        if observe is not None:
+            for count, wind_mps in enumerate(winds.unbind(0), start=1):
+                plant_state = self.step(plant_state, command, wind_mps)
                 observe(count, plant_state.state)
+            return plant_state
+        if self.compiled is not None:
+            flown = self.compiled.fly(plant_state.state, plant_state.thrusts, command, winds)
+            return PlantState(*flown)
+        level, target = self._limit(command)
+        for wind_mps in winds.unbind(0):
+            plant_state = self._step(plant_state, level, target, wind_mps)
         return plant_state
+
+    def _airframes(self) -> Tensor:
+        """Return what the kernel knows of each vehicle, `[15, b]`, rows as in `plant.hpp`."""
+        own = self._acceleration[:, 1].abs()  # of the second motor: one motor tells all by symmetry
+        mixing = self._loop.per_acceleration[:, 1].abs()
+        weights = torch.stack((self._left_end, self._left_mean))
+        return torch.cat((own, mixing, weights, self._coupling, self._relaxed))
 
     def _limit(self, command: Tensor) -> tuple[Tensor, Tensor]:
         level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)

@@ -18,14 +18,17 @@ class RateLoop:
     motor is clipped by itself.
     """
 
+    per_acceleration: Tensor
+    """Thrust of each motor per wanted angular acceleration about each axis, [3, 4, *b]."""
+
     def __init__(self, vehicle: Vehicle) -> None:
         like = vehicle.mass_kg
         wrench = column(WRENCH_PER_THRUST, like)
         inverse = wrench / (wrench * wrench).sum(1, keepdim=True)
-        per_acceleration = inverse[1:] * vehicle.inertia_kgm2[:, None]
+        self.per_acceleration = inverse[1:] * vehicle.inertia_kgm2[:, None]
         self._gain = column(RATE_GAIN_PER_S, like)
-        self._roll, self._pitch = per_acceleration[0], per_acceleration[1]
-        self._yaw = per_acceleration[2, 0]
+        self._roll, self._pitch = self.per_acceleration[0], self.per_acceleration[1]
+        self._yaw = self.per_acceleration[2, 0]
         self._ceiling = column((MOTOR_THRUST_MAX_N,), like)
         self._spin = column(WRENCH_PER_THRUST[3], like).sign()
 

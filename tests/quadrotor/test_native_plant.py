@@ -1,0 +1,205 @@
+"""The compiled plant flies as the portable one does, and its contact checks end the same trials."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+import torch
+from kernel_sets import COMPILED, FUSED, PORTABLE, running
+from torch import Tensor
+
+from faultpath.quadrotor import so3
+from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import (
+    COLLISION_RADIUS_M,
+    MOTOR_THRUST_MAX_N,
+    VehicleParameters,
+    draw,
+)
+from faultpath.quadrotor.vehicle_batch import Vehicle
+from faultpath.quadrotor.world import World
+
+F64 = torch.float64
+LANES = 37
+STEPS = 25
+EVERYONE = torch.arange(LANES)
+
+
+def wild(seed: int) -> tuple[PlantState, Tensor, Tensor]:
+    """Tumbling vehicles, motors anywhere, commands beyond limits, strong winds."""
+    stream = torch.Generator().manual_seed(seed)
+
+    def spread(*shape: int, by: float) -> Tensor:
+        return by * torch.randn(*shape, LANES, dtype=F64, generator=stream)
+
+    state = State(spread(3, by=5), spread(3, by=5), so3.exp(spread(3, by=2)), spread(3, by=12))
+    thrusts = MOTOR_THRUST_MAX_N * torch.rand(4, LANES, dtype=F64, generator=stream)
+    return PlantState(state, thrusts), spread(4, by=20), spread(STEPS, 3, by=6)
+
+
+def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
+    """All that the plant carries after one control step, `[22, n]`."""
+    vehicle = Vehicle.stack([draw(np.random.default_rng(seed + i)) for i in range(LANES)])
+    start, command, winds = wild(seed)
+    with running(isa):
+        plant = Plant(vehicle.take(lanes))
+    end = plant.advance(start.take(lanes), command[:, lanes], winds[..., lanes])
+    state = end.state
+    parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, end.thrusts)
+    return torch.cat(parts)
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+@pytest.mark.parametrize("seed", [0, 100, 200])
+def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
+    torch.testing.assert_close(flown(isa, seed), flown(PORTABLE, seed), rtol=0, atol=1e-11)
+
+
+def test_fused_sets_give_the_same_bits() -> None:
+    first, *others = [flown(isa) for isa in FUSED] or [torch.zeros(0)]
+    assert all(torch.equal(first, other) for other in others)
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
+    together = flown(isa)
+    for lanes in ([36], [3, 0, 11], list(range(9, 29))):
+        assert torch.equal(flown(isa, lanes=torch.tensor(lanes)), together[:, lanes])
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
+    start, command, winds = wild(0)
+    command[0, 4] = torch.nan
+    with running(isa):
+        plant = Plant(Vehicle.nominal(LANES))
+    position = plant.advance(start, command, winds).state.position
+    assert position.isnan().any(0).nonzero().flatten().tolist() == [4]
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
+    with running(isa):
+        for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
+            plant = Plant(vehicle)
+            still = torch.zeros(3, *vehicle.batch, dtype=vehicle.mass_kg.dtype)
+            now = plant.start(State.hover(still, still[0]))
+            end = plant.advance(now, vehicle.hover_command(), still.expand(5, *still.shape))
+            assert end.state.position.dtype == vehicle.mass_kg.dtype
+            assert end.state.position.abs().max() < 1e-6
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_a_batch_of_another_size_is_refused(isa: str) -> None:
+    start, command, winds = wild(0)
+    with running(isa):
+        plant = Plant(Vehicle.nominal(LANES - 1))
+    with pytest.raises(RuntimeError, match="expand"):
+        plant.advance(start, command, winds)
+
+
+# --- contact -----------------------------------------------------------------------------------
+
+
+def worlds(isa: str, scenes: list[Scene], commands: Tensor, level: str = "L0") -> World:
+    """The world after a control step for each of `commands` `[n, 4, L]`."""
+    with running(isa):
+        world = World(scenes, level, free_space=False)
+    for command in commands:
+        world.advance(command)
+    return world
+
+
+def assert_same_trials(ours: World, theirs: World) -> None:
+    for name in ("running", "crashed", "succeeded", "time_s"):
+        assert torch.equal(getattr(ours.progress, name), getattr(theirs.progress, name)), name
+    for name in ("terminal_distance_m", "min_clearance_m"):
+        torch.testing.assert_close(
+            getattr(ours.progress, name),
+            getattr(theirs.progress, name),
+            rtol=0,
+            atol=1e-10,
+            equal_nan=True,
+        )
+
+
+def tumbling(world_lanes: int, steps: int) -> Tensor:
+    stream = torch.Generator().manual_seed(5)
+    commands = torch.randn(steps, 4, world_lanes, dtype=F64, generator=stream)
+    commands[:, 0] = 10 + 4 * commands[:, 0]
+    return commands
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_trials_end_at_the_same_moment(isa: str) -> None:
+    scenes = list(load_library("selection").scenes[:40])
+    commands = tumbling(64, 24)
+    theirs = worlds(PORTABLE, scenes, commands, "L2")
+    assert 10 < theirs.progress.crashed[:40].sum() < 40, "some end, some fly on"
+    assert_same_trials(worlds(isa, scenes, commands, "L2"), theirs)
+
+
+def beside(gap_m: float, thing: str) -> Scene:
+    """A vehicle above the floor that falls past a solid with so much between it and the solid."""
+    away = 1.0 + COLLISION_RADIUS_M + gap_m
+    box = Box(centre_m=(away, 0.0, 1.0), half_extents_m=(1.0, 1.0, 1.0), yaw_rad=0.0)
+    pillar = Cylinder(centre_m=(0.0, away), radius_m=1.0, low_m=0.0, high_m=2.0)
+    return Scene(
+        id="test/000",
+        index=0,
+        library="test",
+        topology="clutter",
+        obstacles=True,
+        occluded=False,
+        bounds=Bounds(low_m=(-4.0, -4.0, 0.0), high_m=(4.0, 4.0, 5.0)),
+        boxes=(box,) if thing == "box" else (),
+        cylinders=(pillar,) if thing == "pillar" else (),
+        start_m=(0.0, 0.0, 3.5),
+        goal_m=(0.0, 3.0, 4.0),
+        start_yaw_rad=0.3,
+        vehicle=VehicleParameters(drag_kgps=(1e-9,) * 3),
+    )
+
+
+@pytest.mark.parametrize("isa", [*COMPILED, PORTABLE])
+def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
+    gaps = (1e-6, -1e-6)
+    scenes = [beside(gap, thing) for thing in ("box", "pillar") for gap in gaps]
+    falling = torch.zeros(20, 4, 32, dtype=F64)
+    world = worlds(isa, scenes, falling)
+    hits = world.progress
+    assert hits.crashed[:4].all(), "those that pass reach the floor"
+    past_box, into_box, past_pillar, into_pillar = hits.min_clearance_m[:4].tolist()
+    assert into_box == pytest.approx(-1e-6, rel=1e-6) == into_pillar
+    assert past_box < -1e-3 > past_pillar, "the floor is met at full speed"
+    late, early, later, earlier = hits.time_s[:4].tolist()
+    assert early < late - 0.1
+    assert earlier < later - 0.1
+    assert_same_trials(world, worlds(PORTABLE, scenes, falling))
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_a_lane_that_is_lost_neither_crashes_nor_disturbs_others(isa: str) -> None:
+    scenes = list(load_library("selection").scenes[:32])
+    commands = tumbling(32, 30)
+    commands[3, 1, 7] = torch.nan
+    lost = worlds(isa, scenes, commands)
+    assert lost.progress.running[7]
+    assert lost.progress.min_clearance_m[7].isnan()
+    assert_same_trials(lost, worlds(PORTABLE, scenes, commands))
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_advancing_leaves_the_earlier_progress_alone(isa: str) -> None:
+    scenes = list(load_library("selection").scenes[:3])
+    with running(isa):
+        world = World(scenes, "L2", free_space=False)
+    before = world.progress
+    kept = [value.clone() for value in dataclasses.astuple(before)]
+    world.advance(tumbling(32, 1)[0])
+    assert world.progress.time_s[0] == 0.05
+    after = dataclasses.astuple(before)
+    assert all(torch.equal(a, b) for a, b in zip(kept, after, strict=True))
