@@ -58,7 +58,9 @@ class KernelHook(BuildHookInterface):
             return
         build_data["artifacts"].append(f"{NATIVE}/kernels-*.so")
         build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+        build_data["tag"] = (
+            f"py3-none-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
+        )
 
     def _compile(self, compiler: str, flags: tuple[str, ...], target: Path) -> None:
         sources = sorted(str(path) for path in (target.parent / "source").glob("*.cpp"))

@@ -12,9 +12,15 @@ import numpy as np
 
 
 @lru_cache(maxsize=65536)
-def _key(purpose: str, scene: str, seed: int) -> int:
+def key(purpose: str, scene: str, seed: int) -> int:
+    """Return the 128-bit Philox key of an address, for whoever computes the stream himself."""
     digest = hashlib.blake2b(f"{purpose}\x1f{scene}\x1f{seed}".encode(), digest_size=16)
     return int.from_bytes(digest.digest(), "little")
+
+
+def words(key: int) -> np.ndarray:
+    """Return a 128-bit key as Philox takes it, two words of 64 bits, low first."""
+    return np.array([key & 0xFFFFFFFFFFFFFFFF, key >> 64], dtype=np.uint64)
 
 
 def generator(purpose: str, scene: str, seed: int, step: int = 0) -> np.random.Generator:
@@ -24,7 +30,7 @@ def generator(purpose: str, scene: str, seed: int, step: int = 0) -> np.random.G
     occupies the high word of its counter, so streams of different steps cannot overlap.
     """
     counter = np.array([0, 0, 0, step], dtype=np.uint64)
-    return np.random.Generator(np.random.Philox(key=_key(purpose, scene, seed), counter=counter))
+    return np.random.Generator(np.random.Philox(key=key(purpose, scene, seed), counter=counter))
 
 
 def generators(
@@ -37,7 +43,6 @@ def generators(
     bits = np.random.Philox(key=0, counter=np.array([0, 0, 0, step], dtype=np.uint64))
     stream, fresh = np.random.Generator(bits), bits.state
     for scene in scenes:
-        key = _key(purpose, scene, seed)
-        fresh["state"]["key"] = np.array([key & 0xFFFFFFFFFFFFFFFF, key >> 64], dtype=np.uint64)
+        fresh["state"]["key"] = words(key(purpose, scene, seed))
         bits.state = fresh
         yield stream

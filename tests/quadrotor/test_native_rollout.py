@@ -1,7 +1,5 @@
 """The compiled horizon loop is the portable one: same weights, same numbers to rounding."""
 
-from dataclasses import replace
-
 import pytest
 import torch
 
@@ -103,6 +101,46 @@ def test_kernels_are_built_where_tests_run() -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_compiled_equals_portable(kernels: native.Kernels, name: str) -> None:
     model, given, commands = predictor(name), inputs_of(), commands_of()
-    assert_close(
-        CompiledRollout(kernels, model)(given, commands), rollout(model, given, commands)
-    )
+    assert_close(CompiledRollout(kernels, model)(given, commands), rollout(model, given, commands))
+
+
+@torch.inference_mode()
+@pytest.mark.parametrize("name", ["dki", "wm-a-wind", "wm-u"])
+def test_a_candidate_depends_on_no_other(kernels: native.Kernels, name: str) -> None:
+    """Nor on how many there are: not even on whether they fill a tile."""
+    roll = CompiledRollout(kernels, predictor(name))
+    given, commands = inputs_of(), commands_of()
+    whole = roll(given, commands)
+    some = roll(given.take([1]), commands[:, :, 1:2, 5:42].contiguous())
+    assert torch.equal(whole.positions[:, 1:2, :, 5:42], some.positions)
+    assert torch.equal(whole.final.rotation[:, :, 1:2, 5:42], some.final.rotation)
+
+
+@torch.inference_mode()
+@pytest.mark.skipif("avx2" not in native.available(), reason="one instruction set only")
+@pytest.mark.parametrize("name", NAMES)
+def test_sets_that_fuse_agree_to_the_bit(name: str) -> None:
+    sets = [k for k in map(native.load, native.available()) if k.numerics == "fused"]
+    model, given, commands = predictor(name), inputs_of(), commands_of()
+    first, *others = (CompiledRollout(k, model)(given, commands) for k in sets)
+    for other in others:
+        assert torch.equal(first.positions, other.positions)
+        assert torch.equal(first.final.rate, other.final.rate)
+
+
+@torch.inference_mode()
+def test_weights_reach_the_kernel(kernels: native.Kernels) -> None:
+    """Every layer and statistic counts: a change of any changes the result."""
+    given, commands = inputs_of(scenes=1), commands_of(scenes=1, candidates=16)
+    model = predictor("wm-u")
+    before = CompiledRollout(kernels, model)(given, commands).positions
+    assert isinstance(model, UnanchoredPredictor)
+    parts = dict((*model.network.named_parameters(), *model.network.named_buffers()))
+    read = {name: part for name, part in parts.items() if not name.startswith("encoder")}
+    assert len(read) == 15
+    for name, part in read.items():
+        kept = part.clone()
+        part.mul_(1.5)
+        after = CompiledRollout(kernels, model)(given, commands).positions
+        assert not torch.equal(before, after), name
+        part.copy_(kept)

@@ -28,7 +28,11 @@ class Stopwatch:
 
 
 def run_provenance(
-    result: RunResult, stopwatch: Stopwatch, command: Sequence[str], workers: int
+    result: RunResult,
+    stopwatch: Stopwatch,
+    command: Sequence[str],
+    workers: int,
+    backend: str = "",
 ) -> RunProvenance:
     """Describe the run that has just finished."""
     commit, dirty = checkout(Path(faultpath.__file__).parent)
@@ -41,6 +45,7 @@ def run_provenance(
         packages=packages(),
         platform=platform.platform(),
         processor=processor(),
+        backend=backend,
         workers=workers,
         started=stopwatch.started.isoformat(timespec="seconds"),
         finished=datetime.now(UTC).isoformat(timespec="seconds"),

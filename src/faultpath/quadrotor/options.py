@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.models import PREDICTORS
+from faultpath.quadrotor.native.parts import build_planner
 from faultpath.quadrotor.planner import (
     MPPI,
     AutoregressiveSampler,
@@ -121,7 +122,7 @@ class QuadrotorOptions(BaseModel):
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
         }
         goal, weights = goals[self.planner]
-        return MPPI(
+        return build_planner(
             predictor,
             AutoregressiveSampler(self.settings.sampler),
             NavigationCost(goal, weights),

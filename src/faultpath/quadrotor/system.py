@@ -14,13 +14,15 @@ from torch import Tensor
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
+from faultpath.quadrotor import native
 from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
 from faultpath.quadrotor.flight import Flight
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
+from faultpath.quadrotor.native.parts import depth_clearance
 from faultpath.quadrotor.navigator import Navigator, WindReconstruction
 from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
-from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
+from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
@@ -86,10 +88,16 @@ class Quadrotor(System):
         """See `System.floor_plan`."""
         return floor_plan(self.scene(scene), free_space=self.options.free_space)
 
+    @property
+    def backend(self) -> str:
+        """See `System.backend`."""
+        return native.describe()
+
     def fingerprint(self) -> str:
         """See `System.fingerprint`."""
         content = {
             "code": _code_digest(),
+            "kernels": native.numerics(),
             "options": self.options.model_dump(mode="json"),
         }
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
@@ -134,7 +142,7 @@ class Quadrotor(System):
     def _clearance(self, scenes: list[Scene], taps: Taps) -> ClearanceSource:
         if self.options.clearance is ClearanceName.TRUE:
             return TrueClearance(_field(tuple(scenes), self.options.free_space))
-        return SeenClearance(DepthClearance(clearance_model()), taps.for_module("perception"))
+        return SeenClearance(depth_clearance(clearance_model()), taps.for_module("perception"))
 
     def scene(self, scene: str) -> Scene:
         """Return a scene of a library that was asked for before, or of a frozen one."""
@@ -185,7 +193,7 @@ def _code_digest() -> str:
         if part.is_dir():
             children = (child for child in part.iterdir() if child.name != "training")
             parts += sorted(children, key=lambda child: child.name)
-        elif part.name.endswith((".py", ".yaml", ".safetensors")):
+        elif part.name.endswith((".py", ".cpp", ".hpp", ".yaml", ".safetensors")):
             digest.update(part.name.encode() + part.read_bytes())
     return digest.hexdigest()
 

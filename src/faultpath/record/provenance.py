@@ -16,6 +16,8 @@ class RunProvenance(BaseModel):
     packages: dict[str, str]
     platform: str
     processor: str
+    backend: str = ""
+    """What computed the trials, where a system says so."""
     workers: int
     started: str
     finished: str

@@ -86,6 +86,11 @@ class System(ABC):
     def fingerprint(self) -> str:
         """Hash of everything that decides a result beside variant, scene, faults and seed."""
 
+    @property
+    def backend(self) -> str:
+        """What computes the trials, in words, where that depends on the machine."""
+        return ""
+
     def floor_plan(self, scene: str) -> FloorPlan | None:
         """Return the shapes that a report draws for a scene, if the system has any."""
         del scene

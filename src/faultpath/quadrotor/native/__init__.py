@@ -4,6 +4,13 @@ Every kernel repeats arithmetic that stands in torch elsewhere in the applicatio
 the reference: it is what training differentiates and what the tests compare with.
 """
 
-from faultpath.quadrotor.native.library import Kernels, available, kernels, load
+from faultpath.quadrotor.native.library import (
+    Kernels,
+    available,
+    describe,
+    kernels,
+    load,
+    numerics,
+)
 
-__all__ = ["Kernels", "available", "kernels", "load"]
+__all__ = ["Kernels", "available", "describe", "kernels", "load", "numerics"]

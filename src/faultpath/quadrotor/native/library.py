@@ -18,6 +18,9 @@ SETS = ("avx512", "avx2", "baseline")
 
 _FUSING = {"avx512", "avx2"}
 
+WIDEST = 16
+"""Numbers in the widest vector: some kernels take whole vectors of candidates only."""
+
 
 @dataclass(frozen=True)
 class Kernels:
@@ -61,6 +64,25 @@ def kernels() -> Kernels | None:
     for isa in available() if wanted == AUTO else (wanted,):
         return load(isa)
     return None
+
+
+def numerics() -> str:
+    """Return what decides the last bits of a run here; results of two never mix in a folder."""
+    built = kernels()
+    return PORTABLE if built is None else built.numerics
+
+
+def describe() -> str:
+    """Return in words what runs here, and why it is not the fast path."""
+    built = kernels()
+    if built is not None:
+        return f"compiled kernels ({built.isa})"
+    if available():
+        return f"the portable path, as {VARIABLE} asks"
+    return (
+        "the portable path, several times slower than compiled kernels: "
+        "there was no C++ compiler at installation"
+    )
 
 
 def available() -> tuple[str, ...]:

@@ -1,14 +1,15 @@
-"""The horizon loop, compiled: what a predictor's `step` does, for a tile of candidates at a time."""
+"""The horizon loop, compiled: all steps of a predictor for one tile of candidates at a time."""
 
 import ctypes
 
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
+    LatentNetwork,
     Predictor,
     PredictorInputs,
     UnanchoredPredictor,
@@ -105,7 +106,7 @@ class CompiledRollout:
         self._model.angular_bound = ANGULAR_BOUND_RADPS2
 
     @torch.no_grad()
-    def _set_network(self, network: nn.Module) -> None:
+    def _set_network(self, network: LatentNetwork) -> None:
         for name, (weights, block) in _layers(network.fold()).items():
             packed = _pack(weights, block)
             self._kept.append(packed)

@@ -119,7 +119,7 @@ class ClearanceModel(nn.Module):
         Returns:
             `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
         """
-        weights = self._weights(code)
+        weights = self.networks(code)
         clearance = points.new_empty(points.shape[1:])
         for scene in range(points.shape[1]):
             ours = [weight[scene] for weight in weights]
@@ -151,8 +151,11 @@ class ClearanceModel(nn.Module):
     def _makers(self) -> list[nn.Linear]:
         return [layer for layer in self.layers if isinstance(layer, nn.Linear)]
 
-    def _weights(self, code: Tensor) -> list[Tensor]:
-        """Return each layer's weights `[S, rows, columns]`, with the row that stays one."""
+    def networks(self, code: Tensor) -> list[Tensor]:
+        """Return the query networks that codes `[64, S]` make.
+
+        Each layer's weights are `[S, rows, columns]`, with the row that stays one.
+        """
         count = code.shape[1]
         padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
         padded[:, :count] = code

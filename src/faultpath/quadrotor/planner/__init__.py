@@ -15,6 +15,7 @@ from faultpath.quadrotor.planner.mppi import (
     ScaledTemperature,
     Temperature,
     shift,
+    weighted_mean,
 )
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, SamplerSettings
 
@@ -34,4 +35,5 @@ __all__ = [
     "Temperature",
     "TerminalGoal",
     "shift",
+    "weighted_mean",
 ]

@@ -1,6 +1,7 @@
 """Model predictive path integral control, batched over scenes and candidates."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import torch
@@ -9,7 +10,7 @@ from torch import Tensor
 from faultpath.quadrotor.planner.costs import NavigationCost, Scored
 from faultpath.quadrotor.planner.sampler import Sampler
 from faultpath.quadrotor.predictors import Predictor, PredictorInputs
-from faultpath.quadrotor.rollout import Rollout, rollout
+from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 
@@ -58,6 +59,18 @@ class Proposal:
     """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
 
 
+Roll = Callable[[PredictorInputs, Tensor], Rollout]
+"""Rolls commands `[H, 4, S, K]` out from inputs of batch `[S, 1]`."""
+
+Mean = Callable[[Tensor, Tensor], Tensor]
+"""The mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
+
+
+def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
+    """Return the mean of commands; see `Mean`."""
+    return (commands * weight).sum(-1)
+
+
 class MPPI:
     """Proposes candidates, then turns their costs into the next plan.
 
@@ -66,12 +79,20 @@ class MPPI:
     """
 
     def __init__(
-        self, predictor: Predictor, sampler: Sampler, cost: NavigationCost, temperature: Temperature
+        self,
+        predictor: Predictor,
+        sampler: Sampler,
+        cost: NavigationCost,
+        temperature: Temperature,
+        roll: Roll,
+        mean: Mean = weighted_mean,
     ) -> None:
         self.predictor = predictor
         self.sampler = sampler
         self._cost = cost
         self._temperature = temperature
+        self._roll = roll
+        self._mean = mean
 
     def initial_plan(self, hover: Tensor) -> Tensor:
         """Return the plan `[H, 4, S]` that hovers, for hover thrust `[S]`."""
@@ -83,7 +104,7 @@ class MPPI:
         """Roll candidates around `plan` `[H, 4, S]` out; `noise` `[H, 4, S, K]` is overwritten."""
         hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
         commands = self.sampler.candidates(plan, hover, noise)
-        return Proposal(commands, rollout(self.predictor, inputs, commands), hover)
+        return Proposal(commands, self._roll(inputs, commands), hover)
 
     def decide(self, proposal: Proposal, clearance: Tensor, goal: Tensor) -> Tensor:
         """Return the improved plan `[H, 4, S]`; its first row is the command to execute.
@@ -93,7 +114,7 @@ class MPPI:
         commands = proposal.commands
         cost = self._cost(Scored(proposal.rollout, commands, clearance, goal, proposal.hover))
         weight = torch.softmax(-cost / self._temperature.of(cost), dim=1)
-        return (commands * weight).sum(-1)
+        return self._mean(commands, weight)
 
 
 def shift(plan: Tensor) -> Tensor:

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from faultpath.quadrotor.native.library import kernels
+from faultpath.quadrotor.native.recurrent import recur
 from faultpath.quadrotor.predictors.base import Calibration, History
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
@@ -64,6 +66,19 @@ class GatedCell(nn.Module):
         candidate = torch.addcmul(given[split:], reset, remembered).tanh()
         return torch.lerp(candidate, latent, update)
 
+    def last(self, sequence: Tensor) -> Tensor:
+        """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
+        compiled = None if torch.is_grad_enabled() else kernels()
+        if compiled is not None and sequence.dtype == torch.float32:
+            given, kept = (
+                (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)
+            )
+            return recur(compiled, given, kept, sequence)
+        latent = sequence.new_zeros(self.latent, sequence.shape[-1])
+        for step in sequence:
+            latent = self(step, latent)
+        return latent
+
 
 class LatentNetwork(nn.Module):
     """Encodes the executed history once, then updates a latent along each candidate.
@@ -98,15 +113,12 @@ class LatentNetwork(nn.Module):
         nn.init.zeros_(self.last.bias)
 
     def standardise(self, features: Tensor) -> Tensor:
-        """Return `features` `[19 + conditioning, N]` in units of the training pool's spread."""
+        """Return `features` `[*, 19 + conditioning, N]` in units of the training pool's spread."""
         return (features - self.feature_mean) / self.feature_std
 
     def encode(self, history: History) -> Tensor:
         """Return the history code `[32, *batch]`."""
-        rows = history_features(history)
-        latent = rows.new_zeros(LATENT, rows.shape[-1])
-        for row in rows:
-            latent = self.encoder(self.standardise(row), latent)
+        latent = self.encoder.last(self.standardise(history_features(history)))
         return latent.unflatten(1, history.mass_kg.shape)
 
     def fold(self) -> "FoldedNetwork":

@@ -86,11 +86,13 @@ class WindNetwork(nn.Module):
         `known` `[N]` counts the intervals that each column has: earlier ones leave its code at
         zero. Without it all have all of them.
         """
+        if known is None:
+            return self.encoder.last(intervals.movedim(1, 0))
         count = intervals.shape[1]
         code = intervals.new_zeros(CODE, intervals.shape[-1])
         for step, interval in enumerate(intervals.unbind(1)):
             after = self.encoder(interval, code)
-            code = after if known is None else torch.where(known >= count - step, after, code)
+            code = torch.where(known >= count - step, after, code)
         return code
 
     def forward(

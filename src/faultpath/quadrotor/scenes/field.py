@@ -19,12 +19,15 @@ outside a point lies.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import groupby
 from math import ceil
 
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native.field import CompiledField
 from faultpath.quadrotor.scenes.geometry import Prism, arena, rectangle_distance, solids
 from faultpath.quadrotor.scenes.scene import Scene
 
@@ -183,6 +186,19 @@ class DistanceField:
         Returns:
             `[B, N]`, m, not truncated. A point with a coordinate that is not a number gets NaN.
         """
+        compiled = self._compiled
+        return self._interpolate(points) if compiled is None else compiled.query(points)
+
+    @cached_property
+    def _compiled(self) -> CompiledField | None:
+        kernels = native.kernels()
+        if kernels is None or self.table.device.type != "cpu":
+            return None
+        return CompiledField(
+            kernels, self.table, self.pitch, self.origin, self.last, self.first, self.per_metre
+        )
+
+    def _interpolate(self, points: Tensor) -> Tensor:
         local = (points - self.origin).mul_(self.per_metre)
         cell = torch.minimum(local, self.last).clamp_min_(0).floor_()
         x, y, z = local.sub_(cell).flatten(1)  # within the cell, or beyond it at the border

@@ -27,6 +27,26 @@ struct Row {
   Vector part[WIDE];
 };
 
+INLINE Row each(float value) {
+  Row row;
+  for (int v = 0; v < WIDE; ++v) row.part[v] = splat(value);
+  return row;
+}
+
+// Rows in memory; the last tile may be short of `count` candidates.
+INLINE void take(const float* from, int64_t count, Row& row) {
+  if (count >= TILE) {
+    std::memcpy(&row, from, sizeof row);
+  } else {
+    row = each(0.0f);
+    std::memcpy(&row, from, count * sizeof(float));
+  }
+}
+
+INLINE void give(const Row& row, int64_t count, float* to) {
+  std::memcpy(to, &row, (count < TILE ? count : TILE) * sizeof(float));
+}
+
 // Unrolled in full, so that the sums stay in registers.
 template <int BLOCK>
 INLINE void accumulate(const float* weights, const Row* x, int64_t inputs, Row* sums) {

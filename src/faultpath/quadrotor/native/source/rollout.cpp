@@ -66,12 +66,6 @@ struct Network {
   Row* features() { return known + EMBEDDING + LATENT; }
 };
 
-INLINE Row each(float value) {
-  Row row;
-  for (int v = 0; v < WIDE; ++v) row.part[v] = splat(value);
-  return row;
-}
-
 INLINE void observe(const Motion& now, const Row* command, const Start& start, Row* features) {
   for (int i = 0; i < 3; ++i) features[i] = now.velocity[i];
   for (int i = 0; i < 9; ++i) features[3 + i] = now.rotation.at[i];
@@ -193,19 +187,6 @@ INLINE void begin(const Start& start, Motion& now, Network& net) {
   for (int i = 0; i < 2; ++i) net.features()[MOTION + COMMAND + i] = each(start.conditioning[i]);
 }
 
-INLINE void take(const float* from, int64_t count, Row& row) {
-  if (count == TILE) {
-    std::memcpy(&row, from, sizeof row);
-  } else {
-    row = each(0.0f);
-    std::memcpy(&row, from, count * sizeof(float));
-  }
-}
-
-INLINE void give(const Row& row, int64_t count, float* to) {
-  std::memcpy(to, &row, (count < TILE ? count : TILE) * sizeof(float));
-}
-
 void roll_tile(const Predictor& model, const Start& start, const float* commands, int64_t steps,
                int64_t scenes, int64_t candidates, int64_t count, float* positions,
                float* velocities, float* ends) {
@@ -245,6 +226,6 @@ extern "C" __attribute__((visibility("default"))) void faultpath_roll(
       const int64_t at = s * candidates + first;
       const int64_t along = s * steps * candidates + first;
       roll_tile(*model, starts[s], commands + at, steps, scenes, candidates,
-                left < TILE ? left : TILE, positions + along, velocities + along, ends + at);
+                left, positions + along, velocities + along, ends + at);
     }
 }

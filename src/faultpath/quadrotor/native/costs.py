@@ -1,0 +1,79 @@
+"""The planner's cost and its weighted mean, compiled."""
+
+import ctypes
+from typing import TypeGuard
+
+from torch import Tensor
+
+from faultpath.quadrotor.native.library import WIDEST, Kernels
+from faultpath.quadrotor.planner.costs import NavigationCost, RunningGoal, Scored, TerminalGoal
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+
+_TERMS = ("goal", "risk", "hit", "margin", "radius", "speed", "v_max", "heading")
+_EFFORTS = ("rate_effort", "thrust_effort")
+
+
+class _Weights(ctypes.Structure):
+    """`Weights` of `costs.cpp`."""
+
+    _fields_ = (
+        ("running", ctypes.c_int64),
+        *((name, ctypes.c_float) for name in _TERMS + _EFFORTS),
+    )
+
+
+class CompiledCost(NavigationCost):
+    """The navigation cost in one pass over the candidates."""
+
+    def __init__(self, kernels: Kernels, cost: NavigationCost) -> None:
+        super().__init__(cost.goal, cost.weights)
+        self._kernels = kernels
+        w = cost.weights
+        self._table = _Weights(
+            running=isinstance(cost.goal, RunningGoal),
+            **{name: getattr(w, name) for name in ("goal", "risk", "hit", "speed", "heading")},
+            **{name: getattr(w, name) for name in _EFFORTS},
+            margin=w.margin_m,
+            v_max=w.v_max_mps,
+            radius=COLLISION_RADIUS_M,
+        )
+
+    @staticmethod
+    def covers(cost: object) -> TypeGuard[NavigationCost]:
+        """Return whether `cost` is one that this can stand for."""
+        return type(cost) is NavigationCost and type(cost.goal) in (TerminalGoal, RunningGoal)
+
+    def __call__(self, scored: Scored) -> Tensor:
+        """See `NavigationCost`."""
+        rollout, commands = scored.rollout, scored.commands
+        steps, _, scenes, candidates = commands.shape
+        if candidates % WIDEST:
+            return super().__call__(scored)
+        costs = commands.new_empty(scenes, candidates)
+        self._kernels.call(
+            "faultpath_cost",
+            ctypes.byref(self._table),
+            *(rollout.positions, rollout.velocities, rollout.final.rotation.contiguous()),
+            *(commands, scored.clearance.contiguous()),
+            *(scored.goal.contiguous(), scored.hover.contiguous()),
+            *(steps, scenes, candidates, costs),
+        )
+        return costs
+
+
+class CompiledMean:
+    """The mean of candidates under weights."""
+
+    def __init__(self, kernels: Kernels) -> None:
+        self._kernels = kernels
+
+    def __call__(self, commands: Tensor, weight: Tensor) -> Tensor:
+        """See `planner.mppi.weighted_mean`."""
+        steps, channels, scenes, candidates = commands.shape
+        if candidates % WIDEST:
+            return (commands * weight).sum(-1)
+        plan = commands.new_empty(steps, channels, scenes)
+        self._kernels.call(
+            "faultpath_mean", commands, weight, *(steps * channels, scenes, candidates), plan
+        )
+        return plan

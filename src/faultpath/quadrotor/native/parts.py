@@ -1,0 +1,36 @@
+"""Where compiled parts take the place of portable ones: nothing else asks which are there."""
+
+from functools import partial
+
+from faultpath.quadrotor.native.clearance import CompiledDepthClearance
+from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean
+from faultpath.quadrotor.native.library import kernels
+from faultpath.quadrotor.native.rollout import CompiledRollout
+from faultpath.quadrotor.native.sampling import CompiledSampler
+from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
+from faultpath.quadrotor.planner import MPPI, NavigationCost, Sampler, Temperature, weighted_mean
+from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.rollout import rollout
+
+
+def build_planner(
+    predictor: Predictor, sampler: Sampler, cost: NavigationCost, temperature: Temperature
+) -> MPPI:
+    """Return the planner, compiled as far as there are kernels for its parts."""
+    built = kernels()
+    if built is None:
+        roll, mean = partial(rollout, predictor), weighted_mean
+        return MPPI(predictor, sampler, cost, temperature, roll, mean)
+    if CompiledSampler.covers(sampler):
+        sampler = CompiledSampler(built, sampler)
+    if CompiledCost.covers(cost):
+        cost = CompiledCost(built, cost)
+    covered = CompiledRollout.covers(predictor)
+    roll = CompiledRollout(built, predictor) if covered else partial(rollout, predictor)
+    return MPPI(predictor, sampler, cost, temperature, roll, CompiledMean(built))
+
+
+def depth_clearance(model: ClearanceModel) -> DepthClearance:
+    """Return the clearance of depth images, compiled where there are kernels."""
+    built = kernels()
+    return DepthClearance(model) if built is None else CompiledDepthClearance(built, model)

@@ -1,0 +1,106 @@
+// Clearance at many points from the depth image's code; see `perception/clearance.py`.
+#include "rotation.hpp"
+
+namespace {
+
+constexpr int FEATURES = 9;
+constexpr int HIDDEN = 48;
+constexpr int PADDED = OUTPUTS;  // outputs of the last layer: one, padded to a block
+
+}  // namespace
+
+extern "C" {
+
+struct Bounds {
+  float lowest, highest;  // of the answer
+  float unseen;           // most clearance where no pixel looks
+  float near;             // squared range within which that does not matter
+  float left, up;         // half the image's width and height, per metre forward
+};
+
+}  // extern "C"
+
+namespace {
+
+// One scene's query network, packed as `layers.hpp` reads it.
+struct Query {
+  float first[(1 + FEATURES) * HIDDEN];
+  float second[(1 + HIDDEN) * HIDDEN];
+  float last[(1 + HIDDEN) * PADDED];
+};
+
+void pack(const float* weights, int64_t inputs, int64_t outputs, float* packed) {
+  for (int64_t block = 0; block < outputs; block += OUTPUTS)
+    for (int64_t i = -1; i < inputs; ++i)
+      for (int64_t o = block; o < block + OUTPUTS; ++o)
+        *packed++ = i < 0 || o >= outputs ? 0.0f : weights[o * inputs + i];
+}
+
+INLINE void capture(const float* eye, const float* axes, const Row* world, Row* local) {
+  for (int v = 0; v < WIDE; ++v) {
+    Vector r[9], offset[3], turned[3];
+    for (int i = 0; i < 9; ++i) r[i] = splat(axes[i]);
+    for (int i = 0; i < 3; ++i) offset[i] = world[i].part[v] - eye[i];
+    rotate_back(r, offset, turned);
+    for (int i = 0; i < 3; ++i) local[i].part[v] = turned[i];
+  }
+}
+
+INLINE void describe(const Row* local, Row* features) {
+  for (int v = 0; v < WIDE; ++v) {
+    const Vector x = local[0].part[v], y = local[1].part[v], z = local[2].part[v];
+    const Vector distance = sqrt(fma(z, z, fma(y, y, x * x)));
+    const Vector inverse = 1.0f / (at_least(x, splat(0.0f)) + 0.25f);
+    const Vector edge = splat(1.5f);
+    features[0].part[v] = fma(x, splat(0.5f), splat(-0.5f));
+    features[1].part[v] = y * 0.5f;
+    features[2].part[v] = z * 0.5f;
+    features[3].part[v] = fma(distance, splat(0.5f), splat(-0.7f));
+    features[4].part[v] = inverse - 0.7f;
+    features[5].part[v] = bounded(y * inverse, -edge, edge);
+    features[6].part[v] = bounded(z * inverse, -edge, edge);
+    features[7].part[v] = 1.0f / (distance + 0.25f) - 0.7f;
+    features[8].part[v] = splat(1.0f);
+  }
+}
+
+INLINE Vector limited(const Bounds& bounds, const Row* local, int v, Vector clearance) {
+  const Vector x = local[0].part[v], y = local[1].part[v], z = local[2].part[v];
+  const Integers seen = (x > 0.0f) & (absolute(y) < x * bounds.left) & (absolute(z) < x * bounds.up);
+  const Integers near = fma(z, z, fma(y, y, x * x)) < bounds.near;
+  const Vector value = bounded(clearance, splat(bounds.lowest), splat(bounds.highest));
+  return select(seen | near, value, at_most(value, splat(bounds.unseen)));
+}
+
+}  // namespace
+
+// `first` [S, 48, 9], `second` [S, 48, 48], `last` [S, 1, 48] are the query networks that the codes
+// made, `eye` [S, 3] and `axes` [S, 9] the capture frames, `points` [3, S, N] in the world frame;
+// N is a multiple of the widest vector. `clearance` [S, N].
+extern "C" __attribute__((visibility("default"))) void faultpath_clearance(
+    const Bounds* bounds, const float* first, const float* second, const float* last,
+    const float* eye, const float* axes, const float* points, int64_t scenes, int64_t count,
+    float* clearance) {
+  Query query;
+  const Layer layers[3] = {{query.first, FEATURES, HIDDEN},
+                           {query.second, HIDDEN, HIDDEN},
+                           {query.last, HIDDEN, PADDED}};
+  for (int64_t s = 0; s < scenes; ++s) {
+    pack(first + s * HIDDEN * FEATURES, FEATURES, HIDDEN, query.first);
+    pack(second + s * HIDDEN * HIDDEN, HIDDEN, HIDDEN, query.second);
+    pack(last + s * HIDDEN, HIDDEN, 1, query.last);
+    for (int64_t n = 0; n < count; n += TILE) {
+      Row world[3], local[3], features[FEATURES], hidden[2][HIDDEN], answer[PADDED];
+      const int64_t left = count - n;
+      for (int i = 0; i < 3; ++i) take(points + (i * scenes + s) * count + n, left, world[i]);
+      capture(eye + 3 * s, axes + 9 * s, world, local);
+      describe(local, features);
+      dense(layers[0], features, hidden[0], rectified);
+      dense(layers[1], hidden[0], hidden[1], rectified);
+      dense(layers[2], hidden[1], answer, [](Vector x) { return x; });
+      for (int v = 0; v < WIDE; ++v)
+        answer[0].part[v] = limited(*bounds, local, v, answer[0].part[v]);
+      give(answer[0], left, clearance + s * count + n);
+    }
+  }
+}

@@ -1,0 +1,133 @@
+// Noise of the candidates, and the candidates; see `planner/sampler.py`.
+#include "simd.hpp"
+
+namespace {
+
+// Natural logarithm of x > 0; relative error about 1e-7 (Cephes).
+INLINE Vector logarithm(Vector x) {
+  const Integers bits = as_bits(x);
+  Integers exponent = ((bits >> 23) & 0xff) - 126;
+  Vector m = as_float((bits & 0x007fffff) | 0x3f000000);  // in [1/2, 1)
+  const Integers low = m < 0.707106781186547524f;
+  exponent += low;  // a true mask is -1
+  m = select(low, m + m, m) - 1.0f;
+  const Vector square = m * m;
+  Vector p = splat(7.0376836292e-2f);
+  p = fma(p, m, splat(-1.1514610310e-1f));
+  p = fma(p, m, splat(1.1676998740e-1f));
+  p = fma(p, m, splat(-1.2420140846e-1f));
+  p = fma(p, m, splat(1.4249322787e-1f));
+  p = fma(p, m, splat(-1.6668057665e-1f));
+  p = fma(p, m, splat(2.0000714765e-1f));
+  p = fma(p, m, splat(-2.4999993993e-1f));
+  p = fma(p, m, splat(3.3333331174e-1f));
+  const Vector e = __builtin_convertvector(exponent, Vector);
+  Vector y = fma(p * m, square, e * -2.12194440e-4f);
+  y = fma(square, splat(-0.5f), y);
+  return fma(e, splat(0.693359375f), m + y);
+}
+
+// One block of Philox 4x64 with ten rounds (Salmon et al. 2011).
+INLINE void philox(const uint64_t* key, const uint64_t* counter, uint64_t* block) {
+  constexpr uint64_t M0 = 0xD2E7470EE14C6C93, M1 = 0xCA5A826395121157;
+  constexpr uint64_t W0 = 0x9E3779B97F4A7C15, W1 = 0xBB67AE8584CAA73B;
+  uint64_t c0 = counter[0], c1 = counter[1], c2 = counter[2], c3 = counter[3];
+  uint64_t k0 = key[0], k1 = key[1];
+#pragma GCC unroll 10
+  for (int round = 0; round < 10; ++round) {
+    const auto a = static_cast<unsigned __int128>(M0) * c0;
+    const auto b = static_cast<unsigned __int128>(M1) * c2;
+    c0 = static_cast<uint64_t>(b >> 64) ^ c1 ^ k0;
+    c2 = static_cast<uint64_t>(a >> 64) ^ c3 ^ k1;
+    c1 = static_cast<uint64_t>(b);
+    c3 = static_cast<uint64_t>(a);
+    k0 += W0;
+    k1 += W1;
+  }
+  block[0] = c0;
+  block[1] = c1;
+  block[2] = c2;
+  block[3] = c3;
+}
+
+INLINE Integers load_bits(const int32_t* from) {
+  Integers value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+// Two normals from two words of 32 bits (Box and Muller 1958).
+INLINE void normals(Integers first, Integers second, Vector& a, Vector& b) {
+  constexpr float SCALE = 2.3283064365386963e-10f;  // 2^-32
+  const Vector u = __builtin_convertvector(first, Vector) * SCALE;
+  const Vector v = __builtin_convertvector(second, Vector) * SCALE;
+  const Vector logged = logarithm((u + 0.5f) + 0.5f * SCALE) * -2.0f;
+  const Vector radius = sqrt(at_least(logged, splat(0.0f)));
+  Vector sine, cosine;
+  sine_cosine(v * 6.283185307179586f, sine, cosine);
+  a = cosine * radius;
+  b = sine * radius;
+}
+
+// One scene's white noise, `[rows][candidates]`, into rows that lie `pitch` apart.
+void white(const int32_t* bits, int64_t rows, int64_t candidates, int64_t pitch, float* noise) {
+  const int64_t half = rows / 2;
+  for (int64_t r = 0; r < half; ++r)
+    for (int64_t k = 0; k < candidates; k += LANES) {
+      Vector a, b;
+      const int32_t* at = bits + r * candidates + k;
+      normals(load_bits(at), load_bits(at + half * candidates), a, b);
+      store(noise + r * pitch + k, a);
+      store(noise + (r + half) * pitch + k, b);
+    }
+}
+
+}  // namespace
+
+// The first `count` words, a multiple of four, that NumPy's Philox gives from a key [2] at a step:
+// its counter holds the step in the high word and is raised before each block.
+extern "C" __attribute__((visibility("default"))) void faultpath_philox(
+    const uint64_t* key, int64_t step, int64_t count, uint64_t* words) {
+  uint64_t counter[4] = {0, 0, 0, static_cast<uint64_t>(step)};
+  for (int64_t i = 0; i < count; i += 4) {
+    ++counter[0];
+    philox(key, counter, words + i);
+  }
+}
+
+// `noise` [H, 4, S, K]: first-order autoregressive over the horizon, candidate 0 at zero. `bits`
+// [S, H * 4 * K]; K is a multiple of the widest vector.
+extern "C" __attribute__((visibility("default"))) void faultpath_noise(
+    const int32_t* bits, int64_t horizon, int64_t scenes, int64_t candidates,
+    const float* correlation, float* noise) {
+  const Vector kept = splat(correlation[0]), fresh = splat(correlation[1]);
+  const int64_t pitch = scenes * candidates, rows = 4 * horizon;
+  for (int64_t s = 0; s < scenes; ++s) {
+    float* own = noise + s * candidates;
+    white(bits + s * rows * candidates, rows, candidates, pitch, own);
+    for (int64_t r = 4; r < rows; ++r)
+      for (int64_t k = 0; k < candidates; k += LANES) {
+        float* at = own + r * pitch + k;
+        store(at, fma(load(at - 4 * pitch), kept, load(at) * fresh));
+      }
+    for (int64_t r = 0; r < rows; ++r) own[r * pitch] = 0.0f;
+  }
+}
+
+// Noise becomes commands, in place. `plan` [H, 4, S], `hover` [S], `sigma` [4], `limit` [3].
+extern "C" __attribute__((visibility("default"))) void faultpath_candidates(
+    const float* plan, const float* hover, const float* sigma, const float* limit,
+    int64_t horizon, int64_t scenes, int64_t candidates, float* noise) {
+  for (int64_t h = 0; h < horizon; ++h)
+    for (int64_t c = 0; c < 4; ++c)
+      for (int64_t s = 0; s < scenes; ++s) {
+        const int64_t row = (h * 4 + c) * scenes + s;
+        const Vector centre = splat(plan[row]);
+        const Vector scale = splat(c == 0 ? sigma[0] * hover[s] : sigma[c]);
+        const Vector high = splat(c == 0 ? 2.0f * hover[s] : limit[c - 1]);
+        const Vector low = c == 0 ? splat(0.0f) : -high;
+        float* at = noise + row * candidates;
+        for (int64_t k = 0; k < candidates; k += LANES)
+          store(at + k, bounded(fma(load(at + k), scale, centre), low, high));
+      }
+}

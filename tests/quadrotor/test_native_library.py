@@ -1,0 +1,60 @@
+"""Which kernels run, and what is said about it."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native import library
+
+
+@pytest.fixture(autouse=True)
+def fresh() -> Iterator[None]:
+    native.kernels.cache_clear()
+    yield
+    native.kernels.cache_clear()
+
+
+def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(library.VARIABLE, raising=False)
+    built = native.kernels()
+    assert built is not None
+    assert built.isa == native.available()[0]
+    assert built.isa in native.describe()
+
+
+def test_a_set_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(library.VARIABLE, "baseline")
+    built = native.kernels()
+    assert built is not None
+    assert built.isa == native.numerics() == "baseline"
+
+
+def test_the_portable_path_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(library.VARIABLE, "portable")
+    assert native.kernels() is None
+    assert native.numerics() == "portable"
+    assert library.VARIABLE in native.describe()
+
+
+def test_an_unknown_set_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(library.VARIABLE, "fast")
+    with pytest.raises(UserError, match="is 'fast': it takes one of auto, avx512"):
+        native.kernels()
+
+
+def test_without_built_kernels_the_portable_path_runs_and_says_why(
+    monkeypatch: pytest.MonkeyPatch, tmp_path
+) -> None:
+    monkeypatch.delenv(library.VARIABLE, raising=False)
+    monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
+    assert native.kernels() is None
+    assert "no C++ compiler" in native.describe()
+
+
+def test_a_set_that_was_not_built_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    monkeypatch.setenv(library.VARIABLE, "avx2")
+    monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
+    with pytest.raises(UserError, match="'avx2' were not built or do not run"):
+        native.kernels()

@@ -1,0 +1,149 @@
+"""Compiled noise, candidates, costs, means and clearance are the portable ones to rounding."""
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.quadrotor import native, so3
+from faultpath.quadrotor.models import clearance_model
+from faultpath.quadrotor.native.clearance import CompiledDepthClearance
+from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean
+from faultpath.quadrotor.native.sampling import CompiledSampler
+from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
+from faultpath.quadrotor.perception.camera import CaptureFrame
+from faultpath.quadrotor.planner import (
+    AutoregressiveSampler,
+    CostWeights,
+    GoalCost,
+    NavigationCost,
+    RunningGoal,
+    SamplerSettings,
+    Scored,
+    TerminalGoal,
+    weighted_mean,
+)
+from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.state import State
+from faultpath.streams import generator, key, words
+
+SCENES = ("a", "b", "c")
+
+
+@pytest.fixture(params=native.available())
+def kernels(request: pytest.FixtureRequest) -> native.Kernels:
+    return native.load(request.param)
+
+
+@pytest.fixture
+def stream() -> torch.Generator:
+    return torch.Generator().manual_seed(0)
+
+
+def close(mine: torch.Tensor, reference: torch.Tensor, tolerance: float = 1e-5) -> None:
+    torch.testing.assert_close(mine, reference, rtol=tolerance, atol=tolerance)
+
+
+@pytest.mark.parametrize("horizon", [20, 7])
+def test_noise_is_the_portable_one(kernels: native.Kernels, horizon: int) -> None:
+    sampler = AutoregressiveSampler(SamplerSettings(candidates=64, horizon=horizon))
+    compiled = CompiledSampler(kernels, sampler)
+    close(compiled.noise(SCENES, 3, 5), sampler.noise(SCENES, 3, 5))
+
+
+def test_words_are_those_of_numpy(kernels: native.Kernels) -> None:
+    found = torch.empty(64, dtype=torch.int64)
+    kernels.call("faultpath_philox", torch.from_numpy(words(key("p", "s", 1))), 7, 64, found)
+    assert found.numpy().view(np.uint64).tolist() == (
+        generator("p", "s", 1, 7).bit_generator.random_raw(64).tolist()
+    )
+
+
+def test_normals_hold_at_both_ends_of_the_bits(kernels: native.Kernels) -> None:
+    bits = torch.tensor([-(2**31), 2**31 - 1, 0, -1], dtype=torch.int32).repeat(16)
+    noise = torch.empty(1, 4, 1, 16)
+    correlation = torch.tensor([0.0, 1.0])
+    kernels.call("faultpath_noise", bits, 1, 1, 16, correlation, noise)
+    assert noise.isfinite().all()
+    assert noise.abs().max() < 7
+
+
+def test_candidates_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:
+    settings = SamplerSettings(candidates=64, thrust_sigma=1.0, rate_sigma_radps=(9, 9, 9))
+    sampler = AutoregressiveSampler(settings)
+    plan = torch.randn(20, 4, 3, generator=stream)
+    hover = torch.tensor([4.0, 9.0, 15.0])
+    noise = torch.randn(20, 4, 3, 64, generator=stream)
+    compiled = CompiledSampler(kernels, sampler).candidates(plan, hover, noise.clone())
+    close(compiled, sampler.candidates(plan, hover, noise))
+
+
+def scored(stream: torch.Generator, candidates: int) -> Scored:
+    def draw(*shape: int) -> torch.Tensor:
+        return torch.randn(*shape, generator=stream)
+
+    positions, velocities = 3 * draw(3, 3, 20, candidates), 3 * draw(3, 3, 20, candidates)
+    rotation = so3.exp(draw(3, 3, candidates))
+    final = State(positions[:, :, -1], velocities[:, :, -1], rotation, draw(3, 3, candidates))
+    commands = draw(20, 4, 3, candidates)
+    return Scored(
+        rollout=Rollout(positions, velocities, final),
+        commands=commands,
+        clearance=0.3 + 0.3 * draw(3, 20, candidates),
+        goal=5 * draw(3, 3),
+        hover=9 + draw(3),
+    )
+
+
+@pytest.mark.parametrize("candidates", [64, 50])
+@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal()], ids=["terminal", "running"])
+def test_costs_are_the_portable_ones(
+    kernels: native.Kernels, goal: GoalCost, candidates: int, stream: torch.Generator
+) -> None:
+    cost = NavigationCost(goal, CostWeights())
+    case = scored(stream, candidates)
+    close(CompiledCost(kernels, cost)(case), cost(case))
+
+
+@pytest.mark.parametrize("term", ["goal", "risk", "hit", "speed", "heading", "rate_effort"])
+def test_every_term_of_the_cost_counts(
+    kernels: native.Kernels, term: str, stream: torch.Generator
+) -> None:
+    case = scored(stream, 16)
+    without = CostWeights(**{term: 0.0})
+    whole = CompiledCost(kernels, NavigationCost(TerminalGoal()))(case)
+    rest = CompiledCost(kernels, NavigationCost(TerminalGoal(), without))(case)
+    assert not torch.allclose(whole, rest)
+    close(rest, NavigationCost(TerminalGoal(), without)(case))
+
+
+@pytest.mark.parametrize("candidates", [64, 50])
+def test_means_are_the_portable_ones(
+    kernels: native.Kernels, candidates: int, stream: torch.Generator
+) -> None:
+    commands = torch.randn(20, 4, 3, candidates, generator=stream)
+    weight = torch.randn(3, candidates, generator=stream).softmax(1)
+    close(CompiledMean(kernels)(commands, weight), weighted_mean(commands, weight))
+
+
+@torch.inference_mode()
+def test_clearance_is_the_portable_one(kernels: native.Kernels, stream: torch.Generator) -> None:
+    model = clearance_model()
+    portable, compiled = DepthClearance(model), CompiledDepthClearance(kernels, model)
+    depth = 6 * torch.rand(4, 36, 64, generator=stream)
+    position = torch.randn(4, 3, generator=stream)
+    rotation = so3.exp(torch.randn(3, 4, generator=stream)).movedim(-1, 0)
+    ahead = torch.randn(3, 2, 320, generator=stream)
+    ahead[0] = 3 * ahead[0].abs()  # most of them in view
+    chosen = [2, 0]
+    frame = CaptureFrame(position[chosen].T, rotation[chosen].movedim(0, -1))
+    points = frame.to_world(ahead)
+    for clearance in (portable, compiled):
+        clearance.capture(depth, position, rotation)
+    mine, reference = (c.query(points, chosen) for c in (compiled, portable))
+    close(mine, reference, 1e-4)
+    assert reference.std() > 0.1
+
+
+def test_a_query_before_the_first_image_is_refused(kernels: native.Kernels) -> None:
+    with pytest.raises(RuntimeError, match="capture"):
+        CompiledDepthClearance(kernels, ClearanceModel()).query(torch.zeros(3, 1, 32), [0])

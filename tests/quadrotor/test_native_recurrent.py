@@ -1,0 +1,48 @@
+"""The compiled recurrent unit is the portable one to rounding."""
+
+import pytest
+import torch
+
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native.recurrent import recur
+from faultpath.quadrotor.predictors.network import GatedCell, draw_weights
+
+
+@pytest.fixture(params=native.available())
+def kernels(request: pytest.FixtureRequest) -> native.Kernels:
+    return native.load(request.param)
+
+
+def cell_and_sequence(inputs: int, columns: int) -> tuple[GatedCell, torch.Tensor]:
+    stream = torch.Generator().manual_seed(inputs)
+    cell = GatedCell(inputs, 32)
+    draw_weights(cell, stream)
+    return cell, 2 * torch.randn(12, inputs, columns, generator=stream)
+
+
+def compiled(kernels: native.Kernels, cell: GatedCell, sequence: torch.Tensor) -> torch.Tensor:
+    given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
+    return recur(kernels, given, kept, sequence)
+
+
+@pytest.mark.parametrize("inputs", [19, 22, 32])
+def test_the_last_latent_is_the_portable_one(kernels: native.Kernels, inputs: int) -> None:
+    cell, sequence = cell_and_sequence(inputs, columns=5)
+    with torch.enable_grad():  # the way by which training goes
+        portable = cell.last(sequence).detach()
+    assert portable.std() > 0.1
+    torch.testing.assert_close(compiled(kernels, cell, sequence), portable, rtol=1e-5, atol=1e-5)
+
+
+def test_a_column_does_not_depend_on_the_others(kernels: native.Kernels) -> None:
+    cell, sequence = cell_and_sequence(21, columns=7)
+    whole = compiled(kernels, cell, sequence)
+    alone = compiled(kernels, cell, sequence[..., 3:4].contiguous())
+    assert torch.equal(whole[:, 3:4], alone)
+
+
+def test_training_differentiates_through_the_unit() -> None:
+    cell, sequence = cell_and_sequence(4, columns=3)
+    cell.last(sequence).sum().backward()
+    assert cell.from_latent.weight.grad is not None
+    assert cell.from_latent.weight.grad.abs().sum() > 0
