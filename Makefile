@@ -8,6 +8,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
 INPUTS := pyproject.toml constraints.txt hatch_build.py $(wildcard src/faultpath/quadrotor/native/source/*)
+BENCH := .venv-bench
 SOURCES := src tests examples benchmarks
 
 # --no-compile leaves byte code to the first import: most of what is installed is never imported.
@@ -15,7 +16,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit train test lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit train test bench bench-page lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -34,6 +35,13 @@ train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the q
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
 
+bench: $(BENCH)/ready ## Measure side by side with other software; ARGS="--only plant" for some
+	$(BENCH)/bin/python -m benchmarks run $(ARGS)
+	$(BENCH)/bin/python -m benchmarks page
+
+bench-page: $(STAMPS)/dev ## Write docs/performance.md from benchmarks/results.json again
+	$(BIN)/python -m benchmarks page
+
 lint: $(STAMPS)/dev ## Check format, style, types and layers
 	$(BIN)/ruff format --check
 	$(BIN)/ruff check
@@ -48,8 +56,8 @@ clean: ## Remove caches and build outputs; keep .venv and results
 	rm -rf .pytest_cache .ruff_cache .import_linter_cache .hypothesis build dist
 	find $(wildcard $(SOURCES)) -name __pycache__ -type d -prune -exec rm -rf {} +
 
-distclean: clean ## Remove .venv as well
-	rm -rf $(VENV)
+distclean: clean ## Remove .venv and .venv-bench as well
+	rm -rf $(VENV) $(BENCH)
 
 # The browser tests need a Chromium. Root on a machine with apt gets it; anyone else is told how.
 prerequisites:
@@ -92,3 +100,16 @@ $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@mkdir -p $(STAMPS)
 	@touch $(STAMPS)/runtime $@
 	@rm $(VENV)/incomplete
+
+# The peers of the measurements have an environment of their own, which nothing else uses.
+$(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
+	@if [ -e $(BENCH)/incomplete ] || ! $(BENCH)/bin/python -m pip --version >/dev/null 2>&1; then \
+	  $(CHECK_PYTHON); \
+	  rm -rf $(BENCH) && $(PYTHON) -m venv $(BENCH); \
+	fi
+	@touch $(BENCH)/incomplete
+	@echo "Installing faultpath and what it is compared with into $(BENCH); the first time takes minutes"
+	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
+	  -c constraints.txt -r benchmarks/requirements.txt -e '.[quadrotor,mujoco]'
+	@rm $(BENCH)/incomplete
+	@touch $@

@@ -1,0 +1,114 @@
+"""A real block in flight: how much of a closed-loop replan is not the rollout."""
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from benchmarks.side import Side
+from faultpath.quadrotor import clearance as sources
+from faultpath.quadrotor import navigator
+from faultpath.quadrotor.native.sampling import CompiledSampler
+from faultpath.quadrotor.perception import DepthRenderer
+from faultpath.quadrotor.planner import MPPI, AutoregressiveSampler
+from faultpath.quadrotor.predictors import AnchoredPredictor
+from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.world import World
+from faultpath.taps import Taps
+
+SCENES = 25
+STEPS = 20
+VARIANT = "gru"
+
+PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
+    "rendering": ((DepthRenderer, "render"),),
+    "encoding": ((sources.SeenClearance, "look"),),
+    "noise": ((AutoregressiveSampler, "noise"), (CompiledSampler, "noise")),
+    "candidates and rollout": ((MPPI, "propose"),),
+    "clearance queries": ((sources.SeenClearance, "query"), (sources.TrueClearance, "query")),
+    "costs and update": ((MPPI, "decide"),),
+    "plant and contact": ((World, "advance"),),
+    "history code": ((AnchoredPredictor, "encode"),),
+    "wind reconstruction": ((navigator.WindReconstruction, "observe"),),
+}
+"""The methods in which the parts of a control step are; the rest is taps and bookkeeping."""
+
+WHOLE = "whole"
+
+
+class ClosedLoop(Side):
+    """Twenty control steps of a block; the unit is one running scene's step."""
+
+    def __init__(self, clearance: str = "true") -> None:
+        system = create(wind="L3", predictor="wm-a-wind", clearance=clearance)
+        assert isinstance(system, Quadrotor)
+        self._system = system
+        self._scenes = [scene.id for scene in system.library("selection").scenes[:SCENES]]
+        self._commands: Iterator[Tensor] = iter(())
+        self._running: Callable[[], int] = int
+        self.amount = 0
+
+    @torch.inference_mode()
+    def prepare(self) -> None:
+        """Fly a new block up to its first command."""
+        system, parts = self._system, self._system.variants[VARIANT]
+        taps = Taps(
+            system.interface,
+            (),
+            scenes=tuple(self._scenes),
+            dt_s=system.control_dt_s,
+            seed=0,
+            bindings=parts.bindings,
+            consumers=parts.consumers,
+            privileged=parts.privileged,
+        )
+        flight = system.flight(VARIANT, self._scenes, taps, 0)
+        self._running = lambda: int(flight.world.progress.running[:SCENES].sum())
+        self._commands = flight.commands()
+        next(self._commands)
+
+    @torch.inference_mode()
+    def work(self) -> None:
+        """See `Side.work`."""
+        replans = 0
+        for _ in range(STEPS):
+            next(self._commands)
+            replans += self._running()
+        self.amount = replans
+
+    def answer(self) -> Sequence[float]:
+        """Return the time of each of `PARTS` and of the whole, s a running scene's step."""
+        repeats = 3
+        spent = dict.fromkeys((*PARTS, WHOLE), 0.0)
+        for _ in range(repeats):
+            self.prepare()
+            with ExitStack() as stack:
+                for part, methods in PARTS.items():
+                    for owner, method in methods:
+                        stack.enter_context(_clocked(owner, method, spent, part))
+                start = time.perf_counter()
+                self.work()
+                spent[WHOLE] += time.perf_counter() - start
+        return [seconds / (repeats * self.amount) for seconds in spent.values()]
+
+
+@contextmanager
+def _clocked(owner: type, method: str, spent: dict[str, float], part: str) -> Iterator[None]:
+    """Add up the time that calls of a method take, while the context lasts."""
+    original = getattr(owner, method)
+
+    def timed(*arguments: Any, **named: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return original(*arguments, **named)
+        finally:
+            spent[part] += time.perf_counter() - start
+
+    setattr(owner, method, timed)
+    try:
+        yield
+    finally:
+        setattr(owner, method, original)

@@ -1,0 +1,184 @@
+"""Side by side: rounds in which every side does a little work, one after the other, on one core."""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from types import TracebackType
+from typing import IO, Any, Self
+
+from benchmarks.results import ROOT
+from faultpath.quadrotor.native import library
+
+ROUNDS = 9
+ROUND_S = 0.25
+"""Seconds that one side works in one round: long against a time slice, short against a drift."""
+
+ONE_THREAD = {
+    "OMP_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
+    "JAX_PLATFORMS": "cpu",
+}
+
+
+class NotMeasured(Exception):
+    """A side that could not be built, or that gives other numbers than its counterpart."""
+
+
+@dataclass(frozen=True)
+class Work:
+    """How to build a side: its class as `module:Class`, arguments and environment."""
+
+    side: str
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
+
+
+def cpu() -> int:
+    """Return the processor that sides run on: the last, as the first serves interrupts."""
+    return max(os.sched_getaffinity(0))
+
+
+def _kernels() -> Mapping[str, str]:
+    """Name the kernels that the sides run: one that cannot load them says so, and does not go on
+    with the portable path."""
+    found = library.kernels()
+    return {library.VARIABLE: library.PORTABLE if found is None else found.isa}
+
+
+class Running:
+    """A side in its process; a context that ends it."""
+
+    def __init__(self, work: Work) -> None:
+        """Start the process; `NotMeasured` where the side cannot be built."""
+        command = [sys.executable, "-m", "benchmarks.child", work.side]
+        self._log: IO[str] = tempfile.TemporaryFile("w+")  # noqa: SIM115, closed by __exit__
+        self._process = subprocess.Popen(
+            [*command, json.dumps(dict(work.arguments)), str(cpu())],
+            cwd=ROOT,
+            env={**os.environ, **ONE_THREAD, **_kernels(), **work.environment},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=self._log,
+            text=True,
+        )
+        try:
+            self.amount: float = self._reply()["amount"]
+            self.repeats = max(1, round(ROUND_S / max(min(self.seconds(3)), 1e-6)))
+        except NotMeasured:
+            self.__exit__(None, None, None)
+            raise
+
+    def seconds(self, repeats: int) -> list[float]:
+        """Return how long each of some repetitions takes, s."""
+        return self._ask(do="time", repeats=repeats)["seconds"]
+
+    def rate(self) -> float:
+        """Return units of work a second over one round."""
+        return self.amount * self.repeats / sum(self.seconds(self.repeats))
+
+    def answer(self) -> list[float]:
+        """Return the numbers that the side works out."""
+        return self._ask(do="answer")["answer"]
+
+    def _ask(self, **request: Any) -> dict[str, Any]:
+        assert self._process.stdin is not None
+        self._process.stdin.write(json.dumps(request) + "\n")
+        self._process.stdin.flush()
+        return self._reply()
+
+    def _reply(self) -> dict[str, Any]:
+        assert self._process.stdout is not None
+        line = self._process.stdout.readline()
+        if not line:
+            self._log.seek(0)
+            last = self._log.read().strip().splitlines()[-1:] or ["no message"]
+            raise NotMeasured(f"the process ended: {last[0]}")
+        reply = json.loads(line)
+        if "error" in reply:
+            raise NotMeasured(reply["error"])
+        return reply
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        assert self._process.stdin is not None
+        self._process.stdin.close()
+        try:
+            self._process.wait(10)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._log.close()
+
+
+@dataclass(frozen=True)
+class Rates:
+    """Units of work a second, round by round, and why some sides have none."""
+
+    rounds: Mapping[str, Sequence[float]]
+    missing: Mapping[str, str]
+
+    def also(self, name: str, of: str, factor: float) -> "Rates":
+        """Return these rates with those of one side in other units beside them."""
+        if of in self.missing:
+            return Rates(self.rounds, {**self.missing, name: self.missing[of]})
+        scaled = [factor * rate for rate in self.rounds[of]]
+        return Rates({**self.rounds, name: scaled}, self.missing)
+
+
+def interleaved(
+    works: Mapping[str, Work],
+    same: Mapping[str, str] | None = None,
+    tolerance: float = 1e-3,
+    rounds: int | None = None,
+) -> Rates:
+    """Let the sides take turns, `rounds` times, and return their rates.
+
+    `same` says which side must give the numbers of which other, within `tolerance`: one that does
+    not is left out, as is one that cannot be built, and the others go on.
+    """
+    missing: dict[str, str] = {}
+    with ExitStack() as stack:
+        sides: dict[str, Running] = {}
+        for name, work in works.items():
+            try:
+                sides[name] = stack.enter_context(Running(work))
+            except NotMeasured as reason:
+                missing[name] = str(reason)
+        for name, other in (same or {}).items():
+            if name in sides and other in sides:
+                apart = _distance(sides[name].answer(), sides[other].answer())
+                if not apart <= tolerance:
+                    missing[name] = f"its numbers differ from those of {other} by {apart:.3g}"
+                    del sides[name]
+        found: dict[str, list[float]] = {name: [] for name in sides}
+        for _ in range(rounds or ROUNDS):
+            for name, side in sides.items():
+                found[name].append(side.rate())
+    return Rates(found, missing)
+
+
+def median_seconds(work: Work, rounds: int = 5) -> float:
+    """Return the median over rounds of the time of one repetition, s."""
+    with Running(work) as side:
+        return statistics.median(side.amount / side.rate() for _ in range(rounds))
+
+
+def _distance(one: Sequence[float], other: Sequence[float]) -> float:
+    if len(one) != len(other) or not one:
+        return float("inf")
+    return max(abs(a - b) for a, b in zip(one, other, strict=True))

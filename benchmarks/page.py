@@ -1,0 +1,119 @@
+"""`docs/performance.md` from `results.json`: its words are here, its numbers only there."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+from benchmarks import pictures
+from benchmarks.results import ROOT, Machine, Record, Results, Target
+from benchmarks.words import HEAD, SECTIONS
+
+PAGE = ROOT / "docs" / "performance.md"
+RATIOS = ROOT / "docs" / "images" / "performance.svg"
+SCALING = ROOT / "docs" / "images" / "performance-scaling.svg"
+
+
+def files(results: Results) -> Mapping[Path, str]:
+    """Return every file that the results decide, by its path."""
+    return {
+        PAGE: text(results),
+        RATIOS: pictures.ratios(results.records) + "\n",
+        SCALING: pictures.scaling(results.curves) + "\n",
+    }
+
+
+def text(results: Results) -> str:
+    """Return the page."""
+    parts = [HEAD, *_machine(results.machine), *_summary(results.records)]
+    for section in SECTIONS:
+        records = [r for r in results.records if r.comparison in section.comparisons]
+        parts += [f"## {section.title}", section.words, _table(records)]
+        parts += _notes(records)
+        if section.picture:
+            parts.append(section.picture)
+    return "\n\n".join(parts) + "\n"
+
+
+def line(record: Record) -> str:
+    """Return a record in one line, for the terminal."""
+    ratio = "" if record.ratio is None else f", ratio {_ratio(record)}"
+    against = "" if record.peer is None else f" against {number(record.peer)} ({record.peer_name})"
+    if record.ours is None:
+        return f"{record.name}: {record.note}"
+    met = {True: ", met", False: ", MISSED", None: ""}[record.met]
+    return f"{record.name}: {number(record.ours)} {record.unit}{against}{ratio}{met}"
+
+
+def number(value: float) -> str:
+    """Return three significant digits, thousands apart."""
+    if value >= 1000:
+        digits = 10 ** (len(str(int(value))) - 3)
+        return f"{round(value / digits) * digits:,}".replace(",", " ")
+    return f"{value:.3g}"
+
+
+def _machine(machine: Machine) -> Iterator[str]:
+    packages = ", ".join(f"{name} {version}" for name, version in machine.packages.items())
+    changed = ", with uncommitted changes" if machine.dirty else ""
+    commit = f"commit `{machine.commit[:12]}`{changed}" if machine.commit else "no commit known"
+    yield (
+        f"Measured on {machine.date}: {machine.processor}, {machine.cores} cores, "
+        f"{machine.memory_gib:.0f} GiB, {machine.system}; Python {machine.python}, {packages}; "
+        f"kernels `{machine.kernels}`, compiler {machine.compiler or 'unknown'}; {commit}."
+    )
+
+
+def _summary(records: Sequence[Record]) -> Iterator[str]:
+    judged = [record for record in records if record.target is not None]
+    missed = [record for record in judged if record.met is False]
+    yield f"Targets met: {sum(record.met is True for record in judged)} of {len(judged)}."
+    if missed:
+        rows = [
+            f"- {record.name}: {_reached(record)}, asked {_target(record.target)}"
+            for record in missed
+        ]
+        yield "Missed:\n\n" + "\n".join(rows)
+    yield "![Ratios of speed against other software, with the targets](images/performance.svg)"
+
+
+def _reached(record: Record) -> str:
+    if record.target is not None and record.target.of == "ratio":
+        return f"ratio {_ratio(record)}"
+    return f"{number(record.ours or 0.0)} {record.unit}"
+
+
+def _table(records: Sequence[Record]) -> str:
+    rows = [
+        "| | faultpath | compared with | ratio | target | met |",
+        "| :-- | --: | --: | --: | --: | :-: |",
+    ]
+    for record in records:
+        if record.ours is None:
+            rows.append(f"| {record.name} | – | – | – | {_target(record.target)} | – |")
+            continue
+        peer = "" if record.peer is None else f"{number(record.peer)} ({record.peer_name})"
+        met = {True: "yes", False: "**no**", None: ""}[record.met]
+        ours = f"{number(record.ours)} {record.unit}"
+        cells = (record.name, ours, peer, _ratio(record), _target(record.target), met)
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows)
+
+
+def _ratio(record: Record) -> str:
+    if record.ratio is None:
+        return ""
+    if record.low is None or record.high is None:
+        return number(record.ratio)
+    return f"{number(record.ratio)} [{number(record.low)}, {number(record.high)}]"
+
+
+def _target(target: Target | None) -> str:
+    if target is None:
+        return ""
+    of = "" if target.of == "ratio" else " itself"
+    return f"{target.sense} {number(target.value)}{of}"
+
+
+def _notes(records: Sequence[Record]) -> Iterator[str]:
+    notes = [f"- {record.name}: {record.note}" for record in records if record.note]
+    if notes:
+        yield "\n".join(notes)

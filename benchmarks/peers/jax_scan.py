@@ -1,0 +1,134 @@
+"""WM-A's rollout written by hand in JAX: one jitted `lax.scan` over the horizon.
+
+The kinematics work on single components `[K]`, which the compiler fuses. Only the network's layout
+differs between the two forms: features `[F, K]` or `[K, F]`.
+"""
+
+from collections.abc import Sequence
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from benchmarks import problem
+from benchmarks.peers import rows
+from benchmarks.side import Side
+from faultpath.quadrotor.predictors import anchored
+from faultpath.quadrotor.vehicle import CONTROL_DT_S
+
+Array = jax.Array
+DT = CONTROL_DT_S
+
+
+class Scan(Side):
+    """The rollout of one scene's 512 candidates: positions and velocities of every step."""
+
+    def __init__(self, layout: str = "FK") -> None:
+        model = rows.RowsModel()
+        given = problem.inputs(1)
+        state = given.state
+        assert given.code is not None
+        self._commands = jnp.asarray(problem.commands()[:, :, 0].numpy())
+        parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate)
+        start = np.concatenate([part.reshape(-1).numpy() for part in parts])
+        self._start = jnp.asarray(start)
+        self._code = jnp.asarray(given.code.reshape(-1).numpy())
+        self._rollout = jax.jit(_rollout(model, layout == "FK"))
+
+    def work(self) -> None:
+        """See `Side.work`."""
+        jax.block_until_ready(self._rollout(self._start, self._code, self._commands))
+
+    def answer(self) -> Sequence[float]:
+        """Return positions `[3, H, 32]`, m."""
+        positions, _ = self._rollout(self._start, self._code, self._commands)
+        return np.asarray(positions)[:, :, : problem.CHECKED].swapaxes(0, 1).ravel().tolist()
+
+
+def _rollout(model: rows.RowsModel, feature_first: bool):
+    def layer(linear) -> tuple[Array, Array]:
+        weight = jnp.asarray(linear.weight.detach().numpy())
+        bias = jnp.asarray(linear.bias.detach().numpy())
+        return (weight, bias[:, None]) if feature_first else (weight.T, bias)
+
+    cell = model.cell
+    layers = [layer(part) for part in (model.embed, *(model.head[i] for i in (0, 2, 4)))]
+    from_input = layer(_Pair(cell.weight_ih, cell.bias_ih))
+    from_latent = layer(_Pair(cell.weight_hh, cell.bias_hh))
+    axis = 0 if feature_first else 1
+    constant = [float(value) for value in model.constant]
+    gain, weight_n = model.gain, model.weight_n
+
+    def product(affine: tuple[Array, Array], x: Array) -> Array:
+        weight, bias = affine
+        return (weight @ x if feature_first else x @ weight) + bias
+
+    def network(latent: Array, motion: Sequence[Array], action: Sequence[Array]):
+        acted = jnp.stack(action, axis)
+        embedded = jax.nn.relu(product(layers[0], acted))
+        ri, zi, ni = jnp.split(product(from_input, embedded), 3, axis)
+        rh, zh, nh = jnp.split(product(from_latent, latent), 3, axis)
+        reset, update = jax.nn.sigmoid(ri + rh), jax.nn.sigmoid(zi + zh)
+        candidate = jnp.tanh(ni + reset * nh)
+        latent = candidate + update * (latent - candidate)
+        hidden = jnp.concatenate((latent, jnp.stack([*motion, *action], axis)), axis)
+        hidden = jax.nn.relu(product(layers[1], hidden))
+        outputs = jnp.tanh(product(layers[3], jax.nn.relu(product(layers[2], hidden))))
+        return latent, [jnp.take(outputs, i, axis) for i in range(6)]
+
+    def step(carry, command: Array):
+        p, v, r, w, latent = carry
+        action = [command[0] / weight_n, *command[1:]]
+        latent, outputs = network(latent, [*v, *r, *w], action)
+        linear = [anchored.LINEAR_BOUND_MPS2 * value for value in outputs[:3]]
+        angular = [anchored.ANGULAR_BOUND_RADPS2 * value for value in outputs[3:]]
+        lag = [now - wanted for now, wanted in zip(w, command[1:], strict=True)]
+        turn = [
+            (command[1 + i] + rows.MEAN * lag[i]) * DT + 0.5 * DT * DT * angular[i]
+            for i in range(3)
+        ]
+        ahead = _compose(r, _exponential(*turn))
+        thrust = 0.5 * gain * command[0]
+        speed = [
+            v[i] + DT * ((r[3 * i + 2] + ahead[3 * i + 2]) * thrust + constant[i] + linear[i])
+            for i in range(3)
+        ]
+        place = [p[i] + 0.5 * DT * (v[i] + speed[i]) for i in range(3)]
+        rate = [command[1 + i] + rows.KEEP * lag[i] + DT * angular[i] for i in range(3)]
+        return (place, speed, ahead, rate, latent), (jnp.stack(place), jnp.stack(speed))
+
+    def run(start: Array, code: Array, commands: Array):
+        count = commands.shape[-1]
+        spread = [jnp.broadcast_to(value, (count,)) for value in start]
+        shape = (len(code), count) if feature_first else (count, len(code))
+        latent = jnp.broadcast_to(code[:, None] if feature_first else code, shape)
+        carry = (spread[0:3], spread[3:6], spread[6:15], spread[15:18], latent)
+        return jax.lax.scan(step, carry, commands)[1]
+
+    return run
+
+
+class _Pair:
+    def __init__(self, weight, bias) -> None:
+        self.weight, self.bias = weight, bias
+
+
+def _compose(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
+    return [
+        sum(a[3 * i + k] * b[3 * k + j] for k in range(1, 3)) + a[3 * i] * b[j]
+        for i in range(3)
+        for j in range(3)
+    ]
+
+
+def _exponential(x: Array, y: Array, z: Array) -> list[Array]:
+    """Return the nine entries of the rotation by (x, y, z) rad, through half angles."""
+    angle = jnp.sqrt(x * x + y * y + z * z + 1e-24)
+    s, c = jnp.sin(0.5 * angle), jnp.cos(0.5 * angle)
+    x, y, z = (part * (s / angle) for part in (x, y, z))
+    cos = c * c - s * s
+    return [
+        cos + 2 * x * x, 2 * (x * y - c * z), 2 * (x * z + c * y),
+        2 * (x * y + c * z), cos + 2 * y * y, 2 * (y * z - c * x),
+        2 * (x * z - c * y), 2 * (y * z + c * x), cos + 2 * z * z,
+    ]  # fmt: skip

@@ -1,0 +1,129 @@
+"""WM-A as a user of a batch-first library writes it: torch.nn layers over states `[K, 50]`.
+
+A state is position 3, velocity 3, rotation 9 (by rows), body rate 3 and latent 32. The inputs'
+standardisation is folded into the first layers, so that no time goes into it.
+"""
+
+import math
+
+import torch
+from torch import Tensor, nn
+
+from benchmarks import problem
+from faultpath.quadrotor.predictors import anchored
+from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
+from faultpath.quadrotor.predictors.network import LATENT, LatentNetwork
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+
+STATE = 18 + LATENT
+POSITION, VELOCITY, ROTATION, RATE, CODE = (
+    slice(0, 3),
+    slice(3, 6),
+    slice(6, 15),
+    slice(15, 18),
+    slice(18, STATE),
+)
+KEEP = math.exp(-CONTROL_DT_S / RATE_LAG_S)
+MEAN = RATE_LAG_S / CONTROL_DT_S * (1 - KEEP)
+
+
+def _linear(weight: Tensor, bias: Tensor) -> nn.Linear:
+    layer = nn.Linear(weight.shape[1], weight.shape[0])
+    layer.weight.data.copy_(weight)
+    layer.bias.data.copy_(bias.flatten())
+    return layer
+
+
+def folded(weight: Tensor, bias: Tensor, mean: Tensor, std: Tensor, at: slice) -> nn.Linear:
+    """Return a layer over raw inputs; the columns `at` met standardised ones."""
+    scaled, shifted = weight.detach().clone(), bias.detach().clone()
+    scaled[:, at] /= std.T
+    shifted -= scaled[:, at] @ mean
+    return _linear(scaled, shifted)
+
+
+class RowsModel(nn.Module):
+    """One step of WM-A, for one scene."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        torch.set_num_threads(1)
+        network: LatentNetwork = problem.model().network
+        mean, std = network.feature_mean, network.feature_std
+        self.embed = folded(
+            network.embed.weight, network.embed.bias, mean[15:19], std[15:19], slice(0, 4)
+        )
+        self.cell = nn.GRUCell(16, LATENT)
+        with torch.no_grad():
+            self.cell.weight_ih.copy_(network.cell.from_input.weight)
+            self.cell.weight_hh.copy_(network.cell.from_latent.weight)
+            self.cell.bias_ih.copy_(network.cell.from_input.bias[:, 0])
+            self.cell.bias_hh.copy_(network.cell.from_latent.bias[:, 0])
+        first = folded(
+            network.first.weight, network.first.bias, mean, std, slice(LATENT, LATENT + 19)
+        )
+        self.head = nn.Sequential(
+            first,
+            nn.ReLU(),
+            _linear(network.second.weight, network.second.bias),
+            nn.ReLU(),
+            _linear(network.last.weight, network.last.bias),
+        )
+        given = problem.inputs(1)
+        assert given.dynamics is not None
+        assert given.wind_mps is not None
+        assert given.thrust_mass_kg is not None
+        self.gain = float(given.dynamics.thrust_scale / given.dynamics.mass_kg)
+        self.weight_n = float(given.thrust_mass_kg) * GRAVITY_MPS2
+        constant = NOMINAL_DRAG_KGPS[0] * given.wind_mps[:, 0, 0] / given.dynamics.mass_kg[0]
+        constant[2] -= GRAVITY_MPS2
+        self.register_buffer("constant", constant)
+        self.register_buffer("eye", torch.eye(3))
+
+    def forward(self, state: Tensor, command: Tensor) -> Tensor:
+        """Return the states `[K, 50]` after one interval under `command` `[K, 4]`."""
+        rotation, rate = state[:, ROTATION].view(-1, 3, 3), state[:, RATE]
+        action = torch.cat((command[:, :1] / self.weight_n, command[:, 1:]), 1)
+        latent = self.cell(torch.relu(self.embed(action)), state[:, CODE])
+        residual = torch.tanh(self.head(torch.cat((latent, state[:, 3:18], action), 1)))
+        linear = residual[:, :3] * anchored.LINEAR_BOUND_MPS2
+        angular = residual[:, 3:] * anchored.ANGULAR_BOUND_RADPS2
+
+        dt, target = CONTROL_DT_S, command[:, 1:]
+        lag = rate - target
+        turn = (target + MEAN * lag) * dt + (0.5 * dt * dt) * angular
+        ahead = torch.bmm(rotation, self.exponential(turn))
+        thrust = (0.5 * self.gain) * command[:, :1]
+        acceleration = (rotation[:, :, 2] + ahead[:, :, 2]) * thrust + self.constant + linear
+        velocity = state[:, VELOCITY] + dt * acceleration
+        position = state[:, POSITION] + (0.5 * dt) * (state[:, VELOCITY] + velocity)
+        after = target + KEEP * lag + dt * angular
+        return torch.cat((position, velocity, ahead.flatten(1), after, latent), 1)
+
+    def exponential(self, turn: Tensor) -> Tensor:
+        """Return the rotations `[K, 3, 3]` by `turn` `[K, 3]`, rad."""
+        angle = torch.linalg.vector_norm(turn, dim=1).clamp_min(1e-9)[:, None, None]
+        x, y, z = (turn / angle[:, 0]).unbind(1)
+        o = torch.zeros_like(x)
+        cross = torch.stack((o, -z, y, z, o, -x, -y, x, o), 1).view(-1, 3, 3)
+        return self.eye + angle.sin() * cross + (1 - angle.cos()) * torch.bmm(cross, cross)
+
+
+def initial() -> Tensor:
+    """Return the first scene's state, `[50]`."""
+    given = problem.inputs(1)
+    state = given.state
+    assert given.code is not None
+    parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, given.code)
+    return torch.cat([part.reshape(-1) for part in parts])
+
+
+def positions(step: "RowsModel") -> list[float]:
+    """Return the positions `[3, H, 32]` under the problem's candidates, m."""
+    state = initial().expand(problem.CHECKED, -1)
+    found = []
+    with torch.inference_mode():
+        for command in problem.commands()[:, :, 0, : problem.CHECKED]:
+            state = step(state, command.T)
+            found.append(state[:, POSITION].T)
+    return torch.stack(found, 1).flatten().tolist()

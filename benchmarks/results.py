@@ -1,0 +1,117 @@
+"""What was measured, as `results.json` keeps it; the page is made from nothing else."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+RESULTS = HERE / "results.json"
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Target(_Frozen):
+    """A bound that was set before the measurement."""
+
+    of: Literal["ratio", "ours"]
+    sense: Literal["at least", "at most"]
+    value: float
+
+    def met_by(self, value: float) -> bool:
+        """Return whether a measured value keeps to the bound."""
+        return value >= self.value if self.sense == "at least" else value <= self.value
+
+
+class Record(_Frozen):
+    """One number of ours, beside one of a peer where there is a peer."""
+
+    name: str
+    """What is measured, as the page's table says it; unique."""
+    comparison: str
+    """The comparison that measured it; `--only` names these."""
+    unit: str
+    ours: float | None = None
+    """Median over the rounds; `None` where it was not measured, and `note` says why."""
+    ours_name: str = "faultpath"
+    peer: float | None = None
+    peer_name: str = ""
+    ratio: float | None = None
+    """Median over the rounds of ours over peer, each from the same round."""
+    low: float | None = None
+    """Least over the rounds: of the ratio where there is one, else of ours."""
+    high: float | None = None
+    target: Target | None = None
+    met: bool | None = None
+    note: str = ""
+
+
+class Curve(_Frozen):
+    """How a time grows with the size of the work."""
+
+    name: str
+    comparison: str
+    across: str
+    """What the horizontal axis counts."""
+    unit: str
+    points: tuple[tuple[float, float], ...]
+    """Size and median time, smallest first."""
+
+
+class Machine(_Frozen):
+    """What the numbers were measured on."""
+
+    processor: str
+    cores: int
+    memory_gib: float
+    system: str
+    python: str
+    packages: dict[str, str]
+    kernels: str
+    """Instruction set of the compiled kernels that ran, or `portable`."""
+    compiler: str
+    commit: str | None
+    dirty: bool | None
+    date: str
+
+
+class Results(_Frozen):
+    """Everything in `results.json`."""
+
+    machine: Machine
+    records: tuple[Record, ...]
+    curves: tuple[Curve, ...]
+
+    def replaced(
+        self, machine: Machine, comparison: str, records: Sequence[Record], curves: Sequence[Curve]
+    ) -> "Results":
+        """Return these results with those of one comparison measured again."""
+        kept = [record for record in self.records if record.comparison != comparison]
+        lines = [curve for curve in self.curves if curve.comparison != comparison]
+        return Results(machine=machine, records=(*kept, *records), curves=(*lines, *curves))
+
+
+def load(path: Path = RESULTS) -> Results:
+    """Read `results.json`."""
+    return Results.model_validate_json(path.read_bytes())
+
+
+def save(results: Results, path: Path = RESULTS) -> None:
+    """Write `results.json`, six digits a number: more would only be noise."""
+    content = _rounded(results.model_dump(mode="json"))
+    path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+
+
+def _rounded(content: object) -> object:
+    if isinstance(content, float):
+        return float(f"{content:.6g}")
+    if isinstance(content, dict):
+        return {key: _rounded(value) for key, value in content.items()}
+    if isinstance(content, list):
+        return [_rounded(value) for value in content]
+    return content
