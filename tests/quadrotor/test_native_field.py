@@ -1,0 +1,67 @@
+"""The compiled distance field is the portable one, to the bit."""
+
+import numpy as np
+import pytest
+import torch
+from kernel_sets import COMPILED, PORTABLE, running
+from torch import Tensor
+
+from faultpath.quadrotor.scenes.field import DistanceField
+from faultpath.quadrotor.scenes.library import load_library
+
+SCENES = list(load_library("selection").scenes[:6])
+
+
+def scattered(count: int) -> Tensor:
+    """Points inside, outside and on lattice points of the scenes' arenas, `[3, B, N]`."""
+    draws = np.random.default_rng(3)
+    low = np.array([scene.bounds.low_m for scene in SCENES]).T[:, :, None]
+    high = np.array([scene.bounds.high_m for scene in SCENES]).T[:, :, None]
+    points = draws.uniform(low - 2, high + 2, (3, len(SCENES), count))
+    points[..., ::7] = points[..., ::7].round(1)
+    return torch.from_numpy(points).float()
+
+
+def asked(isa: str, points: Tensor, rows: list[int] | None = None) -> Tensor:
+    with running(isa):
+        field = DistanceField.bake(SCENES)
+        return (field if rows is None else field.select(rows)).query(points)
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+@pytest.mark.parametrize("count", [3, 512, 1031])
+def test_distances_have_the_bits_of_the_portable_path(isa: str, count: int) -> None:
+    points = scattered(count)
+    assert torch.equal(asked(isa, points), asked(PORTABLE, points))
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_a_point_s_distance_does_not_depend_on_its_neighbours(isa: str) -> None:
+    points = scattered(100)
+    together = asked(isa, points)
+    for some in (slice(0, 1), slice(5, 22), slice(83, 100)):
+        assert torch.equal(asked(isa, points[..., some]), together[..., some])
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_selected_scenes_come_in_the_order_of_their_rows(isa: str) -> None:
+    rows = [4, 0, 4]
+    points = scattered(40)[:, rows]
+    assert torch.equal(asked(isa, points, rows), asked(PORTABLE, points, rows))
+
+
+@pytest.mark.parametrize("isa", [*COMPILED, PORTABLE])
+def test_only_points_that_are_no_numbers_get_none(isa: str) -> None:
+    points = scattered(60)
+    points[torch.arange(60) % 3, :, torch.arange(60)] = torch.nan
+    points[..., ::4] = scattered(60)[..., ::4]
+    lost = asked(isa, points).isnan()
+    assert torch.equal(lost, points.isnan().any(0))
+    far = torch.full((3, len(SCENES), 5), 1e30)
+    assert not (asked(isa, far) > 0).any()
+
+
+@pytest.mark.parametrize("isa", COMPILED)
+def test_points_of_another_number_of_scenes_are_refused(isa: str) -> None:
+    with pytest.raises(RuntimeError, match="expand"):
+        asked(isa, scattered(10)[:, :4])
