@@ -5,7 +5,7 @@ from pathlib import Path
 
 from benchmarks import pictures
 from benchmarks.results import ROOT, Machine, Record, Results, Target
-from benchmarks.words import HEAD, SECTIONS
+from benchmarks.words import HEAD, SECTIONS, number
 
 PAGE = ROOT / "docs" / "performance.md"
 RATIOS = ROOT / "docs" / "images" / "performance.svg"
@@ -41,14 +41,6 @@ def line(record: Record) -> str:
         return f"{record.name}: {record.note}"
     met = {True: ", met", False: ", MISSED", None: ""}[record.met]
     return f"{record.name}: {number(record.ours)} {record.unit}{against}{ratio}{met}"
-
-
-def number(value: float) -> str:
-    """Return three significant digits, thousands apart."""
-    if value >= 1000:
-        digits = 10 ** (len(str(int(value))) - 3)
-        return f"{round(value / digits) * digits:,}".replace(",", " ")
-    return f"{value:.3g}"
 
 
 def _machine(machine: Machine) -> Iterator[str]:

@@ -1,9 +1,10 @@
 """The pictures of `docs/performance.md`, as SVG."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from benchmarks.results import Curve, Record
+from benchmarks.words import number
 from faultpath.report.scale import tick_label
 from faultpath.report.svg import Svg, shortened
 
@@ -42,23 +43,19 @@ def ratios(records: Sequence[Record]) -> str:
     return svg.render(standalone=True)
 
 
-def _bar(svg: Svg, record: Record, y: float, across) -> None:
+def _bar(svg: Svg, record: Record, y: float, across: Callable[[float], float]) -> None:
     assert record.ratio is not None
     svg.text(0, y + 15, shortened(record.name, NAMES - 12, 12))
     one, end = across(1.0), across(record.ratio)
-    tip = f"{record.name}: {record.ratio:.3g}"
-    svg.rect(
-        min(one, end),
-        y + 4,
-        abs(end - one),
-        14,
-        "both" if record.met is not False else "failed",
-        tip=tip,
-    )
-    svg.text(max(one, end) + 6, y + 15, f"{record.ratio:.3g}", "small")
+    look = {True: "success", False: "failed", None: "both"}[record.met]
+    tip = f"{record.name}: {number(record.ratio)}"
+    svg.rect(min(one, end), y + 4, abs(end - one), 14, look, tip=tip)
+    right = max(one, end)
     if record.target is not None and record.target.of == "ratio":
-        x = across(record.target.value)
-        svg.line((x, y + 1), (x, y + 21), "range")
+        mark = across(record.target.value)
+        svg.line((mark, y + 1), (mark, y + 21), "range")
+        right = max(right, mark)
+    svg.text(right + 6, y + 15, number(record.ratio), "small")
 
 
 def _costs(record: Record) -> bool:
@@ -100,12 +97,12 @@ def _panel(svg: Svg, curve: Curve, left: float) -> None:
     for size, time in curve.points:
         x, y = at(size, time)
         svg.text(x, bottom + 16, f"{size:g}", "small soft", "middle")
-        svg.text(x, y - 9, f"{time:.2g}", "small", "middle")
+        svg.text(x, y - 9, number(time), "small", "middle")
     floor = max(sizes[0], sizes[-1] * math.exp(low_y) / times[-1])
     svg.line(at(floor, times[-1] * floor / sizes[-1]), at(sizes[-1], times[-1]), "seed")
     svg.polyline([at(size, time) for size, time in curve.points], "curve")
     for size, time in curve.points:
         svg.circle(
-            at(size, time), 3, "dot", tip=f"{size:g} {curve.across}: {time:.3g} {curve.unit}"
+            at(size, time), 3, "dot", tip=f"{size:g} {curve.across}: {number(time)} {curve.unit}"
         )
     svg.text(left + PANEL / 2, bottom + 34, curve.across, "small soft", "middle")

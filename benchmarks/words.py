@@ -1,4 +1,4 @@
-"""The prose of `docs/performance.md`; numbers come from `results.json` alone."""
+"""The prose of `docs/performance.md` and how its numbers are written."""
 
 from dataclasses import dataclass
 
@@ -116,3 +116,11 @@ on a few selection scenes, from the start of the command to its report.""",
         "From the start of the process to its end; the files are in the system's cache.",
     ),
 )
+
+
+def number(value: float) -> str:
+    """Return three significant digits, thousands apart."""
+    if value >= 1000:
+        digits = 10 ** (len(str(int(value))) - 3)
+        return f"{round(value / digits) * digits:,}".replace(",", " ")
+    return f"{value:.3g}"

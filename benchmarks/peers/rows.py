@@ -45,6 +45,10 @@ def folded(weight: Tensor, bias: Tensor, mean: Tensor, std: Tensor, at: slice) -
 class RowsModel(nn.Module):
     """One step of WM-A, for one scene."""
 
+    constant: Tensor
+    """Acceleration by wind and gravity, `[3]`, m/s^2."""
+    eye: Tensor
+
     def __init__(self) -> None:
         super().__init__()
         torch.set_num_threads(1)
