@@ -8,6 +8,7 @@ from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.native.clearance import CompiledDepthClearance
 from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean
+from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
@@ -142,6 +143,16 @@ def test_clearance_is_the_portable_one(kernels: native.Kernels, stream: torch.Ge
     mine, reference = (c.query(points, chosen) for c in (compiled, portable))
     close(mine, reference, 1e-4)
     assert reference.std() > 0.1
+
+
+@torch.inference_mode()
+def test_codes_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:
+    model = clearance_model()
+    depth = 6 * torch.rand(5, 36, 64, generator=stream)
+    depth[:, 10:20, :30] = 0.0
+    codes = CompiledEncoder(kernels, model)(depth)
+    close(codes, model.encode(depth), 1e-4)
+    assert torch.equal(codes[:, 3:], CompiledEncoder(kernels, model)(depth[3:]))
 
 
 def test_a_query_before_the_first_image_is_refused(kernels: native.Kernels) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH
 from faultpath.quadrotor.perception.clearance import (
@@ -31,6 +32,7 @@ class CompiledDepthClearance(DepthClearance):
     def __init__(self, kernels: Kernels, model: ClearanceModel) -> None:
         super().__init__(model)
         self._kernels = kernels
+        self._encode = CompiledEncoder(kernels, model)
         self._bounds = _Bounds(
             LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M**2, WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
         )
@@ -40,8 +42,7 @@ class CompiledDepthClearance(DepthClearance):
     @torch.no_grad()
     def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
         """See `DepthClearance.capture`; the query networks are made here, once a replan."""
-        code = self._model.encode(depth.float())
-        self._networks = self._model.networks(code)
+        self._networks = self._model.networks(self._encode(depth))
         self._eye = position.float()
         self._axes = rotation.float().flatten(1)
 

@@ -31,7 +31,7 @@ class Kernels:
 
     def call(self, name: str, *arguments: object) -> None:
         """Call a kernel; tensors go as addresses and must be contiguous, numbers as integers."""
-        self.library[name](*(_argument(value) for value in arguments))
+        getattr(self.library, name)(*(_argument(value) for value in arguments))
 
     @property
     def numerics(self) -> str:

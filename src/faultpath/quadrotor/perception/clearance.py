@@ -16,6 +16,8 @@ from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WID
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 CODE = 64
+NEAREST_M, INVERSE_SCALE = 0.2, 0.4
+"""The encoder's second input is the inverse depth, finite and about one in size."""
 HIDDEN = 48
 """Units of a hidden layer. One of them is constant and carries the next layer's bias."""
 
@@ -107,7 +109,8 @@ class ClearanceModel(nn.Module):
 
     def encode_batch(self, depth: Tensor) -> Tensor:
         """Return the codes `[S, 64]` of a batch; its bits may depend on the batch."""
-        return self.encoder(torch.stack((depth / RANGE_M, 0.4 / depth.clamp_min(0.2)), 1))
+        inverse = INVERSE_SCALE / depth.clamp_min(NEAREST_M)
+        return self.encoder(torch.stack((depth / RANGE_M, inverse), 1))
 
     def query(self, code: Tensor, points: Tensor) -> Tensor:
         """Return the clearance at points.

@@ -1,0 +1,55 @@
+"""The encoder of depth images, compiled."""
+
+import ctypes
+
+import torch
+from torch import Tensor, nn
+
+from faultpath.quadrotor.native.library import Kernels
+from faultpath.quadrotor.perception.camera import RANGE_M
+from faultpath.quadrotor.perception.clearance import CODE, INVERSE_SCALE, NEAREST_M, ClearanceModel
+
+_LAYERS = ("first", "second", "third", "dense", "last")
+_BLOCK = 32
+"""Outputs of a dense layer that the kernel sums at once."""
+
+
+class _Encoder(ctypes.Structure):
+    """`Encoder` of `encoder.cpp`."""
+
+    _fields_ = (
+        *((name, ctypes.c_void_p) for name in _LAYERS),
+        *((f"{name}_bias", ctypes.c_void_p) for name in _LAYERS),
+        *((name, ctypes.c_float) for name in ("range", "nearest", "scale")),
+    )
+
+
+class CompiledEncoder:
+    """Encodes depth images one by one, with the weights that a model has when this is made."""
+
+    @torch.no_grad()
+    def __init__(self, kernels: Kernels, model: ClearanceModel) -> None:
+        self._kernels = kernels
+        modules = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
+        *convolutions, dense, last = (module.weight for module in modules)
+        third = convolutions[-1].shape[0]
+        # The kernel's features have their channels last, the model's flattened ones first.
+        turned = dense.unflatten(1, (third, -1)).transpose(1, 2).flatten(1)
+        weights = [weight.permute(2, 3, 1, 0) for weight in convolutions]
+        weights += [w.unflatten(0, (-1, _BLOCK)).transpose(1, 2) for w in (turned, last)]
+        biases = [module.bias for module in modules]
+        # The kernel holds addresses only.
+        self._kept = [part.detach().clone(memory_format=torch.contiguous_format) for part in weights]
+        self._kept += [bias.detach().clone() for bias in biases if bias is not None]
+        addresses = [part.data_ptr() for part in self._kept]
+        self._table = _Encoder(*addresses, RANGE_M, NEAREST_M, INVERSE_SCALE)
+
+    def __call__(self, depth: Tensor) -> Tensor:
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m; see `ClearanceModel.encode`."""
+        codes = torch.empty(CODE, len(depth))
+        self._kernels.call(
+            "faultpath_encode",
+            ctypes.byref(self._table),
+            *(depth.float().contiguous(), len(depth), codes),
+        )
+        return codes
