@@ -2,7 +2,6 @@
 
 import json
 import os
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -10,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import IO, Any, Literal, Self
 
 from benchmarks.results import ROOT
 from faultpath.quadrotor.native import library
@@ -76,9 +75,11 @@ class Running:
             self.__exit__(None, None, None)
             raise
 
-    def seconds(self, repeats: int) -> list[float]:
+    def seconds(
+        self, repeats: int, clock: Literal["processor", "wall"] = "processor"
+    ) -> list[float]:
         """Return how long each of some repetitions takes, s."""
-        return self._ask(do="time", repeats=repeats)["seconds"]
+        return self._ask(do="time", repeats=repeats, clock=clock)["seconds"]
 
     def rate(self) -> float:
         """Return units of work a second over one round."""
@@ -170,12 +171,6 @@ def interleaved(
             for name, side in sides.items():
                 found[name].append(side.rate())
     return Rates(found, missing)
-
-
-def median_seconds(work: Work, rounds: int = 5) -> float:
-    """Return the median over rounds of the time of one repetition, s."""
-    with Running(work) as side:
-        return statistics.median(side.amount / side.rate() for _ in range(rounds))
 
 
 def _distance(one: Sequence[float], other: Sequence[float]) -> float:

@@ -19,7 +19,9 @@ The peers live in an environment of their own, `.venv-bench`, with the versions 
 
 **Method.** Each side is a process of its own, with one thread, on one and the same processor. The
 sides take turns: in a round each works for about a quarter of a second, and there are several
-rounds. A row gives the median over the rounds. The ratio is formed within each round, then its
+rounds. Rounds are timed in processor time of all the side's threads, which other work on the
+machine does not lengthen; single replans and whole commands are timed by the clock on the wall. A
+row gives the median over the rounds. The ratio is formed within each round, then its
 median is taken; brackets hold the smallest and the largest round. Where two sides should give the
 same numbers, that is checked first, and a side that differs is not timed. In a row with a rate or
 a plain time a ratio above one means that faultpath is faster; a row that bounds a cost says "at
