@@ -6,6 +6,9 @@ over all solids and the exit from the arena. Solids outside the camera's view ar
 remains is worked off in rounds, one solid of every scene a round, with the scenes that have most
 to draw in front: a round is then a prefix of the batch and nothing is padded.
 
+The compiled kernel (`native/render.py`) does the same scene by scene, without rounds, and works on
+the part of the image that a solid can cover. This is its reference, and draws where there is none.
+
 Every pixel is an elementwise function of its own scene, and an image's rows are whole vectors, so
 that a scene's image has the same bits in a batch of any size.
 """
@@ -16,6 +19,8 @@ from dataclasses import dataclass, fields
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native.render import CompiledRenderer
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.scene import Scene
@@ -111,6 +116,15 @@ class DepthRenderer:
         left, up = slopes()
         self._left, self._up = left.float(), up.float()[:, None]
         self._scratch = torch.empty(3, 3, _GROUP, HEIGHT, WIDTH)
+        kernels = native.kernels()
+        self._compiled = kernels and CompiledRenderer(
+            kernels,
+            geometry,
+            (self._low, self._high),
+            (left, up),
+            torch.cat((_PLANES, _OFFSETS[:, None]), 1),
+            RANGE_M,
+        )
 
     def render(self, state: State) -> Tensor:
         """Return what the cameras of vehicles see.
@@ -125,7 +139,10 @@ class DepthRenderer:
         """
         count = self._geometry.sign.shape[1]
         position, rotation = state.position[:, :count], state.rotation[..., :count]
-        view = self._view(position.double(), rotation.double())
+        position, rotation = position.double(), rotation.double()
+        if self._compiled is not None:
+            return self._compiled.render(position, rotation)
+        view = self._view(position, rotation)
         image = torch.empty(count, HEIGHT, WIDTH)
         for first in range(0, len(image), _GROUP):
             group = slice(first, min(first + _GROUP, len(image)))
