@@ -104,4 +104,19 @@ def replans() -> Outcome:
     )
 
 
-COMPARISONS = (Comparison("rollout", rollouts), Comparison("replan", replans))
+def compiled() -> Outcome:
+    """Compare whole replans with pytorch_mppi compiled, which takes minutes to start."""
+    peer = "pytorch_mppi, torch.compile"
+    works = {
+        "fused": Work(f"{OURS}:Replan"),
+        peer: Work(f"{PEERS}.pytorch_mppi_side:Command", {"compiled": True}),
+    }
+    writer = Writer("compiled", interleaved(works, same={peer: "fused"}))
+    return Outcome([writer.versus("Fused replan, pytorch_mppi compiled", "fused", peer, UNIT)])
+
+
+COMPARISONS = (
+    Comparison("rollout", rollouts),
+    Comparison("replan", replans),
+    Comparison("compiled", compiled),
+)

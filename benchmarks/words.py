@@ -55,13 +55,14 @@ product "on a layer" is of 64 x 64 by 64 x 512.""",
     ),
     Section(
         "Whole replans",
-        ("replan",),
+        ("replan", "compiled"),
         """\
 Noise, rollout, costs and the update. Ours pays for all terms of its cost, the peers for a goal and
 a speed term only. pytorch_mppi gets the model as its documentation asks for, a dynamics function
 over `[K, nx]`, written with `torch.nn`; it has no batch of scenes, so sixteen are planned one after
 the other. In "our layout" its dynamics are views of our own portable predictor, which shows what
-the library itself costs. torchrl's planner gets one round of optimisation and all candidates.""",
+the library itself costs; "compiled" is its own `compile`, that is torch.compile. torchrl's planner
+gets one round of optimisation and all candidates.""",
     ),
     Section(
         "Closed loop",

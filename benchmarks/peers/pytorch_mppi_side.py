@@ -1,8 +1,9 @@
 """pytorch_mppi (UM-ARM-Lab): its `MPPI.command`, with a cheap goal and speed cost.
 
-Two set-ups. `rows` is the library's own: a dynamics function over `[K, nx]`, written with torch.nn.
+Two layouts. `rows` is the library's own: a dynamics function over `[K, nx]`, written with torch.nn.
 `columns` hands it views of our own components-first predictor, which no user of the library would
-write, to show how much of the difference is the layout.
+write, to show how much of the difference is the layout. `compiled` calls the library's own
+`compile`, which is torch.compile.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +24,7 @@ from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
 class Command(Side):
     """`MPPI.command` for some scenes, one after the other; the unit is one scene's."""
 
-    def __init__(self, scenes: int = 1, layout: str = "rows") -> None:
+    def __init__(self, scenes: int = 1, layout: str = "rows", compiled: bool = False) -> None:
         torch.set_num_threads(1)
         torch.manual_seed(0)
         self.amount = scenes
@@ -60,6 +61,9 @@ class Command(Side):
             )
             for _ in range(scenes)
         ]
+        if compiled:
+            for planner in self._planners:
+                planner.compile()
 
     @torch.inference_mode()
     def work(self) -> None:
