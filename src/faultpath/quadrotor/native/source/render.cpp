@@ -1,8 +1,8 @@
 // Depth images: rays against the prisms of a scene, a vector of pixels of a row at a time.
 //
 // `perception/render.py` is the reference. Operations are the same in the same order, none fused,
-// and what is left out (solids out of view, pixels beside a solid) could not have changed a pixel; so
-// the bits are the same but for torch's square roots, which are not always rounded correctly.
+// and what is left out (solids out of view, pixels beside a solid) could not have changed a pixel.
+// So the bits are the same but for torch's square roots, which are not always rounded correctly.
 #include "render_view.hpp"
 
 namespace {
