@@ -1,6 +1,6 @@
 // The vector type of `simd.hpp` in double precision, half as many lanes wide.
 //
-// The same rules: operations are correctly rounded or written out here, in one order for all widths.
+// The same rules: operations are correctly rounded or written out, in one order for all widths.
 #pragma once
 
 #include "simd.hpp"
