@@ -7,7 +7,7 @@ import torch
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.native.clearance import CompiledDepthClearance
-from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean
+from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean, CompiledTemperature
 from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
@@ -19,6 +19,7 @@ from faultpath.quadrotor.planner import (
     NavigationCost,
     RunningGoal,
     SamplerSettings,
+    ScaledTemperature,
     Scored,
     TerminalGoal,
     weighted_mean,
@@ -51,21 +52,15 @@ def test_noise_is_the_portable_one(kernels: native.Kernels, horizon: int) -> Non
     close(compiled.noise(SCENES, 3, 5), sampler.noise(SCENES, 3, 5))
 
 
-def test_words_are_those_of_numpy(kernels: native.Kernels) -> None:
-    found = torch.empty(64, dtype=torch.int64)
-    kernels.call("faultpath_philox", torch.from_numpy(words(key("p", "s", 1))), 7, 64, found)
-    assert found.numpy().view(np.uint64).tolist() == (
-        generator("p", "s", 1, 7).bit_generator.random_raw(64).tolist()
-    )
-
-
-def test_normals_hold_at_both_ends_of_the_bits(kernels: native.Kernels) -> None:
-    bits = torch.tensor([-(2**31), 2**31 - 1, 0, -1], dtype=torch.int32).repeat(16)
-    noise = torch.empty(1, 4, 1, 16)
-    correlation = torch.tensor([0.0, 1.0])
-    kernels.call("faultpath_noise", bits, 1, 1, 16, correlation, noise)
-    assert noise.isfinite().all()
-    assert noise.abs().max() < 7
+def test_noise_is_made_of_numpys_words(kernels: native.Kernels) -> None:
+    """The scratch holds the last scene's bits."""
+    words_per_scene = 2 * 4 * 32 // 2
+    scratch = torch.empty(2 * words_per_scene, dtype=torch.int32)
+    keys = torch.from_numpy(np.array([words(key("p", scene, 1)) for scene in ("a", "s")]))
+    noise, correlation = torch.empty(2, 4, 2, 32), torch.tensor([0.0, 1.0])
+    kernels.call("faultpath_noise", keys, 7, *(2, 2, 32), correlation, scratch, noise)
+    drawn = generator("p", "s", 1, 7).bit_generator.random_raw(words_per_scene)
+    assert scratch.numpy().view(np.uint64).tolist() == drawn.tolist()
 
 
 def test_candidates_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:
@@ -115,6 +110,24 @@ def test_every_term_of_the_cost_counts(
     rest = CompiledCost(kernels, NavigationCost(TerminalGoal(), without))(case)
     assert not torch.allclose(whole, rest)
     close(rest, NavigationCost(TerminalGoal(), without)(case))
+
+
+@pytest.mark.parametrize("candidates", [512, 50])
+@pytest.mark.parametrize("size", [1e-6, 1.0, 300.0])
+def test_weights_are_the_portable_ones(
+    kernels: native.Kernels, candidates: int, size: float, stream: torch.Generator
+) -> None:
+    cost = size * torch.randn(3, candidates, generator=stream).exp()
+    temperature = ScaledTemperature(0.08)
+    mine = CompiledTemperature(kernels, temperature).weights(cost)
+    close(mine, temperature.weights(cost), 1e-4)
+    close(mine.sum(1), torch.ones(3))
+
+
+def test_tiny_weights_are_none(kernels: native.Kernels) -> None:
+    cost = torch.linspace(0, 1e5, 512)[None]
+    weights = CompiledTemperature(kernels, ScaledTemperature(0.001)).weights(cost)
+    assert (weights[weights > 0] > 1e-36).all()
 
 
 @pytest.mark.parametrize("candidates", [64, 50])

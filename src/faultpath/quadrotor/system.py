@@ -46,7 +46,7 @@ class Quadrotor(System):
 
     name = "quadrotor"
     control_dt_s = CONTROL_DT_S
-    block_size = 25
+    block_size = 50
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options

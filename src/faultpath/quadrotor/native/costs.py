@@ -3,9 +3,11 @@
 import ctypes
 from typing import TypeGuard
 
+import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.library import WIDEST, Kernels
+from faultpath.quadrotor.planner import ScaledTemperature, Temperature
 from faultpath.quadrotor.planner.costs import NavigationCost, RunningGoal, Scored, TerminalGoal
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -59,6 +61,36 @@ class CompiledCost(NavigationCost):
             *(steps, scenes, candidates, costs),
         )
         return costs
+
+
+class CompiledTemperature(Temperature):
+    """The scaled temperature and its softmax without a full sort."""
+
+    def __init__(self, kernels: Kernels, temperature: ScaledTemperature) -> None:
+        self._kernels = kernels
+        self._portable = temperature
+        self._scale = torch.tensor([temperature.fraction, temperature.least])
+
+    @staticmethod
+    def covers(temperature: object) -> TypeGuard[ScaledTemperature]:
+        """Return whether `temperature` is one that this can stand for."""
+        return type(temperature) is ScaledTemperature
+
+    def of(self, cost: Tensor) -> Tensor:
+        """See `Temperature.of`."""
+        return self._portable.of(cost)
+
+    def weights(self, cost: Tensor) -> Tensor:
+        """See `Temperature.weights`."""
+        scenes, candidates = cost.shape
+        if candidates % WIDEST:
+            return super().weights(cost)
+        weights = torch.empty_like(cost)
+        scratch = cost.new_empty(candidates)
+        self._kernels.call(
+            "faultpath_weights", cost, self._scale, *(scenes, candidates), *(scratch, weights)
+        )
+        return weights
 
 
 class CompiledMean:

@@ -39,8 +39,8 @@ class CompiledEncoder:
         weights += [w.unflatten(0, (-1, _BLOCK)).transpose(1, 2) for w in (turned, last)]
         biases = [module.bias for module in modules]
         # The kernel holds addresses only.
-        self._kept = [part.detach().clone(memory_format=torch.contiguous_format) for part in weights]
-        self._kept += [bias.detach().clone() for bias in biases if bias is not None]
+        parts = [*weights, *(bias for bias in biases if bias is not None)]
+        self._kept = [p.detach().clone(memory_format=torch.contiguous_format) for p in parts]
         addresses = [part.data_ptr() for part in self._kept]
         self._table = _Encoder(*addresses, RANGE_M, NEAREST_M, INVERSE_SCALE)
 

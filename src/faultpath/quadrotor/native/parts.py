@@ -3,7 +3,7 @@
 from functools import partial
 
 from faultpath.quadrotor.native.clearance import CompiledDepthClearance
-from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean
+from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean, CompiledTemperature
 from faultpath.quadrotor.native.library import kernels
 from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.native.sampling import CompiledSampler
@@ -25,6 +25,8 @@ def build_planner(
         sampler = CompiledSampler(built, sampler)
     if CompiledCost.covers(cost):
         cost = CompiledCost(built, cost)
+    if CompiledTemperature.covers(temperature):
+        temperature = CompiledTemperature(built, temperature)
     covered = CompiledRollout.covers(predictor)
     roll = CompiledRollout(built, predictor) if covered else partial(rollout, predictor)
     return MPPI(predictor, sampler, cost, temperature, roll, CompiledMean(built))

@@ -1,6 +1,7 @@
 """The horizon loop, compiled: all steps of a predictor for one tile of candidates at a time."""
 
 import ctypes
+import math
 
 import torch
 from torch import Tensor
@@ -23,6 +24,9 @@ from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 _BLOCK = 4
 """Outputs that a kernel sums at once (`OUTPUTS` in `layers.hpp`); weights lie in such blocks."""
+
+_LOG2_E = 1 / math.log(2)
+"""The kernel takes powers of two: scales of the unit's logistic functions go into its weights."""
 
 _KINEMATIC, _ANCHORED, _UNANCHORED = range(3)
 _LAYERS = ("embed", "gates", "candidate", "remembered", "first", "second", "last")
@@ -122,14 +126,12 @@ def _layers(folded: FoldedNetwork) -> dict[str, tuple[Tensor, int]]:
     split = ACTION_EMBEDDING
     gates, whole = folded.gates, (folded.first, folded.second)
     first, second = (_bias_first(layer[:-1]) for layer in whole)
+    gates = torch.cat((gates[:, split : split + 1], gates[:, :split], gates[:, split + 1 :]), 1)
     return {
         "embed": (_bias_first(folded.embed[:-1]), _BLOCK),
-        "gates": (
-            torch.cat((gates[:, split : split + 1], gates[:, :split], gates[:, split + 1 :]), 1),
-            _BLOCK,
-        ),
-        "candidate": (_bias_first(folded.candidate), _BLOCK // 2),
-        "remembered": (folded.remembered, _BLOCK // 2),
+        "gates": (gates * -_LOG2_E, _BLOCK),
+        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), _BLOCK // 2),
+        "remembered": (folded.remembered * (-2 * _LOG2_E), _BLOCK // 2),
         "first": (first, _BLOCK),
         "second": (second, _BLOCK),
         "last": (_bias_first(folded.last), _BLOCK),

@@ -4,14 +4,14 @@ import math
 from collections.abc import Sequence
 from typing import TypeGuard
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.library import WIDEST, Kernels
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler
 from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
-from faultpath.streams import key as address_key
-from faultpath.streams import words
+from faultpath.streams import key, words
 
 
 class CompiledSampler(AutoregressiveSampler):
@@ -23,6 +23,8 @@ class CompiledSampler(AutoregressiveSampler):
         rho = self.settings.correlation
         self._correlation = torch.tensor([rho, math.sqrt(1 - rho**2)])
         self._sigma = torch.tensor([self.settings.thrust_sigma, *self.settings.rate_sigma_radps])
+        numbers = 4 * self.settings.horizon * self.settings.candidates
+        self._scratch = torch.empty(numbers, dtype=torch.int32)
         self._limit = torch.tensor(RATE_LIMIT_RADPS, dtype=torch.float32)
 
     @staticmethod
@@ -33,16 +35,13 @@ class CompiledSampler(AutoregressiveSampler):
     def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
         """See `Sampler.noise`."""
         horizon, candidates = self.settings.horizon, self.settings.candidates
-        bits = torch.empty(len(scenes), horizon * 4 * candidates, dtype=torch.int32)
-        for row, scene in zip(bits, scenes, strict=True):
-            key = torch.from_numpy(words(address_key("planner", scene, seed)))
-            self._kernels.call("faultpath_philox", key, step, len(row) // 2, row)
+        keys = np.array([words(key("planner", scene, seed)) for scene in scenes])
         noise = torch.empty(horizon, 4, len(scenes), candidates)
         self._kernels.call(
             "faultpath_noise",
-            bits,
-            *(horizon, len(scenes), candidates),
-            *(self._correlation, noise),
+            torch.from_numpy(keys),
+            *(step, horizon, len(scenes), candidates),
+            *(self._correlation, self._scratch, noise),
         )
         return noise
 

@@ -122,7 +122,7 @@ class ClearanceModel(nn.Module):
         Returns:
             `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
         """
-        weights = self.networks(code)
+        weights = [_with_constant(layer) for layer in self.networks(code)]
         clearance = points.new_empty(points.shape[1:])
         for scene in range(points.shape[1]):
             ours = [weight[scene] for weight in weights]
@@ -157,7 +157,7 @@ class ClearanceModel(nn.Module):
     def networks(self, code: Tensor) -> list[Tensor]:
         """Return the query networks that codes `[64, S]` make.
 
-        Each layer's weights are `[S, rows, columns]`, with the row that stays one.
+        Each layer's weights are `[S, rows, columns]`, the biases in the last column.
         """
         count = code.shape[1]
         padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
@@ -165,13 +165,18 @@ class ClearanceModel(nn.Module):
         found = []
         for layer, (rows, columns) in zip(self._makers(), self._shapes, strict=True):
             made = torch.mm(layer.weight, padded).add_(layer.bias[:, None])[:, :count].T
-            made = made.reshape(count, rows, columns)
-            if rows > 1:
-                constant = made.new_zeros(count, 1, columns)
-                constant[..., -1] = 1
-                made = torch.cat((made, constant), 1)
-            found.append(made.contiguous())
+            found.append(made.reshape(count, rows, columns).contiguous())
         return found
+
+
+def _with_constant(weights: Tensor) -> Tensor:
+    """Add the row that stays one to the weights `[S, rows, columns]` of a hidden layer."""
+    count, rows, columns = weights.shape
+    if rows == 1:
+        return weights
+    constant = weights.new_zeros(count, 1, columns)
+    constant[..., -1] = 1
+    return torch.cat((weights, constant), 1)
 
 
 def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import torch
 from torch import Tensor
@@ -15,11 +16,15 @@ from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 
 class Temperature(ABC):
-    """Turns costs into weights."""
+    """Turns costs into weights: their softmax at a temperature."""
 
     @abstractmethod
     def of(self, cost: Tensor) -> Tensor:
         """Return the temperature `[S, 1]` for costs `[S, K]`."""
+
+    def weights(self, cost: Tensor) -> Tensor:
+        """Return the weights `[S, K]` of candidates with costs `[S, K]`."""
+        return torch.softmax(-cost / self.of(cost), dim=1)
 
 
 @dataclass(frozen=True)
@@ -41,11 +46,12 @@ class ScaledTemperature(Temperature):
     """
 
     fraction: float
+    least: ClassVar[float] = 1e-3
 
     def of(self, cost: Tensor) -> Tensor:
         """See `Temperature.of`."""
         half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
-        return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=1e-3)
+        return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=self.least)
 
 
 @dataclass(frozen=True)
@@ -113,8 +119,7 @@ class MPPI:
         """
         commands = proposal.commands
         cost = self._cost(Scored(proposal.rollout, commands, clearance, goal, proposal.hover))
-        weight = torch.softmax(-cost / self._temperature.of(cost), dim=1)
-        return self._mean(commands, weight)
+        return self._mean(commands, self._temperature.weights(cost))
 
 
 def shift(plan: Tensor) -> Tensor:

@@ -3,9 +3,10 @@
 
 namespace {
 
-constexpr int FEATURES = 9;
-constexpr int HIDDEN = 48;
-constexpr int PADDED = OUTPUTS;  // outputs of the last layer: one, padded to a block
+// Without the constants that the query network in torch carries along: they are biases here.
+constexpr int FEATURES = 8;
+constexpr int HIDDEN = 47;
+constexpr int PADDED = (HIDDEN + OUTPUTS - 1) / OUTPUTS * OUTPUTS;
 
 }  // namespace
 
@@ -24,16 +25,29 @@ namespace {
 
 // One scene's query network, packed as `layers.hpp` reads it.
 struct Query {
-  float first[(1 + FEATURES) * HIDDEN];
-  float second[(1 + HIDDEN) * HIDDEN];
-  float last[(1 + HIDDEN) * PADDED];
+  float first[(1 + FEATURES) * PADDED];
+  float second[(1 + HIDDEN) * PADDED];
+  const float* last;  // [1 + HIDDEN], the bias at the end
 };
 
-void pack(const float* weights, int64_t inputs, int64_t outputs, float* packed) {
-  for (int64_t block = 0; block < outputs; block += OUTPUTS)
+// From `[outputs][inputs + 1]`, the bias at the end.
+void pack(const float* weights, int64_t inputs, float* packed) {
+  for (int64_t block = 0; block < PADDED; block += OUTPUTS)
     for (int64_t i = -1; i < inputs; ++i)
       for (int64_t o = block; o < block + OUTPUTS; ++o)
-        *packed++ = i < 0 || o >= outputs ? 0.0f : weights[o * inputs + i];
+        *packed++ = o < HIDDEN ? weights[o * (inputs + 1) + (i < 0 ? inputs : i)] : 0.0f;
+}
+
+// The last layer has one output: two sums a vector hide the latency.
+INLINE Row answer(const float* weights, const Row* hidden) {
+  Row even = each(weights[HIDDEN]), odd = each(0.0f);
+  for (int i = 0; i < HIDDEN; ++i)
+    for (int v = 0; v < WIDE; ++v) {
+      Vector& sum = i % 2 ? odd.part[v] : even.part[v];
+      sum = fma(splat(weights[i]), hidden[i].part[v], sum);
+    }
+  for (int v = 0; v < WIDE; ++v) even.part[v] = even.part[v] + odd.part[v];
+  return even;
 }
 
 INLINE void capture(const float* eye, const float* axes, const Row* world, Row* local) {
@@ -60,7 +74,6 @@ INLINE void describe(const Row* local, Row* features) {
     features[5].part[v] = bounded(y * inverse, -edge, edge);
     features[6].part[v] = bounded(z * inverse, -edge, edge);
     features[7].part[v] = 1.0f / (distance + 0.25f) - 0.7f;
-    features[8].part[v] = splat(1.0f);
   }
 }
 
@@ -74,33 +87,30 @@ INLINE Vector limited(const Bounds& bounds, const Row* local, int v, Vector clea
 
 }  // namespace
 
-// `first` [S, 48, 9], `second` [S, 48, 48], `last` [S, 1, 48] are the query networks that the codes
-// made, `eye` [S, 3] and `axes` [S, 9] the capture frames, `points` [3, S, N] in the world frame;
+// `first` [S, 47, 9], `second` [S, 47, 48], `last` [S, 1, 48] are the query networks that the codes
+// made, biases last, `eye` [S, 3] and `axes` [S, 9] the capture frames, `points` [3, S, N] in the world frame;
 // N is a multiple of the widest vector. `clearance` [S, N].
 extern "C" __attribute__((visibility("default"))) void faultpath_clearance(
     const Bounds* bounds, const float* first, const float* second, const float* last,
     const float* eye, const float* axes, const float* points, int64_t scenes, int64_t count,
     float* clearance) {
   Query query;
-  const Layer layers[3] = {{query.first, FEATURES, HIDDEN},
-                           {query.second, HIDDEN, HIDDEN},
-                           {query.last, HIDDEN, PADDED}};
+  const Layer layers[2] = {{query.first, FEATURES, PADDED}, {query.second, HIDDEN, PADDED}};
   for (int64_t s = 0; s < scenes; ++s) {
-    pack(first + s * HIDDEN * FEATURES, FEATURES, HIDDEN, query.first);
-    pack(second + s * HIDDEN * HIDDEN, HIDDEN, HIDDEN, query.second);
-    pack(last + s * HIDDEN, HIDDEN, 1, query.last);
+    pack(first + s * HIDDEN * (FEATURES + 1), FEATURES, query.first);
+    pack(second + s * HIDDEN * (HIDDEN + 1), HIDDEN, query.second);
+    query.last = last + s * (HIDDEN + 1);
     for (int64_t n = 0; n < count; n += TILE) {
-      Row world[3], local[3], features[FEATURES], hidden[2][HIDDEN], answer[PADDED];
+      Row world[3], local[3], features[FEATURES], hidden[2][PADDED];
       const int64_t left = count - n;
       for (int i = 0; i < 3; ++i) take(points + (i * scenes + s) * count + n, left, world[i]);
       capture(eye + 3 * s, axes + 9 * s, world, local);
       describe(local, features);
       dense(layers[0], features, hidden[0], rectified);
       dense(layers[1], hidden[0], hidden[1], rectified);
-      dense(layers[2], hidden[1], answer, [](Vector x) { return x; });
-      for (int v = 0; v < WIDE; ++v)
-        answer[0].part[v] = limited(*bounds, local, v, answer[0].part[v]);
-      give(answer[0], left, clearance + s * count + n);
+      Row clear = answer(query.last, hidden[1]);
+      for (int v = 0; v < WIDE; ++v) clear.part[v] = limited(*bounds, local, v, clear.part[v]);
+      give(clear, left, clearance + s * count + n);
     }
   }
 }

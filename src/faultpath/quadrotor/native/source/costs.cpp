@@ -1,4 +1,6 @@
 // The cost of candidates, and their weighted mean; see `planner/costs.py` and `planner/mppi.py`.
+#include <algorithm>
+
 #include "simd.hpp"
 
 extern "C" {
@@ -98,6 +100,37 @@ extern "C" __attribute__((visibility("default"))) void faultpath_cost(
                      hover[s]};
       store(costs + across, cost(*weights, at, shape));
     }
+}
+
+// `weights` [S, K] from `costs` [S, K]: the softmax at a temperature that is `fraction` of the spread
+// of the better half of the costs, at least `least`. `scratch` [K].
+extern "C" __attribute__((visibility("default"))) void faultpath_weights(
+    const float* costs, const float* scale, int64_t scenes, int64_t candidates, float* scratch,
+    float* weights) {
+  const float fraction = scale[0], least = scale[1];
+  const int64_t half = candidates / 2;
+  for (int64_t s = 0; s < scenes; ++s, costs += candidates, weights += candidates) {
+    std::memcpy(scratch, costs, candidates * sizeof(float));
+    std::nth_element(scratch, scratch + half, scratch + candidates);
+    const float lowest = *std::min_element(scratch, scratch + half);
+    double sum = 0.0, squares = 0.0;
+    for (int64_t k = 0; k < half; ++k) sum += scratch[k];
+    for (int64_t k = 0; k < half; ++k) {
+      const double departure = scratch[k] - sum / half;
+      squares += departure * departure;
+    }
+    const float spread = static_cast<float>(__builtin_sqrt(squares / (half - 1)));
+    const float temperature = spread * fraction > least ? spread * fraction : least;
+    double total = 0.0;
+    for (int64_t k = 0; k < candidates; k += LANES) {
+      const Vector x = (lowest - load(costs + k)) / temperature;
+      // Weights too small to matter are zero: sums of such numbers would crawl.
+      store(weights + k, select(x < -80.0f, splat(0.0f), power_of_two(x * LOG2_E)));
+    }
+    for (int64_t k = 0; k < candidates; ++k) total += weights[k];
+    const float share = static_cast<float>(1.0 / total);
+    for (int64_t k = 0; k < candidates; k += LANES) store(weights + k, load(weights + k) * share);
+  }
 }
 
 // `plan` [H, 4, S] becomes the mean of `commands` [H, 4, S, K] under `weights` [S, K].

@@ -75,9 +75,10 @@ INLINE void observe(const Motion& now, const Row* command, const Start& start, R
   for (int i = 1; i < COMMAND; ++i) features[MOTION + i] = command[i];
 }
 
-// One step of the gated unit: latent <- (1 - update) candidate + update latent.
+// One step of the gated unit: latent <- (1 - update) candidate + update latent. Its weights carry
+// the scale that `logistic` wants.
 INLINE void remember(const Predictor& model, Network& net) {
-  dense(model.gates, net.embedding(), net.gates, sigmoid);
+  dense(model.gates, net.embedding(), net.gates, logistic);
   constexpr int BLOCK = OUTPUTS / 2;
   const float* given = model.candidate.weights;
   const float* kept = model.remembered.weights;
@@ -93,7 +94,8 @@ INLINE void remember(const Predictor& model, Network& net) {
       for (int v = 0; v < WIDE; ++v) {
         const Vector reset = net.gates[first + o].part[v];
         const Vector update = net.gates[LATENT + first + o].part[v];
-        const Vector fresh = hyperbolic_tangent(fma(reset, memory[o].part[v], input[o].part[v]));
+        const Vector half = logistic(fma(reset, memory[o].part[v], input[o].part[v]));
+        const Vector fresh = fma(splat(2.0f), half, splat(-1.0f));  // the hyperbolic tangent
         net.next[first + o].part[v] = fma(update, net.latent()[first + o].part[v] - fresh, fresh);
       }
   }

@@ -82,12 +82,9 @@ void white(const int32_t* bits, int64_t rows, int64_t candidates, int64_t pitch,
     }
 }
 
-}  // namespace
-
 // The first `count` words, a multiple of four, that NumPy's Philox gives from a key [2] at a step:
 // its counter holds the step in the high word and is raised before each block.
-extern "C" __attribute__((visibility("default"))) void faultpath_philox(
-    const uint64_t* key, int64_t step, int64_t count, uint64_t* words) {
+void draw(const uint64_t* key, int64_t step, int64_t count, uint64_t* words) {
   uint64_t counter[4] = {0, 0, 0, static_cast<uint64_t>(step)};
   for (int64_t i = 0; i < count; i += 4) {
     ++counter[0];
@@ -95,16 +92,20 @@ extern "C" __attribute__((visibility("default"))) void faultpath_philox(
   }
 }
 
-// `noise` [H, 4, S, K]: first-order autoregressive over the horizon, candidate 0 at zero. `bits`
-// [S, H * 4 * K]; K is a multiple of the widest vector.
+}  // namespace
+
+// `noise` [H, 4, S, K] of scenes with `keys` [S, 2] at a step: first-order autoregressive over the
+// horizon, candidate 0 at zero. `bits` [H * 4 * K] is scratch: one scene's, so that it stays in
+// cache. K is a multiple of the widest vector.
 extern "C" __attribute__((visibility("default"))) void faultpath_noise(
-    const int32_t* bits, int64_t horizon, int64_t scenes, int64_t candidates,
-    const float* correlation, float* noise) {
+    const uint64_t* keys, int64_t step, int64_t horizon, int64_t scenes, int64_t candidates,
+    const float* correlation, int32_t* bits, float* noise) {
   const Vector kept = splat(correlation[0]), fresh = splat(correlation[1]);
   const int64_t pitch = scenes * candidates, rows = 4 * horizon;
   for (int64_t s = 0; s < scenes; ++s) {
     float* own = noise + s * candidates;
-    white(bits + s * rows * candidates, rows, candidates, pitch, own);
+    draw(keys + 2 * s, step, rows * candidates / 2, reinterpret_cast<uint64_t*>(bits));
+    white(bits, rows, candidates, pitch, own);
     for (int64_t r = 4; r < rows; ++r)
       for (int64_t k = 0; k < candidates; k += LANES) {
         float* at = own + r * pitch + k;
