@@ -5,6 +5,7 @@ are loaded. They link to neither Python nor torch, so one wheel serves every Pyt
 compiler the package is installed all the same and runs on its portable path.
 """
 
+import hashlib
 import os
 import platform
 import shutil
@@ -63,9 +64,12 @@ class KernelHook(BuildHookInterface):
         )
 
     def _compile(self, compiler: str, flags: tuple[str, ...], target: Path) -> None:
-        sources = sorted(str(path) for path in (target.parent / "source").glob("*.cpp"))
+        files = sorted((target.parent / "source").iterdir())
+        digest = hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
+        sources = [str(path) for path in files if path.suffix == ".cpp"]
         unfinished = target.with_suffix(".part")
-        command = [compiler, *FLAGS, *flags, *sources, "-o", str(unfinished)]
+        made_from = f'-DFAULTPATH_SOURCES="{digest}"'
+        command = [compiler, *FLAGS, *flags, made_from, *sources, "-o", str(unfinished)]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             self.app.display_warning(f"{target.name} was not built: {done.stderr[-2000:]}")

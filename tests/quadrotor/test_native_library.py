@@ -58,3 +58,9 @@ def test_a_set_that_was_not_built_is_refused(monkeypatch: pytest.MonkeyPatch, tm
     monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
     with pytest.raises(UserError, match="'avx2' were not built or do not run"):
         native.kernels()
+
+
+def test_kernels_of_other_sources_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(library, "_sources", lambda: "another digest")
+    with pytest.raises(UserError, match="other sources .* make setup"):
+        native.load("baseline")

@@ -1,6 +1,7 @@
 """Finding and loading the compiled kernels that this processor runs fastest."""
 
 import ctypes
+import hashlib
 import os
 from dataclasses import dataclass
 from functools import cache
@@ -53,7 +54,8 @@ def kernels() -> Kernels | None:
     `FAULTPATH_KERNELS` names an instruction set, `portable` or `auto`; unset, it is `auto`.
 
     Raises:
-        UserError: It names something else, or a set that was not built or does not run here.
+        UserError: It names something else, a set that was not built or does not run here, or the
+            kernels are older than their sources.
     """
     wanted = os.environ.get(VARIABLE) or AUTO
     if wanted == PORTABLE:
@@ -100,7 +102,21 @@ def load(isa: str) -> Kernels:
             f"kernels '{isa}' were not built or do not run on this processor: "
             f"set {VARIABLE} to one of {', '.join((*available(), PORTABLE))}."
         )
-    return Kernels(isa, ctypes.CDLL(str(_path(isa))))
+    library = ctypes.CDLL(str(_path(isa)))
+    library.faultpath_sources.restype = ctypes.c_char_p
+    if library.faultpath_sources().decode() != _sources():
+        raise UserError(
+            f"kernels '{isa}' were built from other sources than those beside them: "
+            "install faultpath again (in a checkout: make setup)."
+        )
+    return Kernels(isa, library)
+
+
+@cache
+def _sources() -> str:
+    """Return the digest of the sources, as the build computes it."""
+    files = sorted((Path(__file__).parent / "source").iterdir())
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 
 
 def _path(isa: str) -> Path:

@@ -1,6 +1,12 @@
-// Which instruction sets this processor has: 0 the baseline, 1 AVX2 with FMA, 2 AVX-512.
+// What a library of kernels says of itself and of the processor.
 #include <cstdint>
 
+// Digest of the sources that it was built from.
+extern "C" __attribute__((visibility("default"))) const char* faultpath_sources() {
+  return FAULTPATH_SOURCES;
+}
+
+// Which instruction sets this processor has: 0 the baseline, 1 AVX2 with FMA, 2 AVX-512.
 extern "C" __attribute__((visibility("default"))) int32_t faultpath_level() {
 #if defined(__x86_64__)
   __builtin_cpu_init();
