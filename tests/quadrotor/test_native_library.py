@@ -62,5 +62,5 @@ def test_a_set_that_was_not_built_is_refused(monkeypatch: pytest.MonkeyPatch, tm
 
 def test_kernels_of_other_sources_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(library, "_sources", lambda: "another digest")
-    with pytest.raises(UserError, match="other sources .* make setup"):
+    with pytest.raises(UserError, match=r"other sources .* make setup"):
         native.load("baseline")

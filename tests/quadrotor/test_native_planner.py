@@ -1,6 +1,5 @@
 """Compiled noise, candidates, costs, means and clearance are the portable ones to rounding."""
 
-import numpy as np
 import pytest
 import torch
 
@@ -26,7 +25,6 @@ from faultpath.quadrotor.planner import (
 )
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
-from faultpath.streams import generator, key, words
 
 SCENES = ("a", "b", "c")
 
@@ -50,17 +48,6 @@ def test_noise_is_the_portable_one(kernels: native.Kernels, horizon: int) -> Non
     sampler = AutoregressiveSampler(SamplerSettings(candidates=64, horizon=horizon))
     compiled = CompiledSampler(kernels, sampler)
     close(compiled.noise(SCENES, 3, 5), sampler.noise(SCENES, 3, 5))
-
-
-def test_noise_is_made_of_numpys_words(kernels: native.Kernels) -> None:
-    """The scratch holds the last scene's bits."""
-    words_per_scene = 2 * 4 * 32 // 2
-    scratch = torch.empty(2 * words_per_scene, dtype=torch.int32)
-    keys = torch.from_numpy(np.array([words(key("p", scene, 1)) for scene in ("a", "s")]))
-    noise, correlation = torch.empty(2, 4, 2, 32), torch.tensor([0.0, 1.0])
-    kernels.call("faultpath_noise", keys, 7, *(2, 2, 32), correlation, scratch, noise)
-    drawn = generator("p", "s", 1, 7).bit_generator.random_raw(words_per_scene)
-    assert scratch.numpy().view(np.uint64).tolist() == drawn.tolist()
 
 
 def test_candidates_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:

@@ -69,17 +69,17 @@ INLINE void normals(Integers first, Integers second, Vector& a, Vector& b) {
   b = sine * radius;
 }
 
-// One scene's white noise, `[rows][candidates]`, into rows that lie `pitch` apart.
-void white(const int32_t* bits, int64_t rows, int64_t candidates, int64_t pitch, float* noise) {
-  const int64_t half = rows / 2;
-  for (int64_t r = 0; r < half; ++r)
-    for (int64_t k = 0; k < candidates; k += LANES) {
-      Vector a, b;
-      const int32_t* at = bits + r * candidates + k;
-      normals(load_bits(at), load_bits(at + half * candidates), a, b);
-      store(noise + r * pitch + k, a);
-      store(noise + (r + half) * pitch + k, b);
-    }
+// Bits of one scene become white noise `[rows][candidates]`, in place: a pair's two normals take the
+// places of its two words.
+void whiten(int32_t* bits, int64_t rows, int64_t candidates) {
+  const int64_t half = rows / 2 * candidates;
+  float* noise = reinterpret_cast<float*>(bits);
+  for (int64_t i = 0; i < half; i += LANES) {
+    Vector a, b;
+    normals(load_bits(bits + i), load_bits(bits + half + i), a, b);
+    store(noise + i, a);
+    store(noise + half + i, b);
+  }
 }
 
 // The first `count` words, a multiple of four, that NumPy's Philox gives from a key [2] at a step:
@@ -95,8 +95,8 @@ void draw(const uint64_t* key, int64_t step, int64_t count, uint64_t* words) {
 }  // namespace
 
 // `noise` [H, 4, S, K] of scenes with `keys` [S, 2] at a step: first-order autoregressive over the
-// horizon, candidate 0 at zero. `bits` [H * 4 * K] is scratch: one scene's, so that it stays in
-// cache. K is a multiple of the widest vector.
+// horizon, candidate 0 at zero. `bits` [H * 4 * K] is scratch: one scene's, so that all but the last
+// pass stays in cache. K is a multiple of the widest vector.
 extern "C" __attribute__((visibility("default"))) void faultpath_noise(
     const uint64_t* keys, int64_t step, int64_t horizon, int64_t scenes, int64_t candidates,
     const float* correlation, int32_t* bits, float* noise) {
@@ -105,13 +105,16 @@ extern "C" __attribute__((visibility("default"))) void faultpath_noise(
   for (int64_t s = 0; s < scenes; ++s) {
     float* own = noise + s * candidates;
     draw(keys + 2 * s, step, rows * candidates / 2, reinterpret_cast<uint64_t*>(bits));
-    white(bits, rows, candidates, pitch, own);
-    for (int64_t r = 4; r < rows; ++r)
+    whiten(bits, rows, candidates);
+    const float* white = reinterpret_cast<const float*>(bits);
+    for (int64_t r = 0; r < rows; ++r, white += candidates) {
+      float* row = own + r * pitch;
       for (int64_t k = 0; k < candidates; k += LANES) {
-        float* at = own + r * pitch + k;
-        store(at, fma(load(at - 4 * pitch), kept, load(at) * fresh));
+        const Vector drawn = load(white + k);
+        store(row + k, r < 4 ? drawn : fma(load(row + k - 4 * pitch), kept, drawn * fresh));
       }
-    for (int64_t r = 0; r < rows; ++r) own[r * pitch] = 0.0f;
+      row[0] = 0.0f;
+    }
   }
 }
 
