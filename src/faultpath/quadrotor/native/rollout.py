@@ -151,32 +151,24 @@ def _pack(weights: Tensor, block: int) -> Tensor:
 
 def _starts(inputs: PredictorInputs) -> Tensor:
     """Return `Start` of `rollout.cpp` for every scene, `[S, 58]`; what is not read is zero."""
-    state = inputs.state
-    scenes = state.position.shape[1]
-    blank = state.position.new_zeros(1, scenes)
-
-    def row(value: Tensor | None) -> Tensor:
-        return blank if value is None else value[:, 0][None]
-
-    thrust, wind, inverse = None, blank.expand(3, -1), None
-    if inputs.dynamics is not None:
-        thrust = inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg
-    if inputs.wind_mps is not None and inputs.wind_map_mass_kg is not None:
-        wind = (inputs.wind_mps / inputs.wind_map_mass_kg)[..., 0]
-        inverse = 1 / inputs.wind_map_mass_kg
-    weight = inputs.thrust_mass_kg
-    conditioning = inputs.conditioning
-    rows = (
-        state.position[..., 0],
-        state.velocity[..., 0],
-        state.rotation[..., 0].flatten(0, 1),
-        state.rate[..., 0],
-        row(thrust),
-        wind,
-        row(inverse),
-        row(None if weight is None else 1 / (weight * GRAVITY_MPS2)),
-        row(conditioning and conditioning.mass_kg),
-        row(conditioning and conditioning.thrust_scale),
-        blank.expand(LATENT, -1) if inputs.code is None else inputs.code[..., 0],
+    state, dynamics, conditioning = inputs.state, inputs.dynamics, inputs.conditioning
+    mass, wind, weight = inputs.wind_map_mass_kg, inputs.wind_mps, inputs.thrust_mass_kg
+    parts: tuple[tuple[int, Tensor | None], ...] = (
+        (3, state.position),
+        (3, state.velocity),
+        (9, state.rotation),
+        (3, state.rate),
+        (1, dynamics and dynamics.thrust_scale / dynamics.mass_kg),
+        (3, None if mass is None or wind is None else wind / mass),
+        (1, None if mass is None else 1 / mass),
+        (1, None if weight is None else 1 / (weight * GRAVITY_MPS2)),
+        (1, conditioning and conditioning.mass_kg),
+        (1, conditioning and conditioning.thrust_scale),
+        (LATENT, inputs.code),
     )
+    scenes = state.position.shape[1]
+    rows = [
+        state.position.new_zeros(count, scenes) if part is None else part.reshape(count, scenes)
+        for count, part in parts
+    ]
     return torch.cat(rows).T.contiguous()
