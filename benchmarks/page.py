@@ -11,12 +11,17 @@ PAGE = ROOT / "docs" / "performance.md"
 RATIOS = ROOT / "docs" / "images" / "performance.svg"
 SCALING = ROOT / "docs" / "images" / "performance-scaling.svg"
 
+BUSY = 0.5
+"""Load above which the page warns."""
+
 
 def files(results: Results) -> Mapping[Path, str]:
     """Return every file that the results decide, by its path."""
+    order = [name for section in SECTIONS for name in section.comparisons]
+    records = sorted(results.records, key=lambda record: order.index(record.comparison))
     return {
         PAGE: text(results),
-        RATIOS: pictures.ratios(results.records) + "\n",
+        RATIOS: pictures.ratios(records) + "\n",
         SCALING: pictures.scaling(results.curves) + "\n",
     }
 
@@ -52,6 +57,12 @@ def _machine(machine: Machine) -> Iterator[str]:
         f"{machine.memory_gib:.0f} GiB, {machine.system}; Python {machine.python}, {packages}; "
         f"kernels `{machine.kernels}`, compiler {machine.compiler or 'unknown'}; {commit}."
     )
+    if machine.load > BUSY:
+        yield (
+            f"**The machine was busy**: its load was {machine.load:.1f} before the last run. Rows "
+            "by the clock on the wall (one vehicle, workers, start-up) are then too slow, and all "
+            "rates suffer from sharing caches and memory: measure again on a quiet machine."
+        )
 
 
 def _summary(records: Sequence[Record]) -> Iterator[str]:

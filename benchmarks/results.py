@@ -69,6 +69,8 @@ class Machine(_Frozen):
     processor: str
     cores: int
     memory_gib: float
+    load: float
+    """Processes that wanted a processor in the minute before: zero on a quiet machine."""
     system: str
     python: str
     packages: dict[str, str]
