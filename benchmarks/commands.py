@@ -12,7 +12,7 @@ from pathlib import Path
 from benchmarks.comparison import Comparison, Outcome, absolute
 from benchmarks.results import Record
 
-SCENES = 8
+SCENES = 20
 REPEATS = 5
 SAMPLE_S = 0.1
 

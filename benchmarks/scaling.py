@@ -7,6 +7,7 @@ from pathlib import Path
 from benchmarks.commands import audit, workers_command
 from benchmarks.comparison import Comparison, Outcome, absolute, at_least, at_most, growth, judged
 from benchmarks.measure import Work, interleaved
+from benchmarks.product import together
 from benchmarks.results import Curve, Record
 
 SIZES = {
@@ -15,6 +16,7 @@ SIZES = {
     "scenes": (1, 5, 25, 100),
 }
 ROUNDS = 5
+PRODUCT_S = 4.0
 LINEAR = 1.15
 """Most that a time may be above what size and the first point foretell, to count as linear."""
 
@@ -69,7 +71,26 @@ def workers() -> Outcome:
         at_most(2.0, "ours"),
         "All processes together; what they share counts once.",
     )
-    return Outcome([seconds, memory])
+    return Outcome([seconds, _ceiling(), memory])
+
+
+def _ceiling() -> Record:
+    """Return what a second process brings where nothing of ours runs."""
+    rounds = [(together(1, PRODUCT_S), together(2, PRODUCT_S)) for _ in range(3)]
+    ratios = [two / one for one, two in rounds]
+    return Record(
+        name="torch.mm alone, two processes against one",
+        comparison="workers",
+        unit="products/s",
+        ours=statistics.median(two for _, two in rounds),
+        ours_name="two processes",
+        peer=statistics.median(one for one, _ in rounds),
+        peer_name="one process",
+        ratio=statistics.median(ratios),
+        low=min(ratios),
+        high=max(ratios),
+        note="What this machine gives a second process that multiplies matrices and nothing else.",
+    )
 
 
 COMPARISONS = (Comparison("scaling", rollout), Comparison("workers", workers))
