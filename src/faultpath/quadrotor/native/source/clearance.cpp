@@ -1,4 +1,5 @@
 // Clearance at many points from the depth image's code; see `perception/clearance.py`.
+#include "layers.hpp"
 #include "rotation.hpp"
 
 namespace {

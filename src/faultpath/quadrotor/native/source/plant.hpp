@@ -1,7 +1,7 @@
 // One step of the quadrotor plant for a vector of vehicles; `plant/plant.py` is its reference.
 #pragma once
 
-#include "simd64.hpp"
+#include "rotation.hpp"
 
 namespace {
 
@@ -66,44 +66,6 @@ INLINE void gyroscopic(const Doubles* coupling, const Doubles* rate, Doubles* ac
   acceleration[0] = rate[1] * rate[2] * coupling[0];
   acceleration[1] = rate[2] * rate[0] * coupling[1];
   acceleration[2] = rate[0] * rate[1] * coupling[2];
-}
-
-INLINE void rotate(const Doubles* r, const Doubles* x, Doubles* turned) {
-  for (int i = 0; i < 3; ++i)
-    turned[i] = fma(r[3 * i + 2], x[2], fma(r[3 * i + 1], x[1], r[3 * i] * x[0]));
-}
-
-INLINE void rotate_back(const Doubles* r, const Doubles* x, Doubles* turned) {
-  for (int i = 0; i < 3; ++i)
-    turned[i] = fma(r[6 + i], x[2], fma(r[3 + i], x[1], r[i] * x[0]));
-}
-
-INLINE void compose(const Doubles* a, const Doubles* b, Doubles* product) {
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      product[3 * i + j] =
-          fma(a[3 * i + 2], b[6 + j], fma(a[3 * i + 1], b[3 + j], a[3 * i] * b[j]));
-}
-
-// The rotation by |phi| about phi, through half angles.
-INLINE void rotation_of(const Doubles* phi, Doubles* r) {
-  const Doubles square = fma(phi[2], phi[2], fma(phi[1], phi[1], phi[0] * phi[0]));
-  const Doubles angle = sqrt(square + 1e-24);
-  Doubles s, c;
-  sine_cosine(angle * 0.5, s, c);
-  const Doubles ratio = s / angle;
-  const Doubles x = phi[0] * ratio, y = phi[1] * ratio, z = phi[2] * ratio;
-  const Doubles xx = x + x, yy = y + y, zz = z + z;
-  const Doubles cosine = fma(c, c, -(s * s));
-  r[0] = fma(xx, x, cosine);
-  r[1] = fma(xx, y, -(zz * c));
-  r[2] = fma(xx, z, yy * c);
-  r[3] = fma(yy, x, zz * c);
-  r[4] = fma(yy, y, cosine);
-  r[5] = fma(yy, z, -(xx * c));
-  r[6] = fma(zz, x, -(yy * c));
-  r[7] = fma(zz, y, xx * c);
-  r[8] = fma(zz, z, cosine);
 }
 
 // The rate loop: what each motor is told. Yaw gives way before the others do.

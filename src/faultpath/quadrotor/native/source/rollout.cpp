@@ -48,9 +48,7 @@ struct Start {
 namespace {
 
 struct Motion {
-  Row position[3], velocity[3];
-  Rotation rotation;
-  Row rate[3];
+  Row position[3], velocity[3], rotation[9], rate[3];
 };
 
 // Rows in the order in which layers read them, so that no layer's input has to be gathered.
@@ -68,7 +66,7 @@ struct Network {
 
 INLINE void observe(const Motion& now, const Row* command, const Start& start, Row* features) {
   for (int i = 0; i < 3; ++i) features[i] = now.velocity[i];
-  for (int i = 0; i < 9; ++i) features[3 + i] = now.rotation.at[i];
+  for (int i = 0; i < 9; ++i) features[3 + i] = now.rotation[i];
   for (int i = 0; i < 3; ++i) features[12 + i] = now.rate[i];
   for (int v = 0; v < WIDE; ++v)
     features[MOTION].part[v] = command[0].part[v] * start.inverse_weight;
@@ -127,7 +125,7 @@ INLINE void integrate(const Predictor& model, const Start& start, const Row* com
       }
     }
     Vector before[9], after[9], by[9];
-    for (int i = 0; i < 9; ++i) before[i] = now.rotation.at[i].part[v];
+    for (int i = 0; i < 9; ++i) before[i] = now.rotation[i].part[v];
     rotation_of(turn, by);
     compose(before, by, after);
 
@@ -155,7 +153,7 @@ INLINE void integrate(const Predictor& model, const Start& start, const Row* com
       now.velocity[i].part[v] = ahead;
       now.position[i].part[v] = fma(velocity + ahead, splat(0.5f * dt), now.position[i].part[v]);
     }
-    for (int i = 0; i < 9; ++i) now.rotation.at[i].part[v] = after[i];
+    for (int i = 0; i < 9; ++i) now.rotation[i].part[v] = after[i];
   }
 }
 
@@ -171,10 +169,10 @@ INLINE void increment(const Predictor& model, const Row* outputs, Motion& now) {
           fma(outputs[6 + i].part[v], splat(model.spread[6 + i]), now.rate[i].part[v]);
       turn[i] = outputs[9 + i].part[v] * model.spread[9 + i];
     }
-    for (int i = 0; i < 9; ++i) before[i] = now.rotation.at[i].part[v];
+    for (int i = 0; i < 9; ++i) before[i] = now.rotation[i].part[v];
     rotation_of(turn, by);
     compose(before, by, after);
-    for (int i = 0; i < 9; ++i) now.rotation.at[i].part[v] = after[i];
+    for (int i = 0; i < 9; ++i) now.rotation[i].part[v] = after[i];
   }
 }
 
@@ -184,7 +182,7 @@ INLINE void begin(const Start& start, Motion& now, Network& net) {
     now.velocity[i] = each(start.velocity[i]);
     now.rate[i] = each(start.rate[i]);
   }
-  for (int i = 0; i < 9; ++i) now.rotation.at[i] = each(start.rotation[i]);
+  for (int i = 0; i < 9; ++i) now.rotation[i] = each(start.rotation[i]);
   for (int i = 0; i < LATENT; ++i) net.latent()[i] = each(start.code[i]);
   for (int i = 0; i < 2; ++i) net.features()[MOTION + COMMAND + i] = each(start.conditioning[i]);
 }
@@ -213,7 +211,7 @@ void roll_tile(const Predictor& model, const Start& start, const float* commands
       give(now.velocity[i], count, velocities + i * axis + h * candidates);
     }
   }
-  for (int i = 0; i < 9; ++i) give(now.rotation.at[i], count, ends + i * row);
+  for (int i = 0; i < 9; ++i) give(now.rotation[i], count, ends + i * row);
   for (int i = 0; i < 3; ++i) give(now.rate[i], count, ends + (9 + i) * row);
 }
 

@@ -12,7 +12,17 @@ constexpr int DOUBLES = LANES / 2;
 typedef double Doubles __attribute__((vector_size(8 * DOUBLES)));
 typedef int64_t Longs __attribute__((vector_size(8 * DOUBLES)));
 
-INLINE Doubles splat(double value) { return Doubles{} + value; }
+INLINE Doubles splat(double value) {
+#if defined(__AVX512F__)
+  return _mm512_set1_pd(value);
+#elif defined(__AVX2__) && defined(__FMA__)
+  return _mm256_set1_pd(value);
+#elif defined(__x86_64__)
+  return _mm_set1_pd(value);
+#else
+  return Doubles{value, value};
+#endif
+}
 
 INLINE Doubles fma(Doubles a, Doubles b, Doubles c) {
 #if defined(__AVX512F__)
