@@ -1,0 +1,49 @@
+"""Where the tensors of a flight live, and when the host may look at them."""
+
+from enum import StrEnum
+
+import torch
+from torch import Tensor
+
+from faultpath.errors import UserError
+
+CPU = torch.device("cpu")
+
+
+class DeviceName(StrEnum):
+    """Where worlds and planners are computed."""
+
+    CPU = "cpu"
+    CUDA = "cuda"
+
+
+def at_hand(device: torch.device) -> bool:
+    """Return whether the host reads a value on `device` without waiting for queued work.
+
+    What is done in one way on the CPU and in another on an accelerator asks this and nothing else.
+    """
+    return device.type == "cpu"
+
+
+def send(host: Tensor, device: torch.device) -> Tensor:
+    """Return a tensor of the host on `device`; the copy is queued and nobody waits for it.
+
+    Only a copy from pinned memory can be: from any other the host waits for its turn.
+    """
+    if device.type == "cpu":
+        return host
+    return host.pin_memory().to(device, non_blocking=True)
+
+
+def require(name: DeviceName) -> None:
+    """Raise `UserError` where there is no such device."""
+    if name is DeviceName.CUDA and not torch.cuda.is_available():
+        raise UserError(
+            f"device 'cuda' needs a GPU, and torch {torch.__version__} finds none here: leave "
+            "--device out, or install a build of torch with CUDA on a machine that has one."
+        )
+
+
+def describe(name: DeviceName) -> str:
+    """Return in words what computes on a device other than the CPU."""
+    return f"{name} ({torch.cuda.get_device_name()}), portable path"
