@@ -1,5 +1,5 @@
 // Noise of the candidates, and the candidates; see `planner/sampler.py`.
-#include "simd.hpp"
+#include "philox.hpp"
 
 namespace {
 
@@ -25,29 +25,6 @@ INLINE Vector logarithm(Vector x) {
   Vector y = fma(p * m, square, e * -2.12194440e-4f);
   y = fma(square, splat(-0.5f), y);
   return fma(e, splat(0.693359375f), m + y);
-}
-
-// One block of Philox 4x64 with ten rounds (Salmon et al. 2011).
-INLINE void philox(const uint64_t* key, const uint64_t* counter, uint64_t* block) {
-  constexpr uint64_t M0 = 0xD2E7470EE14C6C93, M1 = 0xCA5A826395121157;
-  constexpr uint64_t W0 = 0x9E3779B97F4A7C15, W1 = 0xBB67AE8584CAA73B;
-  uint64_t c0 = counter[0], c1 = counter[1], c2 = counter[2], c3 = counter[3];
-  uint64_t k0 = key[0], k1 = key[1];
-#pragma GCC unroll 10
-  for (int round = 0; round < 10; ++round) {
-    const auto a = static_cast<unsigned __int128>(M0) * c0;
-    const auto b = static_cast<unsigned __int128>(M1) * c2;
-    c0 = static_cast<uint64_t>(b >> 64) ^ c1 ^ k0;
-    c2 = static_cast<uint64_t>(a >> 64) ^ c3 ^ k1;
-    c1 = static_cast<uint64_t>(b);
-    c3 = static_cast<uint64_t>(a);
-    k0 += W0;
-    k1 += W1;
-  }
-  block[0] = c0;
-  block[1] = c1;
-  block[2] = c2;
-  block[3] = c3;
 }
 
 INLINE Integers load_bits(const int32_t* from) {
@@ -79,16 +56,6 @@ void whiten(int32_t* bits, int64_t rows, int64_t candidates) {
     normals(load_bits(bits + i), load_bits(bits + half + i), a, b);
     store(noise + i, a);
     store(noise + half + i, b);
-  }
-}
-
-// The first `count` words, a multiple of four, that NumPy's Philox gives from a key [2] at a step:
-// its counter holds the step in the high word and is raised before each block.
-void draw(const uint64_t* key, int64_t step, int64_t count, uint64_t* words) {
-  uint64_t counter[4] = {0, 0, 0, static_cast<uint64_t>(step)};
-  for (int64_t i = 0; i < count; i += 4) {
-    ++counter[0];
-    philox(key, counter, words + i);
   }
 }
 
