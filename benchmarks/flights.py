@@ -19,7 +19,7 @@ from faultpath.quadrotor.system import Quadrotor, create
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
 
-SCENES = 25
+SCENES = 50
 STEPS = 20
 VARIANT = "gru"
 

@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import IO, Any, Literal, Self
 
 from benchmarks.results import ROOT
+from faultpath.execution.crew import KEEP_MEMORY
 from faultpath.quadrotor.native import library
 
 ROUNDS = 9
@@ -62,7 +63,7 @@ class Running:
         self._process = subprocess.Popen(
             [*command, json.dumps(dict(work.arguments)), str(cpu())],
             cwd=ROOT,
-            env={**os.environ, **ONE_THREAD, **_kernels(), **work.environment},
+            env={**os.environ, **KEEP_MEMORY, **ONE_THREAD, **_kernels(), **work.environment},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._log,

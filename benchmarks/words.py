@@ -68,7 +68,7 @@ gets one round of optimisation and all candidates.""",
         "Closed loop",
         ("closed-loop",),
         """\
-A block of 25 selection scenes at wind level L3, flown for 20 control steps with the variant `gru`:
+A block of 50 selection scenes at wind level L3, flown for 20 control steps with the variant `gru`:
 readings through taps, history code, wind reconstruction, noise, rollout, clearance along all
 candidates, costs, update, plant. Times are per running scene and step, against the rollout of as
 many scenes alone. Below each, what the time goes into. The clock of a part includes what it

@@ -23,7 +23,7 @@ _ONE_THREAD = (
 )
 # Large blocks stay with the process once freed: glibc would give them back to the system and fault
 # them in again at the next tensor of that size.
-_KEEP_MEMORY = {
+KEEP_MEMORY = {
     "MALLOC_MMAP_THRESHOLD_": str(1 << 28),
     "MALLOC_TRIM_THRESHOLD_": str(1 << 30),
     "MALLOC_TOP_PAD_": str(1 << 26),
@@ -53,7 +53,7 @@ class Worker:
         lifeline, self._lifeline = os.pipe()
         path = os.pathsep.join(entry for entry in sys.path if entry)
         one_thread = dict.fromkeys(_ONE_THREAD, "1")
-        environment = {**_KEEP_MEMORY, **os.environ, **one_thread, "PYTHONPATH": path}
+        environment = {**KEEP_MEMORY, **os.environ, **one_thread, "PYTHONPATH": path}
         # A blocked signal stays blocked in the child until it says how it takes it.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
