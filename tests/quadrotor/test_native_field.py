@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import torch
-from kernel_sets import COMPILED, PORTABLE, running
+from kernel_sets import COMPILED, PORTABLE
 from torch import Tensor
 
+from faultpath.quadrotor import native
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 
@@ -23,7 +24,7 @@ def scattered(count: int) -> Tensor:
 
 
 def asked(isa: str, points: Tensor, rows: list[int] | None = None) -> Tensor:
-    with running(isa):
+    with native.using(isa):
         field = DistanceField.bake(SCENES)
         return (field if rows is None else field.select(rows)).query(points)
 

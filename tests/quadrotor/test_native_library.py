@@ -1,19 +1,10 @@
 """Which kernels run, and what is said about it."""
 
-from collections.abc import Iterator
-
 import pytest
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native import library
-
-
-@pytest.fixture(autouse=True)
-def fresh() -> Iterator[None]:
-    native.kernels.cache_clear()
-    yield
-    native.kernels.cache_clear()
 
 
 def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -49,13 +40,16 @@ def test_without_built_kernels_the_portable_path_runs_and_says_why(
 ) -> None:
     monkeypatch.delenv(library.VARIABLE, raising=False)
     monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
+    library._chosen.cache_clear()
     assert native.kernels() is None
     assert "no C++ compiler" in native.describe()
+    library._chosen.cache_clear()
 
 
 def test_a_set_that_was_not_built_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setenv(library.VARIABLE, "avx2")
     monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
+    library._chosen.cache_clear()
     with pytest.raises(UserError, match="'avx2' were not built or do not run"):
         native.kernels()
 
@@ -64,3 +58,9 @@ def test_kernels_of_other_sources_are_refused(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(library, "_sources", lambda: "another digest")
     with pytest.raises(UserError, match=r"other sources .* make setup"):
         native.load("baseline")
+
+
+def test_what_keeps_to_the_portable_path_goes_back_after() -> None:
+    with native.using(native.PORTABLE):
+        assert native.kernels() is None
+    assert native.kernels() is not None

@@ -5,10 +5,10 @@ import dataclasses
 import numpy as np
 import pytest
 import torch
-from kernel_sets import COMPILED, FUSED, PORTABLE, running
+from kernel_sets import COMPILED, FUSED, PORTABLE
 from torch import Tensor
 
-from faultpath.quadrotor import so3
+from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.plant import Plant, PlantState
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
@@ -44,7 +44,7 @@ def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     """All that the plant carries after one control step, `[22, n]`."""
     vehicle = Vehicle.stack([draw(np.random.default_rng(seed + i)) for i in range(LANES)])
     start, command, winds = wild(seed)
-    with running(isa):
+    with native.using(isa):
         plant = Plant(vehicle.take(lanes))
     end = plant.advance(start.take(lanes), command[:, lanes], winds[..., lanes])
     state = end.state
@@ -74,7 +74,7 @@ def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
 def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
     start, command, winds = wild(0)
     command[0, 4] = torch.nan
-    with running(isa):
+    with native.using(isa):
         plant = Plant(Vehicle.nominal(LANES))
     position = plant.advance(start, command, winds).state.position
     assert position.isnan().any(0).nonzero().flatten().tolist() == [4]
@@ -82,7 +82,7 @@ def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
 
 @pytest.mark.parametrize("isa", COMPILED)
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
-    with running(isa):
+    with native.using(isa):
         for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
             plant = Plant(vehicle)
             still = torch.zeros(3, *vehicle.batch, dtype=vehicle.mass_kg.dtype)
@@ -95,7 +95,7 @@ def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
 @pytest.mark.parametrize("isa", COMPILED)
 def test_a_batch_of_another_size_is_refused(isa: str) -> None:
     start, command, winds = wild(0)
-    with running(isa):
+    with native.using(isa):
         plant = Plant(Vehicle.nominal(LANES - 1))
     with pytest.raises(RuntimeError, match="expand"):
         plant.advance(start, command, winds)
@@ -106,7 +106,7 @@ def test_a_batch_of_another_size_is_refused(isa: str) -> None:
 
 def worlds(isa: str, scenes: list[Scene], commands: Tensor, level: str = "L0") -> World:
     """The world after a control step for each of `commands` `[n, 4, L]`."""
-    with running(isa):
+    with native.using(isa):
         world = World(scenes, level, free_space=False)
     for command in commands:
         world.advance(command)
@@ -205,7 +205,7 @@ def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
 
 @pytest.mark.parametrize("isa", COMPILED)
 def test_advancing_leaves_the_earlier_progress_alone(isa: str) -> None:
-    with running(isa):
+    with native.using(isa):
         world = World(SCENES[:3], "L2", free_space=False)
     before = world.progress
     kept = [value.clone() for value in dataclasses.astuple(before)]

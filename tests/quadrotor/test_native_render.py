@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import pytest
 import torch
-from kernel_sets import COMPILED, FUSED, PORTABLE, running
+from kernel_sets import COMPILED, FUSED, PORTABLE
 from test_perception_render import at, flown, scene_of
 
+from faultpath.quadrotor import native
 from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH, mounted
 from faultpath.quadrotor.perception.render import DepthRenderer
 from faultpath.quadrotor.scenes.library import load_library
@@ -19,7 +20,7 @@ ROUNDING_M = 1e-6
 
 
 def drawn(isa: str, scenes: list[Scene], state: State, free_space: bool = False) -> torch.Tensor:
-    with running(isa):
+    with native.using(isa):
         return DepthRenderer(scenes, free_space).render(state)
 
 

@@ -1,11 +1,23 @@
 """A trial's result is its own: neither neighbours nor their order enter it, to the bit."""
 
+from collections.abc import Iterator
+
 import pytest
 from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, with_halls
 
 from faultpath.faults import AnyFault
+from faultpath.quadrotor import native, system
 
 STRONG_WIND = {"wind": "L3"}
+
+
+@pytest.fixture(scope="module", params=["auto", native.PORTABLE], autouse=True)
+def _path(request: pytest.FixtureRequest) -> Iterator[None]:
+    """The law holds for compiled kernels and for torch alike."""
+    for kept in (system._field, system._renderer):
+        kept.cache_clear()
+    with native.using(request.param):
+        yield
 
 
 @pytest.fixture(autouse=True)
@@ -28,7 +40,7 @@ def faults() -> tuple[AnyFault, ...]:
 
 
 @pytest.fixture(scope="module")
-def whole(faults) -> dict[str, tuple[object, ...]]:
+def whole(_path, faults) -> dict[str, tuple[object, ...]]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
         outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)

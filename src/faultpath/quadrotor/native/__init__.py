@@ -5,12 +5,25 @@ the reference: it is what training differentiates and what the tests compare wit
 """
 
 from faultpath.quadrotor.native.library import (
+    PORTABLE,
     Kernels,
     available,
     describe,
     kernels,
+    kernels_on,
     load,
     numerics,
+    using,
 )
 
-__all__ = ["Kernels", "available", "describe", "kernels", "load", "numerics"]
+__all__ = [
+    "PORTABLE",
+    "Kernels",
+    "available",
+    "describe",
+    "kernels",
+    "kernels_on",
+    "load",
+    "numerics",
+    "using",
+]

@@ -8,6 +8,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.library import Kernels
+from faultpath.quadrotor.native.packing import BLOCK, pack
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH
 from faultpath.quadrotor.perception.clearance import (
     NEAR_M,
@@ -36,28 +37,46 @@ class CompiledDepthClearance(DepthClearance):
         self._bounds = _Bounds(
             LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M**2, WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
         )
-        self._networks: list[Tensor] = []
+        self._makers, self._base = _makers(model)
+        self._codes: Tensor | None = None
         self._eye = self._axes = torch.empty(0)
 
     @torch.no_grad()
     def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
-        """See `DepthClearance.capture`; the query networks are made here, once a replan."""
-        self._networks = self._model.networks(self._encode(depth))
+        """See `DepthClearance.capture`."""
+        self._codes = self._encode(depth)
         self._eye = position.float()
         self._axes = rotation.float().flatten(1)
 
     @torch.no_grad()
-    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
         """See `DepthClearance.query`."""
-        if not self._networks:
+        if self._codes is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
         chosen = torch.as_tensor(scenes)
         clearance = points.new_empty(points.shape[1:])
-        parts = (*self._networks, self._eye, self._axes)
         self._kernels.call(
             "faultpath_clearance",
-            ctypes.byref(self._bounds),
-            *(part.index_select(0, chosen) for part in parts),
+            *(ctypes.byref(self._bounds), self._makers, self._base),
+            self._codes.index_select(1, chosen),
+            *(self._eye.index_select(0, chosen), self._axes.index_select(0, chosen)),
             *(points.contiguous(), *points.shape[1:], clearance),
         )
         return clearance
+
+
+@torch.no_grad()
+def _makers(model: ClearanceModel) -> tuple[Tensor, Tensor]:
+    """Return what makes a query network from a code: `[64, n]` and `[n]`.
+
+    The network's numbers stand in the order of `Query` in `clearance.cpp`: hidden layers in blocks
+    of outputs, biases first, padded with zeros; the last layer as it is.
+    """
+    rows: list[Tensor] = []
+    for layer, (outputs, inputs) in model.makers():
+        whole = torch.cat((layer.weight, layer.bias[:, None]), 1).unflatten(0, (outputs, inputs))
+        if outputs > 1:
+            whole = pack(whole.roll(1, dims=1), BLOCK)
+        rows.append(whole.reshape(-1, whole.shape[-1]))
+    made = torch.cat(rows).T.contiguous()
+    return made[:-1].contiguous(), made[-1].contiguous()

@@ -3,13 +3,18 @@
 import ctypes
 import hashlib
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import torch
 from torch import Tensor
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.device import at_hand
 
 VARIABLE = "FAULTPATH_KERNELS"
 PORTABLE = "portable"
@@ -47,7 +52,23 @@ def _argument(value: object) -> object:
     return ctypes.c_int64(value) if isinstance(value, int) else value
 
 
-@cache
+_asked: ContextVar[str] = ContextVar("kernels", default="")
+
+
+@contextmanager
+def using(choice: str) -> Iterator[None]:
+    """Let an instruction set, or `portable`, run what is built and called inside.
+
+    What models learn from is made on the portable path: a pool has the same bytes with kernels and
+    without.
+    """
+    before = _asked.set(choice)
+    try:
+        yield
+    finally:
+        _asked.reset(before)
+
+
 def kernels() -> Kernels | None:
     """Return the kernels to run, or `None` for the portable path.
 
@@ -57,7 +78,11 @@ def kernels() -> Kernels | None:
         UserError: It names something else, a set that was not built or does not run here, or the
             kernels are older than their sources.
     """
-    wanted = os.environ.get(VARIABLE) or AUTO
+    return _chosen(_asked.get() or os.environ.get(VARIABLE) or AUTO)
+
+
+@cache
+def _chosen(wanted: str) -> Kernels | None:
     if wanted == PORTABLE:
         return None
     if wanted not in (AUTO, *SETS):
@@ -66,6 +91,11 @@ def kernels() -> Kernels | None:
     for isa in available() if wanted == AUTO else (wanted,):
         return load(isa)
     return None
+
+
+def kernels_on(device: torch.device) -> Kernels | None:
+    """Return the kernels for tensors on `device`: off the CPU the portable path runs."""
+    return kernels() if at_hand(device) else None
 
 
 def numerics() -> str:

@@ -2,9 +2,12 @@
 
 from functools import partial
 
+import torch
+
+from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.native.clearance import CompiledDepthClearance
 from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean, CompiledTemperature
-from faultpath.quadrotor.native.library import kernels
+from faultpath.quadrotor.native.library import kernels, kernels_on
 from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
@@ -14,15 +17,19 @@ from faultpath.quadrotor.rollout import rollout
 
 
 def build_planner(
-    predictor: Predictor, sampler: Sampler, cost: NavigationCost, temperature: Temperature
+    predictor: Predictor,
+    sampler: Sampler,
+    cost: NavigationCost,
+    temperature: Temperature,
+    device: torch.device = CPU,
 ) -> MPPI:
-    """Return the planner, compiled as far as there are kernels for its parts."""
-    built = kernels()
+    """Return the planner for `device`, compiled as far as there are kernels for its parts."""
+    host, built = kernels(), kernels_on(device)
+    if host is not None and CompiledSampler.covers(sampler):
+        sampler = CompiledSampler(host, sampler)  # the host draws for every device
     if built is None:
         roll, mean = partial(rollout, predictor), weighted_mean
         return MPPI(predictor, sampler, cost, temperature, roll, mean)
-    if CompiledSampler.covers(sampler):
-        sampler = CompiledSampler(built, sampler)
     if CompiledCost.covers(cost):
         cost = CompiledCost(built, cost)
     if CompiledTemperature.covers(temperature):
@@ -32,7 +39,7 @@ def build_planner(
     return MPPI(predictor, sampler, cost, temperature, roll, CompiledMean(built))
 
 
-def depth_clearance(model: ClearanceModel) -> DepthClearance:
-    """Return the clearance of depth images, compiled where there are kernels."""
-    built = kernels()
+def depth_clearance(model: ClearanceModel, device: torch.device = CPU) -> DepthClearance:
+    """Return the clearance of depth images on `device`, compiled where there are kernels."""
+    built = kernels_on(device)
     return DepthClearance(model) if built is None else CompiledDepthClearance(built, model)

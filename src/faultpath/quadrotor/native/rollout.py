@@ -7,6 +7,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.library import Kernels
+from faultpath.quadrotor.native.packing import BLOCK, pack
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
@@ -21,9 +22,6 @@ from faultpath.quadrotor.predictors.unanchored import OUTPUTS, UnanchoredNetwork
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
-
-_BLOCK = 4
-"""Outputs that a kernel sums at once (`OUTPUTS` in `layers.hpp`); weights lie in such blocks."""
 
 _LOG2_E = 1 / math.log(2)
 """The kernel takes powers of two: scales of the unit's logistic functions go into its weights."""
@@ -112,7 +110,7 @@ class CompiledRollout:
     @torch.no_grad()
     def _set_network(self, network: LatentNetwork) -> None:
         for name, (weights, block) in _layers(network.fold()).items():
-            packed = _pack(weights, block)
+            packed = pack(weights, block)
             self._kept.append(packed)
             outputs = packed.shape[0] * block
             layer = _Layer(packed.data_ptr(), packed.shape[1] - 1, outputs)
@@ -128,25 +126,18 @@ def _layers(folded: FoldedNetwork) -> dict[str, tuple[Tensor, int]]:
     first, second = (_bias_first(layer[:-1]) for layer in whole)
     gates = torch.cat((gates[:, split : split + 1], gates[:, :split], gates[:, split + 1 :]), 1)
     return {
-        "embed": (_bias_first(folded.embed[:-1]), _BLOCK),
-        "gates": (gates * -_LOG2_E, _BLOCK),
-        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), _BLOCK // 2),
-        "remembered": (folded.remembered * (-2 * _LOG2_E), _BLOCK // 2),
-        "first": (first, _BLOCK),
-        "second": (second, _BLOCK),
-        "last": (_bias_first(folded.last), _BLOCK),
+        "embed": (_bias_first(folded.embed[:-1]), BLOCK),
+        "gates": (gates * -_LOG2_E, BLOCK),
+        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), BLOCK // 2),
+        "remembered": (folded.remembered * (-2 * _LOG2_E), BLOCK // 2),
+        "first": (first, BLOCK),
+        "second": (second, BLOCK),
+        "last": (_bias_first(folded.last), BLOCK),
     }
 
 
 def _bias_first(weights: Tensor) -> Tensor:
     return weights.roll(1, dims=1)
-
-
-def _pack(weights: Tensor, block: int) -> Tensor:
-    """Return `[outputs, 1 + inputs]` as `[blocks, 1 + inputs, block]`, padded with zeros."""
-    missing = -len(weights) % block
-    padded = torch.cat((weights, weights.new_zeros(missing, weights.shape[1])))
-    return padded.unflatten(0, (-1, block)).transpose(1, 2).contiguous()
 
 
 def _starts(inputs: PredictorInputs) -> Tensor:

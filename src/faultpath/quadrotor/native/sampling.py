@@ -8,6 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.device import at_hand
 from faultpath.quadrotor.native.library import WIDEST, Kernels
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler
 from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
@@ -47,6 +48,8 @@ class CompiledSampler(AutoregressiveSampler):
 
     def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
         """See `Sampler.candidates`."""
+        if not at_hand(noise.device):
+            return super().candidates(plan, hover, noise)
         horizon, _, scenes, candidates = noise.shape
         self._kernels.call(
             "faultpath_candidates",

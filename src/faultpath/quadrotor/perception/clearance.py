@@ -12,6 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
+from faultpath.quadrotor.device import at_hand
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
@@ -88,7 +89,7 @@ class ClearanceModel(nn.Module):
                 nn.init.kaiming_uniform_(module.weight, nonlinearity="relu", generator=generator)
                 assert module.bias is not None
                 nn.init.zeros_(module.bias)
-        for layer, (_, fan_in), scale in zip(self._makers(), self._shapes, _SCALE, strict=True):
+        for (layer, (_, fan_in)), scale in zip(self.makers(), _SCALE, strict=True):
             nn.init.normal_(layer.weight, std=scale / CODE**0.5, generator=generator)
             nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5, generator=generator)
 
@@ -122,7 +123,9 @@ class ClearanceModel(nn.Module):
         Returns:
             `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
         """
-        weights = [_with_constant(layer) for layer in self.networks(code)]
+        if not at_hand(points.device):
+            return self.estimate(code.T, points.movedim(0, 1)).clamp_(LOWEST_M, HIGHEST_M)
+        weights = [_with_constant(layer) for layer in self._networks(code)]
         clearance = points.new_empty(points.shape[1:])
         for scene in range(points.shape[1]):
             ours = [weight[scene] for weight in weights]
@@ -143,18 +146,20 @@ class ClearanceModel(nn.Module):
         """
         hidden = features(points.movedim(1, 0)).movedim(0, 1)
         ones = torch.ones_like(hidden[:, :1])
-        first, second, last = (
-            layer(codes).unflatten(1, shape)
-            for layer, shape in zip(self._makers(), self._shapes, strict=True)
-        )
+        first, second, last = (layer(codes).unflatten(1, shape) for layer, shape in self.makers())
         for weight in (first, second):
             hidden = torch.cat((torch.bmm(weight, hidden).relu(), ones), 1)
         return torch.bmm(last, hidden)[:, 0]
 
-    def _makers(self) -> list[nn.Linear]:
-        return [layer for layer in self.layers if isinstance(layer, nn.Linear)]
+    def makers(self) -> list[tuple[nn.Linear, tuple[int, int]]]:
+        """Return what makes each layer of the query network, and its outputs and inputs.
 
-    def networks(self, code: Tensor) -> list[Tensor]:
+        The constant unit of a hidden layer is no output of it, and the last input of the next.
+        """
+        linear = [layer for layer in self.layers if isinstance(layer, nn.Linear)]
+        return list(zip(linear, self._shapes, strict=True))
+
+    def _networks(self, code: Tensor) -> list[Tensor]:
         """Return the query networks that codes `[64, S]` make.
 
         Each layer's weights are `[S, rows, columns]`, the biases in the last column.
@@ -163,7 +168,7 @@ class ClearanceModel(nn.Module):
         padded = code.new_zeros(CODE, -(-count // _COLUMNS) * _COLUMNS)
         padded[:, :count] = code
         found = []
-        for layer, (rows, columns) in zip(self._makers(), self._shapes, strict=True):
+        for layer, (rows, columns) in self.makers():
             made = torch.mm(layer.weight, padded).add_(layer.bias[:, None])[:, :count].T
             found.append(made.reshape(count, rows, columns).contiguous())
         return found
@@ -222,14 +227,14 @@ class DepthClearance:
         )
 
     @torch.no_grad()
-    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
         """Return the clearance at points `[3, S, N]` of some scenes, world frame, m: `[S, N]`.
 
         A scene's values do not depend on which others are asked for. N is a multiple of 32.
         """
         if self._code is None or self._frame is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        chosen = list(scenes)
+        chosen = torch.as_tensor(scenes)
         local = self._frame.take(chosen).from_world(points)
         seen = self._model.query(self._code[:, chosen].contiguous(), local)
         return torch.where(in_view(local) | near(local), seen, seen.clamp(max=UNSEEN_M))

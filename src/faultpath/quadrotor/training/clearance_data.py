@@ -23,7 +23,7 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from faultpath.errors import UserError
-from faultpath.quadrotor import so3
+from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath.quadrotor.perception.labels import visible_distance
 from faultpath.quadrotor.perception.render import DepthRenderer
@@ -181,6 +181,7 @@ def digest(recipe: Recipe | None = None) -> str:
     return hashlib.sha256(content.encode()).hexdigest()
 
 
+@native.using(native.PORTABLE)
 def draw(recipe: Recipe, scene: Scene) -> Samples:
     """Return the images and labelled points of one scene."""
     random = generator("clearance-data", scene.id, recipe.seed)

@@ -10,7 +10,7 @@ import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
-from faultpath.quadrotor import so3, wind
+from faultpath.quadrotor import native, so3, wind
 from faultpath.quadrotor.plant import Plant, PlantState
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
@@ -90,6 +90,7 @@ class _Start:
 
 
 @torch.inference_mode()
+@native.using(native.PORTABLE)
 def fly(pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 

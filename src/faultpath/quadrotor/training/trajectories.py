@@ -20,6 +20,7 @@ from torch import Tensor
 
 import faultpath
 from faultpath.execution.provenance import packages
+from faultpath.quadrotor import native
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.flight import COMPONENTS, Flights
 from faultpath.quadrotor.training.pool import (
@@ -106,6 +107,7 @@ def _fly_all(todo: Sequence[Shard], place: Path, workers: int) -> Iterator[int]:
 
 
 @torch.inference_mode()
+@native.using(native.PORTABLE)
 def fly(shard: Shard, place: Path) -> None:
     """Fly a shard and write its two files, the rows last."""
     torch.set_num_threads(1)

@@ -15,6 +15,7 @@ from typing import Any
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor import native
 from faultpath.quadrotor.training.catalogue import Job
 from faultpath.quadrotor.training.fitting import Moment, fit
 
@@ -63,6 +64,7 @@ class Failed:
 Message = Moment | Told | Finished | Failed
 
 
+@native.using(native.PORTABLE)
 def attempt(order: Order, tell: Callable[[Message], None]) -> Finished | Failed:
     """Fit a model and say how it ended; `tell` gets the news on the way, a few times a second."""
     torch.set_num_threads(1)

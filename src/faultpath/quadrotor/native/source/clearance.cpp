@@ -7,6 +7,7 @@ namespace {
 // Without the constants that the query network in torch carries along: they are biases here.
 constexpr int FEATURES = 8;
 constexpr int HIDDEN = 47;
+constexpr int CODE = 64;
 constexpr int PADDED = (HIDDEN + OUTPUTS - 1) / OUTPUTS * OUTPUTS;
 
 }  // namespace
@@ -24,19 +25,31 @@ struct Bounds {
 
 namespace {
 
-// One scene's query network, packed as `layers.hpp` reads it.
+// One scene's query network, as `layers.hpp` reads it.
 struct Query {
-  float first[(1 + FEATURES) * PADDED];
+  alignas(64) float first[(1 + FEATURES) * PADDED];
   float second[(1 + HIDDEN) * PADDED];
-  const float* last;  // [1 + HIDDEN], the bias at the end
+  float last[HIDDEN + 1];  // the bias at the end
 };
+constexpr int NUMBERS = sizeof(Query) / sizeof(float);
 
-// From `[outputs][inputs + 1]`, the bias at the end.
-void pack(const float* weights, int64_t inputs, float* packed) {
-  for (int64_t block = 0; block < PADDED; block += OUTPUTS)
-    for (int64_t i = -1; i < inputs; ++i)
-      for (int64_t o = block; o < block + OUTPUTS; ++o)
-        *packed++ = o < HIDDEN ? weights[o * (inputs + 1) + (i < 0 ? inputs : i)] : 0.0f;
+// The query network of a code `[64]`: `makers` [64, NUMBERS] @ code + `base`.
+void make(const float* makers, const float* base, const float* code, int64_t pitch,
+          Query& query) {
+  constexpr int BLOCK = 96, PARTS = BLOCK / LANES;
+  static_assert(NUMBERS % BLOCK == 0);
+  float* numbers = query.first;
+  for (int first = 0; first < NUMBERS; first += BLOCK) {
+    Vector sums[PARTS];
+    for (int p = 0; p < PARTS; ++p) sums[p] = load(base + first + p * LANES);
+    for (int i = 0; i < CODE; ++i) {
+      const Vector value = splat(code[i * pitch]);
+      const float* weights = makers + i * NUMBERS + first;
+#pragma GCC unroll 24
+      for (int p = 0; p < PARTS; ++p) sums[p] = fma(load(weights + p * LANES), value, sums[p]);
+    }
+    for (int p = 0; p < PARTS; ++p) store(numbers + first + p * LANES, sums[p]);
+  }
 }
 
 // The last layer has one output: two sums a vector hide the latency.
@@ -88,19 +101,16 @@ INLINE Vector limited(const Bounds& bounds, const Row* local, int v, Vector clea
 
 }  // namespace
 
-// `first` [S, 47, 9], `second` [S, 47, 48], `last` [S, 1, 48] are the query networks that the codes
-// made, biases last, `eye` [S, 3] and `axes` [S, 9] the capture frames, `points` [3, S, N] in the world frame;
-// N is a multiple of the widest vector. `clearance` [S, N].
+// `codes` [64, S] of the images, `makers` and `base` as in `make`; `eye` [S, 3] and `axes` [S, 9]: the
+// capture frames; `points` [3, S, N] in the world frame. `clearance` [S, N].
 extern "C" __attribute__((visibility("default"))) void faultpath_clearance(
-    const Bounds* bounds, const float* first, const float* second, const float* last,
+    const Bounds* bounds, const float* makers, const float* base, const float* codes,
     const float* eye, const float* axes, const float* points, int64_t scenes, int64_t count,
     float* clearance) {
   Query query;
   const Layer layers[2] = {{query.first, FEATURES, PADDED}, {query.second, HIDDEN, PADDED}};
   for (int64_t s = 0; s < scenes; ++s) {
-    pack(first + s * HIDDEN * (FEATURES + 1), FEATURES, query.first);
-    pack(second + s * HIDDEN * (HIDDEN + 1), HIDDEN, query.second);
-    query.last = last + s * (HIDDEN + 1);
+    make(makers, base, codes + s, scenes, query);
     for (int64_t n = 0; n < count; n += TILE) {
       Row world[3], local[3], features[FEATURES], hidden[2][PADDED];
       const int64_t left = count - n;
