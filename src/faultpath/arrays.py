@@ -48,11 +48,19 @@ def place(host: HostArray, reading: Array, dtype: Any = None) -> Array:
     """
     if isinstance(reading, np.ndarray):
         return host if dtype is None else host.astype(dtype, copy=False)
-    xp = namespace(reading)
-    array = xp.asarray(host, dtype=dtype)
-    if _is_torch(reading):
-        return array.to(reading.device, non_blocking=True)
-    return _COMPAT.to_device(array, _COMPAT.device(reading))
+    return _moved(namespace(reading).asarray(host, dtype=dtype), _COMPAT.device(reading))
+
+
+_PINNING = {"cuda"}
+"""Devices that copy by themselves from pinned memory only; from any other the host may wait."""
+
+
+def _moved(array: Array, device: Any) -> Array:
+    if not _is_torch(array):
+        return _COMPAT.to_device(array, device)
+    if device.type in _PINNING:
+        array = array.pin_memory()
+    return array.to(device, non_blocking=True)
 
 
 def like(host: HostArray, reading: Array) -> Array:
@@ -62,7 +70,7 @@ def like(host: HostArray, reading: Array) -> Array:
 
 @lru_cache(maxsize=1024)
 def _laid(value: Any, xp: Any, dtype: Any, device: Any) -> Array:
-    return xp.asarray(value, dtype=dtype, device=device)
+    return _moved(xp.asarray(value, dtype=dtype), device)
 
 
 def constant(value: Constant, reading: Array) -> Any:

@@ -41,13 +41,16 @@ def command(
         str | None, typer.Option(help="Quadrotor: depth (default among obstacles) or true.")
     ] = None,
     planner: Annotated[str | None, typer.Option(help="Quadrotor: terminal or running.")] = None,
+    device: Annotated[str | None, typer.Option(help="Quadrotor: cpu (default) or cuda.")] = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
     workers: Annotated[
         int | None,
-        typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
+        typer.Option(
+            help="Worker processes, 0 for none beside this one; default one a core, or one a GPU."
+        ),
     ] = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
@@ -62,6 +65,7 @@ def command(
         "predictor": predictor,
         "clearance": clearance,
         "planner": planner,
+        "device": device,
     }
     options = settings(set_ or []) | {k: v for k, v in named.items() if v is not None}
     spec = SystemSpec(name=system, options=options)
@@ -78,12 +82,17 @@ def command(
         seeds=numbers(seeds, "--seeds"),
     )
     folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
-    count = (os.cpu_count() or 1) if workers is None else workers
+    count = _workers(options) if workers is None else workers
 
     from faultpath.cli.run import run_audit  # pages and workers; no mistake so far waits for them
 
     failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]))
     return FAILED_TRIALS if failed else 0
+
+
+def _workers(options: dict[str, str]) -> int:
+    """Return one worker a core, or one alone to feed a GPU."""
+    return 1 if options.get("device", "cpu") != "cpu" else os.cpu_count() or 1
 
 
 def _name(

@@ -1,11 +1,11 @@
 """Sources of the clearance channel: the geometry itself, or a model of the depth image."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from functools import lru_cache
 
 from torch import Tensor
 
+from faultpath.quadrotor.chunks import Chunk
 from faultpath.quadrotor.perception import DepthClearance, mounted
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.sensors import Sensors
@@ -23,7 +23,7 @@ class ClearanceSource(ABC):
         """Take in what the step brings, once a replan."""
 
     @abstractmethod
-    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+    def query(self, points: Tensor, chunk: Chunk) -> Tensor:
         """Return the clearance `[S, N]`, metres, at `points` `[3, S, N]` (world frame)."""
 
 
@@ -33,14 +33,17 @@ class TrueClearance(ClearanceSource):
     name = "true_clearance"
 
     def __init__(self, field: DistanceField) -> None:
-        self._select = lru_cache(maxsize=64)(field.select)  # the same scenes at every step
+        def select(chunk: Chunk) -> DistanceField:
+            return field.select(chunk.index)
+
+        self._select = lru_cache(maxsize=64)(select)  # the same scenes at every step
 
     def look(self, sensors: Sensors, step: int) -> None:
         """Nothing changes: the geometry stands still."""
 
-    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+    def query(self, points: Tensor, chunk: Chunk) -> Tensor:
         """See `ClearanceSource.query`."""
-        return self._select(tuple(scenes)).query(points)
+        return self._select(chunk).query(points)
 
 
 class SeenClearance(ClearanceSource):
@@ -68,6 +71,6 @@ class SeenClearance(ClearanceSource):
             mounted(attitude).movedim(-1, 0),
         )
 
-    def query(self, points: Tensor, scenes: Sequence[int]) -> Tensor:
+    def query(self, points: Tensor, chunk: Chunk) -> Tensor:
         """See `ClearanceSource.query`."""
-        return self._model.query(points, scenes)
+        return self._model.query(points, chunk.index)

@@ -9,6 +9,9 @@ from faultpath.errors import UserError
 
 CPU = torch.device("cpu")
 
+AT_HAND = frozenset({"cpu"})
+"""Types of device whose values the host reads without waiting for queued work."""
+
 
 class DeviceName(StrEnum):
     """Where worlds and planners are computed."""
@@ -16,13 +19,18 @@ class DeviceName(StrEnum):
     CPU = "cpu"
     CUDA = "cuda"
 
+    @property
+    def place(self) -> torch.device:
+        """The device itself; of several GPUs the first that is visible."""
+        return CPU if self is DeviceName.CPU else torch.device("cuda", 0)
+
 
 def at_hand(device: torch.device) -> bool:
-    """Return whether the host reads a value on `device` without waiting for queued work.
+    """Return whether the host may look at values on `device` during a control step.
 
     What is done in one way on the CPU and in another on an accelerator asks this and nothing else.
     """
-    return device.type == "cpu"
+    return device.type in AT_HAND
 
 
 def send(host: Tensor, device: torch.device) -> Tensor:

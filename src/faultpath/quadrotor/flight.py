@@ -1,15 +1,20 @@
 """One closed-loop flight of a block of scenes, step by step."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from torch import Tensor
 
+from faultpath.quadrotor.device import at_hand
 from faultpath.quadrotor.navigator import Navigator
 from faultpath.quadrotor.perception import DepthRenderer, mounted
 from faultpath.quadrotor.sensors import Sensors
 from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Taps
+
+LOOK_EVERY = 10
+"""Control steps between two looks at whether any trial still runs, where a look waits for the
+device: half a second of flight is the most that is computed in vain."""
 
 
 class Flight:
@@ -28,11 +33,12 @@ class Flight:
         world = self.world
         for step in range(CONTROL_STEPS):
             running = world.progress.running[: world.count]
-            if not running.any():
+            planned = _planned(running, step)
+            if not planned:
                 return
-            self._taps.set_active(running.numpy())
+            self._taps.set_active(running)
             sensors = Sensors.read(world, self._depth())
-            command = self.navigator.act(sensors, step, running.nonzero()[:, 0].tolist())
+            command = self.navigator.act(sensors, step, planned)
             yield command
             world.advance(command)
 
@@ -41,3 +47,16 @@ class Flight:
             return None
         state = self.world.state
         return self._camera.render(replace(state, rotation=mounted(state.rotation)))
+
+
+def _planned(running: Tensor, step: int) -> Sequence[int]:
+    """Return the scenes to plan for, none once all trials have ended; `running` is `[B]`.
+
+    Only the device knows which trials run there. All scenes are planned, and a scene's plan no
+    longer counts once its trial has ended.
+    """
+    if at_hand(running.device):
+        return running.nonzero()[:, 0].tolist()
+    if (step + 1) % LOOK_EVERY == 0 and not running.any():
+        return ()
+    return range(len(running))

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 
+import torch
+
+from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.perception import ClearanceModel
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
@@ -111,21 +114,36 @@ RECONSTRUCTIONS: Mapping[str, ReconstructionKind] = MappingProxyType(
 )
 
 
-@lru_cache
-def predictor(name: str, seed: int | None) -> Predictor:
+def predictor(name: str, seed: int | None, device: torch.device = CPU) -> Predictor:
     """Return a predictor of `PREDICTORS`; `UserError` where a checkpoint is missing."""
-    return PREDICTORS[name].load(name, seed)
+    return _predictor(name, seed, device)
 
 
-@lru_cache
-def reconstruction(name: str, seed: int | None) -> Reconstruction:
+def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
     """Return a reconstruction of `RECONSTRUCTIONS`; `UserError` for a missing checkpoint."""
-    return RECONSTRUCTIONS[name].load(name, seed)
+    return _reconstruction(name, seed, device)
+
+
+def clearance_model(device: torch.device = CPU) -> ClearanceModel:
+    """Return the trained clearance model; `UserError` where its checkpoint is missing."""
+    return _clearance_model(device)
 
 
 @lru_cache
-def clearance_model() -> ClearanceModel:
-    """Return the trained clearance model; `UserError` where its checkpoint is missing."""
-    model = ClearanceModel()
+def _predictor(name: str, seed: int | None, device: torch.device) -> Predictor:
+    with device:
+        return PREDICTORS[name].load(name, seed)
+
+
+@lru_cache
+def _reconstruction(name: str, seed: int | None, device: torch.device) -> Reconstruction:
+    with device:
+        return RECONSTRUCTIONS[name].load(name, seed)
+
+
+@lru_cache
+def _clearance_model(device: torch.device) -> ClearanceModel:
+    with device:
+        model = ClearanceModel()
     load_checkpoint(model, checkpoint_path("clearance", 0))
     return model.eval()

@@ -2,13 +2,15 @@
 
 import hashlib
 from collections.abc import Sequence
-from itertools import pairwise
+from functools import lru_cache, partial
 
 import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.chunks import Chunk, chunks
 from faultpath.quadrotor.clearance import ClearanceSource
+from faultpath.quadrotor.device import at_hand, send
 from faultpath.quadrotor.history import HistoryRecord
 from faultpath.quadrotor.planner import MPPI, Proposal, shift
 from faultpath.quadrotor.predictors import Calibration, Physics, PredictorInputs
@@ -23,11 +25,6 @@ from faultpath.quadrotor.sensors import (
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import ModuleTaps, Reading, Taps
-
-CHUNK = 13
-"""Most scenes planned at once: they share the cost of each kernel's start, and their candidates
-still stay in cache. A scene's result is the same in a chunk of any size, because its 512
-candidates fill whole vectors."""
 
 
 class WindReconstruction:
@@ -82,6 +79,7 @@ class Navigator:
         self._scenes = tuple(scenes)
         self._seed = seed
         self._lanes = lanes
+        self._chunks = lru_cache(maxsize=2)(partial(chunks, device=lanes.device))
         self._wind_source = taps.bindings["wind"]
         self._reads = planner.predictor.reads
         self._history = (
@@ -100,14 +98,15 @@ class Navigator:
         goal = lanes_last(goal, self._lanes).float()
         self._clearance.look(sensors, step)
 
-        chunks = _chunks(running)
-        proposals = [self._propose(inputs, chunk, step) for chunk in chunks]
-        clearance = self._query(chunks, proposals, step)
+        parts = self._chunks(tuple(running))
+        proposals = [self._propose(inputs, part, step) for part in parts]
+        clearance = self._query(parts, proposals, step)
         command = self._planner.initial_plan(hover)[0]
-        for chunk, proposal in zip(chunks, proposals, strict=True):
-            plan = self._planner.decide(proposal, clearance[chunk], goal[:, chunk])
-            command[:, chunk] = plan[0]
-            self._plan[..., chunk] = shift(plan)
+        for part, proposal in zip(parts, proposals, strict=True):
+            rows = part.index
+            plan = self._planner.decide(proposal, clearance[rows], goal[:, rows])
+            command[:, rows] = plan[0]
+            self._plan[..., rows] = shift(plan)
         return self._actuate(command, step)
 
     def noise_hashes(self) -> tuple[str, ...]:
@@ -185,19 +184,20 @@ class Navigator:
         delivered = self._predictor_taps.deliver("history_code", "latent", reading, step)
         return lanes_last(delivered, self._lanes)[..., None]
 
-    def _propose(self, inputs: PredictorInputs, chunk: list[int], step: int) -> Proposal:
+    def _propose(self, inputs: PredictorInputs, chunk: Chunk, step: int) -> Proposal:
         assert self._plan is not None
-        noise = self._planner.sampler.noise([self._scenes[i] for i in chunk], self._seed, step)
-        return self._planner.propose(inputs.take(chunk), self._plan[..., chunk], noise)
+        scenes, rows = [self._scenes[i] for i in chunk.scenes], chunk.index
+        noise = send(self._planner.sampler.noise(scenes, self._seed, step), rows.device)
+        return self._planner.propose(inputs.take(rows), self._plan[..., rows], noise)
 
-    def _query(self, chunks: list[list[int]], proposals: list[Proposal], step: int) -> Tensor:
+    def _query(self, parts: Sequence[Chunk], proposals: list[Proposal], step: int) -> Tensor:
         """Query the clearance along all rollouts and deliver it for the whole block at once."""
         first = proposals[0].rollout.positions
         clearance = first.new_zeros(len(self._scenes), *first.shape[2:])
-        for chunk, proposal in zip(chunks, proposals, strict=True):
+        for part, proposal in zip(parts, proposals, strict=True):
             points = proposal.rollout.positions
-            values = self._clearance.query(points.flatten(2), chunk)
-            clearance[chunk] = values.view(points.shape[1:])
+            values = self._clearance.query(points.flatten(2), part)
+            clearance[part.index] = values.view(points.shape[1:])
         reading = Reading(clearance, self._clearance.name, step)
         return self._planner_taps.deliver("clearance", "risk_cost", reading, step)
 
@@ -208,13 +208,6 @@ class Navigator:
         return lanes_last(delivered, self._lanes)
 
 
-def _chunks(running: Sequence[int]) -> list[list[int]]:
-    """Split scenes into as few chunks as may be, of nearly equal size."""
-    count = -(-len(running) // CHUNK)
-    ends = [len(running) * i // count for i in range(count + 1)]
-    return [list(running[a:b]) for a, b in pairwise(ends)]
-
-
 def _float_column(state: State) -> State:
     """Single precision, a candidate axis at the end, and attitudes that are rotations again.
 
@@ -223,9 +216,9 @@ def _float_column(state: State) -> State:
     """
     narrow = state.to(torch.float32)
     off = so3.compose(narrow.rotation.transpose(0, 1), narrow.rotation)
-    off = (off - torch.eye(3)[..., None]).abs().amax((0, 1)) > 1e-4
+    off = (off - torch.eye(3, device=off.device)[..., None]).abs().amax((0, 1)) > 1e-4
     rotation = narrow.rotation
-    if off.any():
+    if not at_hand(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
     return State(
         narrow.position[..., None],

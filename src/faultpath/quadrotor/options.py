@@ -4,9 +4,11 @@ from collections.abc import Sequence
 from enum import StrEnum
 from typing import Self
 
+import torch
 from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.device import DeviceName, require
 from faultpath.quadrotor.models import PREDICTORS
 from faultpath.quadrotor.native.parts import build_planner
 from faultpath.quadrotor.planner import (
@@ -81,6 +83,8 @@ class QuadrotorOptions(BaseModel):
     """Which training of it; variants that name a predictor take the seed of their arm."""
     planner: PlannerName = PlannerName.TERMINAL
     settings: PlannerSettings = PlannerSettings()
+    device: DeviceName = DeviceName.CPU
+    """What computes worlds and planners; see `docs/design/device.md`."""
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -96,6 +100,7 @@ class QuadrotorOptions(BaseModel):
             "predictor": tuple(PREDICTORS),
             "predictor_seed": ("0", "1", "2"),
             "planner": tuple(PlannerName),
+            "device": tuple(DeviceName),
         }
         unknown = sorted(set(options) - set(kinds))
         if unknown:
@@ -108,12 +113,19 @@ class QuadrotorOptions(BaseModel):
                 raise UserError(f"unknown {option} '{value}'; choose one of {known}.")
         if options.get("environment") == Environment.FREE_SPACE:
             options.setdefault("clearance", ClearanceName.TRUE)
-        return cls.model_validate(options)
+        parsed = cls.model_validate(options)
+        require(parsed.device)
+        return parsed
 
     @property
     def free_space(self) -> bool:
         """Whether only the outer boundaries are there."""
         return self.environment is Environment.FREE_SPACE
+
+    @property
+    def place(self) -> torch.device:
+        """Where tensors are made."""
+        return self.device.place
 
     def build_planner(self, predictor: Predictor) -> MPPI:
         """Return the planner that the options name, around a predictor."""
@@ -127,4 +139,5 @@ class QuadrotorOptions(BaseModel):
             AutoregressiveSampler(self.settings.sampler),
             NavigationCost(goal, weights),
             ScaledTemperature(self.settings.temperature),
+            self.place,
         )

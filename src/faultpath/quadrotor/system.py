@@ -16,6 +16,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.quadrotor import native
 from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
+from faultpath.quadrotor.device import CPU, DeviceName, describe
 from faultpath.quadrotor.flight import Flight
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
@@ -38,6 +39,8 @@ from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, Syst
 def create(**options: str) -> System:
     """Build the quadrotor from options of the command line; `UserError` for a wrong one."""
     torch.set_num_threads(1)  # a block is small: a second thread costs more than it brings
+    torch.backends.cudnn.allow_tf32 = False  # single precision is the same on every device
+    torch.backends.cudnn.deterministic = True
     return Quadrotor.parse(**options)
 
 
@@ -46,10 +49,10 @@ class Quadrotor(System):
 
     name = "quadrotor"
     control_dt_s = CONTROL_DT_S
-    block_size = 50
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options
+        self.block_size = 50 if options.device is DeviceName.CPU else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
         self._wirings = {wiring.name: wiring for wiring in wirings(options)}
         self._variants = {
@@ -91,7 +94,8 @@ class Quadrotor(System):
     @property
     def backend(self) -> str:
         """See `System.backend`."""
-        return native.describe()
+        device = self.options.device
+        return native.describe() if device is DeviceName.CPU else describe(device)
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`."""
@@ -114,22 +118,24 @@ class Quadrotor(System):
     def flight(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Flight:
         """Return a flight over some scenes, ready to start."""
         records = [self.scene(scene) for scene in scenes]
-        world = World(records, self.options.wind, self.options.free_space)
+        options = self.options
+        world = World(records, options.wind, options.free_space, options.place)
         navigator = self._navigator(variant, records, taps, seed, world)
         return Flight(world, navigator, self._camera(records), taps)
 
     def _camera(self, scenes: list[Scene]) -> DepthRenderer | None:
         if self.options.clearance is ClearanceName.TRUE:
             return None
-        return _renderer(tuple(scenes), self.options.free_space)
+        return _renderer(tuple(scenes), self.options.free_space, self.options.place)
 
     def _navigator(
         self, variant: str, scenes: list[Scene], taps: Taps, seed: int, world: World
     ) -> Navigator:
         wiring = self._wirings[variant]
-        module = wiring.load_reconstruction(seed)
+        place = self.options.place
+        module = wiring.load_reconstruction(seed, place)
         return Navigator(
-            planner=self.options.build_planner(wiring.load_predictor(seed)),
+            planner=self.options.build_planner(wiring.load_predictor(seed, place)),
             reconstruction=module
             and WindReconstruction(module, taps.for_module("reconstruction"), world.lanes),
             clearance=self._clearance(scenes, taps),
@@ -140,9 +146,11 @@ class Quadrotor(System):
         )
 
     def _clearance(self, scenes: list[Scene], taps: Taps) -> ClearanceSource:
+        place = self.options.place
         if self.options.clearance is ClearanceName.TRUE:
-            return TrueClearance(_field(tuple(scenes), self.options.free_space))
-        return SeenClearance(depth_clearance(clearance_model()), taps.for_module("perception"))
+            return TrueClearance(_field(tuple(scenes), self.options.free_space, place))
+        model = depth_clearance(clearance_model(place), place)
+        return SeenClearance(model, taps.for_module("perception"))
 
     def scene(self, scene: str) -> Scene:
         """Return a scene of a library that was asked for before, or of a frozen one."""
@@ -156,8 +164,11 @@ class Quadrotor(System):
 def _outcomes(
     scenes: Sequence[str], world: World, positions: Tensor, noise: Sequence[str]
 ) -> list[Outcome]:
-    """`positions` is `[T, 3, L]`, at the start and after each control step."""
-    end = world.progress
+    """`positions` is `[T, 3, L]`, at the start and after each control step.
+
+    This waits for the device, once a block.
+    """
+    end, positions = world.progress.to(CPU), positions.to(CPU)
     outcomes: list[Outcome] = []
     for i, scene in enumerate(scenes):
         time_s = float(end.time_s[i])
@@ -199,10 +210,10 @@ def _code_digest() -> str:
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones
-def _field(scenes: tuple[Scene, ...], free_space: bool) -> DistanceField:
-    return DistanceField.bake(scenes, free_space)
+def _field(scenes: tuple[Scene, ...], free_space: bool, place: torch.device) -> DistanceField:
+    return DistanceField.bake(scenes, free_space, device=place)
 
 
 @lru_cache(maxsize=4)
-def _renderer(scenes: tuple[Scene, ...], free_space: bool) -> DepthRenderer:
-    return DepthRenderer(scenes, free_space)
+def _renderer(scenes: tuple[Scene, ...], free_space: bool, place: torch.device) -> DepthRenderer:
+    return DepthRenderer(scenes, free_space, place)

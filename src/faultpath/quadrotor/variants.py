@@ -8,7 +8,10 @@ seed of its training; a predictor that it does not name is that of the options.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+import torch
+
 from faultpath.interface import Interface
+from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS, predictor, reconstruction
 from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
 from faultpath.quadrotor.predictors import Predictor
@@ -40,15 +43,16 @@ class Wiring:
     wind: str | None
     """`None` for a predictor without a wind input."""
 
-    def load_predictor(self, seed: int) -> Predictor:
+    def load_predictor(self, seed: int, device: torch.device = CPU) -> Predictor:
         """Return the predictor for an arm of this seed."""
-        return predictor(
-            self.predictor, seed if self.predictor_seed is None else self.predictor_seed
-        )
+        trained = seed if self.predictor_seed is None else self.predictor_seed
+        return predictor(self.predictor, trained, device)
 
-    def load_reconstruction(self, seed: int) -> Reconstruction | None:
+    def load_reconstruction(self, seed: int, device: torch.device = CPU) -> Reconstruction | None:
         """Return the wind reconstruction for an arm of this seed, if the variant has one."""
-        return reconstruction(self.wind, seed) if self.wind in RECONSTRUCTIONS else None
+        if self.wind is None or self.wind not in RECONSTRUCTIONS:
+            return None
+        return reconstruction(self.wind, seed, device)
 
 
 def wirings(options: QuadrotorOptions) -> Iterator[Wiring]:
@@ -78,7 +82,7 @@ def variant(wiring: Wiring, interface: Interface, options: QuadrotorOptions) -> 
     if wiring.wind is not None:
         bindings["wind"], described = _WINDS[wiring.wind]
         words = f"{words}; {described}"
-    if wiring.wind in RECONSTRUCTIONS:
+    if wiring.wind is not None and wiring.wind in RECONSTRUCTIONS:
         consumers |= reconstruction(wiring.wind, None).consumers()
     return Variant(
         name=wiring.name,

@@ -2,13 +2,14 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from faultpath.quadrotor import wind as wind_model
+from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.native.plant import CompiledContact, CompiledPlant
 from faultpath.quadrotor.plant import Plant, PlantState
 from faultpath.quadrotor.scenes.geometry import Geometry
@@ -41,6 +42,10 @@ class Progress:
     terminal_distance_m: Tensor
     min_clearance_m: Tensor
 
+    def to(self, device: torch.device) -> "Progress":
+        """Return it on another device."""
+        return Progress(*(getattr(self, field.name).to(device) for field in fields(self)))
+
 
 _WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
 """What contact checks change, in the order of `CompiledContact.watch`."""
@@ -53,27 +58,36 @@ class World:
     readings that the navigator takes from `state`, `wind_mps` and `vehicle`.
     """
 
-    def __init__(self, scenes: Sequence[Scene], level: str, free_space: bool) -> None:
-        self.lanes = padded_lanes(len(scenes))
-        self.count = len(scenes)
-        lanes = [scenes[i] for i in self.lanes.tolist()]
-        self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes])
-        self._geometry = Geometry.stack(lanes, free_space)
-        self._winds = _wind_series(scenes, level)[..., self.lanes]
-        self.goal = _points([scene.goal_m for scene in lanes])
-        self._plant = Plant(self.vehicle)
-        self._contact = CompiledContact(self._geometry, self.goal, CONTACT_EVERY, PLANT_RATE_HZ)
+    def __init__(
+        self,
+        scenes: Sequence[Scene],
+        level: str,
+        free_space: bool,
+        device: torch.device = CPU,
+    ) -> None:
+        order = padded_lanes(len(scenes))
+        lanes = [scenes[i] for i in order.tolist()]
+        winds = _wind_series(scenes, level)[..., order]
         start = State.hover(
             _points([scene.start_m for scene in lanes]),
             torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
         )
-        self.plant_state = self._plant.start(start)
-        self.step = 0
-        self.progress = self._begin()
         self.initial_hashes = tuple(
             _hash(_row(start, i), scene.content_hash) for i, scene in enumerate(scenes)
         )
-        self.wind_hashes = tuple(_hash(self._winds[..., i].numpy()) for i in range(self.count))
+        self.wind_hashes = tuple(_hash(winds[..., i].numpy()) for i in range(len(scenes)))
+
+        self.count = len(scenes)
+        self.lanes = order.to(device)
+        self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
+        self._geometry = Geometry.stack(lanes, free_space, device=device)
+        self._winds = winds.to(device)
+        self.goal = _points([scene.goal_m for scene in lanes]).to(device)
+        self._plant = Plant(self.vehicle)
+        self._contact = CompiledContact(self._geometry, self.goal, CONTACT_EVERY, PLANT_RATE_HZ)
+        self.plant_state = self._plant.start(start.to(device))
+        self.step = 0
+        self.progress = self._begin()
 
     @property
     def state(self) -> State:
@@ -117,7 +131,7 @@ class World:
 
     def _begin(self) -> Progress:
         none = torch.zeros_like(self.lanes, dtype=torch.bool)
-        zero = torch.zeros(len(self.lanes), dtype=torch.float64)
+        zero = torch.zeros_like(self.goal[0])
         return Progress(
             running=~none,
             crashed=none,

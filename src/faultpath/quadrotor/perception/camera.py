@@ -7,6 +7,7 @@ sees the point `depth * ray`, where the first component of every ray is one. The
 the camera's pose when the image was taken.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians, tan
 
@@ -73,7 +74,7 @@ class CaptureFrame:
     position: Tensor
     rotation: Tensor
 
-    def take(self, index: list[int]) -> "CaptureFrame":
+    def take(self, index: Sequence[int] | Tensor) -> "CaptureFrame":
         """Return the frames of some scenes."""
         return CaptureFrame(self.position[:, index], self.rotation[..., index])
 

@@ -20,6 +20,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native
+from faultpath.quadrotor.device import CPU, at_hand
 from faultpath.quadrotor.native.render import CompiledRenderer
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
 from faultpath.quadrotor.scenes.geometry import Geometry
@@ -108,15 +109,19 @@ class _Rounds:
 class DepthRenderer:
     """Draws what the cameras of a block of scenes see."""
 
-    def __init__(self, scenes: Sequence[Scene], free_space: bool = False) -> None:
+    def __init__(
+        self, scenes: Sequence[Scene], free_space: bool = False, device: torch.device = CPU
+    ) -> None:
         """Prepare the solids of B scenes, or their boundaries alone."""
-        geometry = Geometry.stack(scenes, free_space)
+        geometry = Geometry.stack(scenes, free_space, device=device)
         self._geometry = geometry
         self._low, self._high = _within_arena(geometry)
-        left, up = slopes()
+        left, up = (slope.to(device) for slope in slopes())
         self._left, self._up = left.float(), up.float()[:, None]
-        self._scratch = torch.empty(3, 3, _GROUP, HEIGHT, WIDTH)
-        kernels = native.kernels()
+        self._planes, self._offsets = _PLANES.to(device), _OFFSETS.to(device)
+        most = _GROUP if at_hand(device) else geometry.sign.numel()
+        self._scratch = torch.empty(3, 3, most, HEIGHT, WIDTH, device=device)
+        kernels = native.kernels_on(device)
         self._compiled = kernels and CompiledRenderer(
             kernels,
             geometry,
@@ -143,6 +148,8 @@ class DepthRenderer:
         if self._compiled is not None:
             return self._compiled.render(position, rotation)
         view = self._view(position, rotation)
+        if not at_hand(position.device):
+            return self._draw_at_once(view)
         image = torch.empty(count, HEIGHT, WIDTH)
         for first in range(0, len(image), _GROUP):
             group = slice(first, min(first + _GROUP, len(image)))
@@ -158,16 +165,14 @@ class DepthRenderer:
         middle[2] += (self._high + self._low) / 2
         half[2] = (self._high - self._low) / 2
         # Out of view: even the corner furthest along some inward normal is behind its plane.
-        normals = (_PLANES[..., None, None, None] * axes.movedim(1, 0)).sum(1)
-        furthest = (normals * middle + normals.abs() * half).sum(1) + _OFFSETS[:, None, None]
+        normals = (self._planes[..., None, None, None] * axes.movedim(1, 0)).sum(1)
+        furthest = (normals * middle + normals.abs() * half).sum(1) + self._offsets[:, None, None]
         seen = (furthest >= 0).all(0) & (g.sign > 0)
         return _View(eye, axes, g.half, g.rounding, seen)
 
     def _draw(self, view: _View, image: Tensor) -> None:
         """Draw the scenes of one group into `image`."""
-        arena = view.numbers()[:, 0].float()[..., None, None]
-        _, leave = self._slabs(arena[0:3], arena[3:12].unflatten(0, (3, 3)), arena[12:15])
-        torch.clamp(leave, 0, RANGE_M, out=image)
+        torch.clamp(self._background(view), 0, RANGE_M, out=image)
         pillar = view.rounding > 0
         for wanted, interval in (
             (view.seen & ~pillar, self._box),
@@ -181,6 +186,29 @@ class DepthRenderer:
                 enter.clamp_(min=0).masked_fill_(enter > leave, RANGE_M)
                 torch.minimum(ordered[:size], enter, out=ordered[:size])
             image.index_copy_(0, rounds.order, ordered)
+
+    def _draw_at_once(self, view: _View) -> Tensor:
+        """Return the image of all scenes, every solid drawn and those out of view left out after.
+
+        How many are in view only the device knows, and so how many rounds there would be.
+        """
+        image = self._background(view).clamp_(0, RANGE_M)
+        solids = view.numbers().float().flatten(1)[..., None, None]
+        pillar = view.rounding > 0
+        for wanted, interval in (
+            (view.seen & ~pillar, self._box),
+            (view.seen & pillar, self._pillar),
+        ):
+            enter, leave = interval(solids)
+            hidden = (enter.clamp_(min=0) > leave) | ~wanted.flatten()[:, None, None]
+            nearest = enter.masked_fill_(hidden, RANGE_M).unflatten(0, wanted.shape).amin(0)
+            torch.minimum(image, nearest, out=image)
+        return image
+
+    def _background(self, view: _View) -> Tensor:
+        """Return the depth at which rays leave the arenas, `[L, 36, 64]`."""
+        arena = view.numbers()[:, 0].float()[..., None, None]
+        return self._slabs(arena[0:3], arena[3:12].unflatten(0, (3, 3)), arena[12:15])[1]
 
     def _box(self, solid: Tensor) -> tuple[Tensor, Tensor]:
         eye, axes, half = solid[0:3], solid[3:12].unflatten(0, (3, 3)), solid[12:15]

@@ -58,8 +58,8 @@ class Plant:
         self._acceleration[0] *= 0.5 * dt_s * 0.5
         self._relaxed = aerodynamics.relaxation(vehicle, dt_s) * 0.25
         self._gravity_kick = motors.column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
-        kernels = native.kernels()
-        fits = like.ndim == 1 and like.dtype == torch.float64 and like.device.type == "cpu"
+        kernels = native.kernels_on(like.device)
+        fits = like.ndim == 1 and like.dtype == torch.float64
         self.compiled = (
             CompiledPlant(kernels, self._airframes(), dt_s) if kernels and fits else None
         )

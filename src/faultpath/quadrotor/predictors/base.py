@@ -82,7 +82,7 @@ class PredictorInputs:
     code: Tensor | None = None
     """History code, `[32, S, 1]`."""
 
-    def take(self, scenes: Sequence[int]) -> "PredictorInputs":
+    def take(self, scenes: Sequence[int] | Tensor) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
         index = torch.as_tensor(scenes)
 

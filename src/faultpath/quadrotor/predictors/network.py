@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from faultpath.quadrotor.native.library import kernels
+from faultpath.quadrotor.native.library import kernels_on
 from faultpath.quadrotor.native.recurrent import recur
 from faultpath.quadrotor.predictors.base import Calibration, History
 from faultpath.quadrotor.state import State
@@ -68,7 +68,7 @@ class GatedCell(nn.Module):
 
     def last(self, sequence: Tensor) -> Tensor:
         """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
-        compiled = None if torch.is_grad_enabled() else kernels()
+        compiled = None if torch.is_grad_enabled() else kernels_on(sequence.device)
         if compiled is not None and sequence.dtype == torch.float32:
             given, kept = (
                 (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)

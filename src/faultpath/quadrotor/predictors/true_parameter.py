@@ -19,6 +19,7 @@ class _Memory:
     thrust_gain: Tensor
     inverse_mass: Tensor
     wind: Tensor
+    stiffness: Tensor  # torque per rate error
     keep: Tensor  # share of a motor's lag left after a substep
     mean: Tensor  # its mean share over the substep
     thrust: Tensor  # lagged collective thrust, N
@@ -54,6 +55,12 @@ class TrueParameter(Predictor):
             thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
             inverse_mass=inverse_mass,
             wind=inputs.wind_mps,
+            stiffness=torch.stack(
+                [
+                    inertia * k
+                    for inertia, k in zip(physics.inertia_kgm2, RATE_GAIN_PER_S, strict=True)
+                ]
+            ),
             keep=keep,
             mean=lag * (1 - keep),
             thrust=physics.collective_thrust_n,
@@ -74,6 +81,7 @@ class TrueParameter(Predictor):
             now.thrust_gain,
             now.inverse_mass,
             now.wind,
+            now.stiffness,
             now.keep,
             now.mean,
             thrust,
@@ -87,8 +95,7 @@ class TrueParameter(Predictor):
         physics = now.physics
         inertia = physics.inertia_kgm2
         gyroscopic = torch.linalg.cross(state.rate, inertia * state.rate, dim=0)
-        gain = state.rate.new_tensor(RATE_GAIN_PER_S).reshape(3, *([1] * (state.rate.ndim - 1)))
-        wanted = inertia * gain * (target - state.rate) + gyroscopic
+        wanted = now.stiffness * (target - state.rate) + gyroscopic
         torque = torch.lerp(wanted, torque, now.keep)
         rate = state.rate + h * (physics.torque_scale * torque - gyroscopic) / inertia
         rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))

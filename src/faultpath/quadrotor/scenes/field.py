@@ -191,8 +191,8 @@ class DistanceField:
 
     @cached_property
     def _compiled(self) -> CompiledField | None:
-        kernels = native.kernels()
-        if kernels is None or self.table.device.type != "cpu":
+        kernels = native.kernels_on(self.table.device)
+        if kernels is None:
             return None
         return CompiledField(
             kernels, self.table, self.pitch, self.origin, self.last, self.first, self.per_metre

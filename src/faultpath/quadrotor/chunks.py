@@ -1,0 +1,32 @@
+"""Which scenes are planned together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor.device import at_hand, send
+
+CHUNK = 13
+"""Most scenes planned at once on the CPU: they share the cost of each kernel's start, and their
+candidates still stay in cache. A scene's result is the same in a chunk of any size, because its 512
+candidates fill whole vectors."""
+
+
+@dataclass(frozen=True)
+class Chunk:
+    """Some scenes of a block; two chunks of the same scenes are equal."""
+
+    scenes: tuple[int, ...]
+    index: Tensor = field(compare=False)
+    """The same, long `[S]`, where the flight is computed."""
+
+
+def chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
+    """Split scenes into as few chunks as may be, of nearly equal size; an accelerator takes all."""
+    count = -(-len(running) // CHUNK) if at_hand(device) else 1
+    ends = [len(running) * i // count for i in range(count + 1)]
+    parts = (tuple(running[a:b]) for a, b in pairwise(ends))
+    return tuple(Chunk(part, send(torch.tensor(part), device)) for part in parts)

@@ -1,0 +1,244 @@
+"""The device of a flight: everything is there, and no control step waits for it.
+
+Most of this needs no GPU. What a GPU computes is simulated by shape and place alone; what its way
+through the program brings is flown on the CPU; a machine that has one flies both and compares.
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+import torch
+from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, trace, with_halls
+from simulated_gpu import GPU, HostWaited, SimulatedGPU, simulated_gpu
+from torch import Tensor
+from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicOutputShapeException
+
+from faultpath import arrays
+from faultpath.arrays import Array
+from faultpath.errors import UserError
+from faultpath.quadrotor import device as devices
+from faultpath.quadrotor import models, native, so3, system
+from faultpath.quadrotor.device import DeviceName
+from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
+from faultpath.quadrotor.perception import DepthRenderer
+from faultpath.quadrotor.planner import SamplerSettings
+from faultpath.quadrotor.predictors import AnchoredPredictor
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.system import Quadrotor
+from faultpath.taps import Reading, Taps
+
+LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
+UNANCHORED = {"clearance": "depth", "wind": "L1"}
+ANALYTIC = {"predictor": "true-parameter", "planner": "running", "clearance": "true"}
+FLIGHTS = [
+    (LEARNED, "gru", ("attitude:noise=0.05", "clearance:noise=0.1", "depth:hold=2")),
+    (UNANCHORED, "wm-u", ("history_code:freeze", "action:erase=9.8/0/0/0@vehicle,onset=1")),
+    (ANALYTIC, "dob", ("noisy_state=1", "wind:delay=1", "action:dropout=0.3")),
+]
+
+
+class PlacedTaps(Taps):
+    """Taps that look where every reading is, and where what they deliver is."""
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
+        value = super().deliver(channel, consumer, reading, step)
+        assert reading.value.device == value.device == GPU, f"{channel} -> {consumer}"
+        return value
+
+
+@pytest.fixture
+def gpu(monkeypatch: pytest.MonkeyPatch) -> Iterator[SimulatedGPU]:
+    """A simulated GPU that the program takes for one of CUDA."""
+    monkeypatch.setattr(DeviceName, "place", GPU)
+    monkeypatch.setattr(arrays, "_PINNING", {GPU.type})
+    with simulated_gpu() as simulated:
+        yield simulated
+    _forget()
+
+
+def _forget() -> None:
+    """Empty what is kept from flight to flight."""
+    kept = (models._predictor, models._reconstruction, models._clearance_model, arrays._laid)
+    for cached in (*kept, system._field, system._renderer):
+        cached.cache_clear()
+
+
+def _system(options: dict[str, str]) -> Quadrotor:
+    """Return a quadrotor for CUDA, past the question whether there is any."""
+    few = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more would only repeat operations
+    parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", "settings": few})
+    return Quadrotor(parsed)
+
+
+@pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
+def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts, gpu):
+    built, scenes = _system(options), HELD_OUT[:3]
+    parts = built.variants[variant]
+    taps = PlacedTaps(
+        built.interface,
+        [fault(text, built) for text in texts],
+        scenes=scenes,
+        dt_s=built.control_dt_s,
+        seed=0,
+        bindings=parts.bindings,
+        consumers=parts.consumers,
+        privileged=parts.privileged,
+    )
+    flight = built.flight(variant, scenes, taps, seed=0)
+    gpu.watching = True
+    commands = flight.commands()
+    assert next(commands).device == GPU
+    assert next(commands).device == GPU
+    world = flight.world
+    for part in (*vars(world.state).values(), *vars(world.progress).values(), world.wind_mps):
+        assert part.device == GPU
+    assert gpu.operations > 1000
+
+
+SINS: dict[str, tuple[Callable[[Tensor], object], type[Exception]]] = {
+    "a look at a value": (lambda x: bool(x.any()), DataDependentOutputException),
+    "a number": (lambda x: float(x[0, 0]), DataDependentOutputException),
+    "a list": (lambda x: x.tolist(), DataDependentOutputException),
+    "a mask as an index": (lambda x: x[x > 0], DynamicOutputShapeException),
+    "a copy to the host": (lambda x: x.cpu(), HostWaited),
+    "new numbers": (lambda x: x.new_tensor([1.0, 2.0]), HostWaited),
+    "new numbers there": (lambda x: torch.tensor([1.0], device=x.device), HostWaited),
+    "a list as an index": (lambda x: x[[0, 1]], HostWaited),
+    "memory that is not pinned": (lambda x: x.copy_(torch.ones(3, 3)), HostWaited),
+    "singular values": (torch.linalg.svd, HostWaited),
+    "an index of the host": (lambda x: x[torch.tensor([0])], AssertionError),
+    "a tensor of the host": (lambda x: x + torch.ones(3), AssertionError),
+}
+
+
+@pytest.mark.parametrize(("sin", "error"), SINS.values(), ids=SINS.keys())
+def test_the_simulation_notices(sin, error, gpu):
+    """Otherwise the test above would hold of nothing."""
+    there = torch.ones(3, 3).to(GPU)
+    gpu.watching = True
+    with pytest.raises(error):
+        sin(there)
+
+
+@pytest.fixture
+def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
+    """Return what sends the program the way of an accelerator while tensors are on the CPU."""
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.flight.LOOK_EVERY", 5)
+
+    def take() -> None:
+        monkeypatch.setattr(devices, "AT_HAND", frozenset())
+        _forget()
+
+    yield take
+    _forget()
+
+
+def test_planning_for_ended_trials_changes_no_result_and_no_receipt(tmp_path, as_on_a_device):
+    """Scenes end at different times, and who is looked at only now and then is flown on."""
+    with native.using(native.PORTABLE):
+        flyer = quadrotor(wind="L3")
+        scenes = with_halls(
+            flyer,
+            tmp_path,
+            hall(0, start=(0.0, 0.0, 1.5), goal=(0.3, 0.0, 1.5)),
+            hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
+            hall(2, start=(0.0, -1.0, 0.5), goal=(4.0, 1.0, 1.5)),
+        )
+        falls = [fault("action:erase=0/0/0/0@vehicle", flyer), fault("mass:scale=1.1", flyer)]
+        usual, taps = fly(flyer, "dob", scenes, falls)
+        as_on_a_device()
+        other, later = fly(flyer, "dob", scenes, falls)
+    assert len({outcome.time_s for outcome in usual}) == 3
+    assert [bits(outcome) for outcome in other] == [bits(outcome) for outcome in usual]
+    before, after = taps.receipts(), later.receipts()
+    assert before.steps_struck.tolist() == after.steps_struck.tolist()
+    assert before.steps_altered.tolist() == after.steps_altered.tolist()
+    tap = ("action", "vehicle.actuators")
+    assert 0 < before.at(*tap).deliveries < after.at(*tap).deliveries < STEPS
+
+
+def test_learned_modules_fly_the_same_to_rounding_the_way_of_a_device(as_on_a_device):
+    with native.using(native.PORTABLE):
+        flyer = quadrotor(**LEARNED)
+        noise = [fault("attitude:noise=0.05", flyer)]
+        usual, _ = fly(flyer, "gru", HELD_OUT[:2], noise)
+        as_on_a_device()
+        other, _ = fly(flyer, "gru", HELD_OUT[:2], noise)
+    for one, two in zip(usual, other, strict=True):
+        assert one.status is two.status
+        assert one.planner_noise_hash == two.planner_noise_hash
+        assert trace(two) == pytest.approx(trace(one), abs=1e-4)
+
+
+def test_images_drawn_at_once_are_those_drawn_in_rounds(monkeypatch):
+    scenes = load_library("held-out").scenes[:6]
+    start = State.hover(
+        torch.tensor([scene.start_m for scene in scenes], dtype=torch.float64).T,
+        torch.tensor([scene.start_yaw_rad for scene in scenes], dtype=torch.float64),
+    )
+    with native.using(native.PORTABLE):
+        rounds = DepthRenderer(scenes).render(start)
+        monkeypatch.setattr(devices, "AT_HAND", frozenset())
+        assert torch.equal(DepthRenderer(scenes).render(start), rounds)
+    assert rounds.min() < 2 < rounds.max()
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05, 0.3])
+def test_the_nearest_rotation_needs_no_singular_values(noise, monkeypatch):
+    generator = torch.Generator().manual_seed(2)
+    matrix = so3.exp(torch.randn(3, 256, generator=generator))
+    matrix = 1.2 * (matrix + noise * torch.randn(3, 3, 256, generator=generator))
+    expected = so3.project(matrix)
+    monkeypatch.setattr(devices, "AT_HAND", frozenset())
+    assert torch.allclose(so3.project(matrix), expected, atol=1e-5)
+    nothing = so3.project(torch.zeros(3, 3, 2))
+    assert torch.allclose(nothing, torch.eye(3)[..., None].expand(3, 3, 2)), "still a rotation"
+
+
+def test_models_are_kept_apart_by_device():
+    def places(found: object) -> set[str]:
+        assert isinstance(found, AnchoredPredictor)
+        return {weight.device.type for weight in found.network.parameters()}
+
+    meta = torch.device("meta")
+    there, here = models.predictor("wm-a", None, meta), models.predictor("wm-a", None)
+    assert places(there) == {"meta"}
+    assert places(here) == {"cpu"}
+    assert models.predictor("wm-a", None, meta) is there
+
+
+def test_the_device_is_part_of_the_fingerprint_and_decides_the_blocks():
+    cpu, cuda = Quadrotor(QuadrotorOptions()), _system({})
+    assert cpu.fingerprint() != cuda.fingerprint()
+    assert cpu.block_size < cuda.block_size == len(cuda.library("held-out").scenes)
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="there is a GPU here")
+def test_cuda_without_a_gpu_is_a_mistake_of_the_user():
+    with pytest.raises(UserError, match=r"device 'cuda' needs a GPU, .* leave --device out, or"):
+        quadrotor(device="cuda")
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
+def test_a_gpu_flies_what_the_cpu_flies(monkeypatch):  # pragma: no cover
+    """To rounding: 1 mm after a second of flight. Torch itself raises where a step waits."""
+    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 20)
+    for options, variant, texts in FLIGHTS:
+        here, there = quadrotor(**options), quadrotor(**options, device="cuda")
+        faults = [fault(text, here) for text in texts]
+        (expected, _), taps = fly(here, variant, HELD_OUT, faults), None
+        parts = there.variants[variant]
+        taps = Taps(
+            there.interface,
+            faults,
+            scenes=HELD_OUT,
+            dt_s=there.control_dt_s,
+            bindings=parts.bindings,
+            consumers=parts.consumers,
+            privileged=parts.privileged,
+        )
+        for one, two in zip(expected, there.run(variant, HELD_OUT, taps, 0), strict=True):
+            assert np.abs(trace(one) - trace(two)).max() < 1e-3
