@@ -16,67 +16,72 @@ namespace {
 
 INLINE Vector norm(Vector x, Vector y, Vector z) { return sqrt(fma(z, z, fma(y, y, x * x))); }
 
-struct Shape {
-  int64_t steps, scenes, candidates;
-};
-
-// What the cost reads of one scene, each at its first candidate.
+// Where the parts of one scene start, and how far apart their rows lie.
 struct Scene {
   const float* positions;
   const float* velocities;
-  const float* ends;
+  const float* rotation;
   const float* commands;
   const float* clearance;
   float goal[3];
   float hover;
+  int64_t axis;  // between x, y and z of positions and velocities
+  int64_t row;   // between rows of commands and of the rotation
 };
 
-Vector cost(const Weights& w, const Scene& at, const Shape& shape) {
-  const int64_t axis = shape.scenes * shape.steps * shape.candidates;
-  const int64_t row = shape.scenes * shape.candidates;
-  const Vector hover = splat(at.hover), zero = splat(0.0f), one = splat(1.0f);
-  Vector distance = zero, risk = zero, hits = zero, excess = zero, turning = zero, pushing = zero;
-  for (int64_t h = 0; h < shape.steps; ++h) {
-    const int64_t step = h * shape.candidates;
-    if (w.running || h == shape.steps - 1) {
-      const float* p = at.positions + step;
-      distance = distance + norm(load(p) - at.goal[0], load(p + axis) - at.goal[1],
-                                 load(p + 2 * axis) - at.goal[2]);
-    }
-    const float* v = at.velocities + step;
-    const Vector speed = norm(load(v), load(v + axis), load(v + 2 * axis));
-    const Vector over = at_least(speed - w.v_max, zero);
-    excess = fma(over, over, excess);
+INLINE Vector distance(const Scene& at, int64_t place) {
+  const float* p = at.positions + place;
+  return norm(load(p) - at.goal[0], load(p + at.axis) - at.goal[1],
+              load(p + 2 * at.axis) - at.goal[2]);
+}
 
-    const Vector free = load(at.clearance + step) - w.radius;
-    const Vector near = bounded(1.0f - free / w.margin, zero, one);
-    risk = fma(near, near, risk);
-    hits = hits + select(free < zero, one, zero);
+// What one step adds: risk, speed and effort, each already weighted and divided by the steps.
+INLINE Vector along_the_way(const Weights& w, const Scene& at, int64_t place, const float* u) {
+  const Vector zero = splat(0.0f), one = splat(1.0f);
+  const Vector free = load(at.clearance + place) - w.radius;
+  const Vector near = bounded(1.0f - free / w.margin, zero, one);
+  Vector cost = fma(near * near, splat(w.risk), select(free < zero, splat(w.hit), zero));
 
-    const float* u = at.commands + 4 * h * row;
-    const Vector departure = load(u) - hover;
-    pushing = fma(departure, departure, pushing);
-    for (int i = 1; i < 4; ++i) {
-      const Vector rate = load(u + i * row);
-      turning = fma(rate, rate, turning);
-    }
-  }
-  const float mean = 1.0f / shape.steps;
-  const float* v = at.velocities + (shape.steps - 1) * shape.candidates;
-  const Vector forward_x = load(at.ends), forward_y = load(at.ends + 3 * row);
-  const Vector travel_x = load(v), travel_y = load(v + axis);
+  const float* v = at.velocities + place;
+  const Vector speed = norm(load(v), load(v + at.axis), load(v + 2 * at.axis));
+  const Vector over = at_least(speed - w.v_max, zero);
+  cost = fma(over * over, splat(w.speed), cost);
+
+  const Vector departure = load(u) / at.hover - one;
+  cost = fma(departure * departure, splat(w.thrust_effort), cost);
+  Vector turning = zero;
+  for (int i = 1; i < 4; ++i) turning = fma(load(u + i * at.row), load(u + i * at.row), turning);
+  return fma(turning, splat(w.rate_effort), cost);
+}
+
+// One minus the cosine between the body's x axis and the direction of travel, from above.
+INLINE Vector heading(const Scene& at, int64_t end, int64_t k) {
+  const Vector forward_x = load(at.rotation + k), forward_y = load(at.rotation + 3 * at.row + k);
+  const Vector travel_x = load(at.velocities + end), travel_y = load(at.velocities + end + at.axis);
   const Vector along = fma(forward_y, travel_y, forward_x * travel_x);
   const Vector scale = fma(forward_y, forward_y, forward_x * forward_x) *
                        fma(travel_y, travel_y, travel_x * travel_x);
-  const Vector heading = 1.0f - along / sqrt(scale + 1e-4f);
+  return 1.0f - along / sqrt(scale + 1e-4f);
+}
 
-  Vector total = distance * (w.running ? w.goal * mean : w.goal);
-  total = fma(risk, splat(w.risk * mean), total);
-  total = fma(hits, splat(w.hit * mean), total);
-  total = fma(excess, splat(w.speed * mean), total);
-  total = fma(heading, splat(w.heading), total);
-  total = fma(turning, splat(w.rate_effort * mean), total);
-  return fma(pushing, splat(w.thrust_effort * mean) / (hover * hover), total);
+// Steps outside and candidates inside: rows are read from end to end, as they lie in memory.
+void score(const Weights& w, const Scene& at, int64_t steps, int64_t candidates, float* costs) {
+  Weights mean = w;
+  for (float* weight : {&mean.risk, &mean.hit, &mean.speed, &mean.rate_effort,
+                        &mean.thrust_effort})
+    *weight /= steps;
+  const float goal = w.running ? w.goal / steps : w.goal;
+  for (int64_t h = 0; h < steps; ++h) {
+    const bool last = h == steps - 1;
+    for (int64_t k = 0; k < candidates; k += LANES) {
+      const int64_t place = h * candidates + k;
+      Vector cost = h == 0 ? splat(0.0f) : load(costs + k);
+      cost = cost + along_the_way(mean, at, place, at.commands + 4 * h * at.row + k);
+      if (last || w.running) cost = fma(distance(at, place), splat(goal), cost);
+      if (last) cost = fma(heading(at, place, k), splat(w.heading), cost);
+      store(costs + k, cost);
+    }
+  }
 }
 
 }  // namespace
@@ -87,19 +92,19 @@ extern "C" __attribute__((visibility("default"))) void faultpath_cost(
     const Weights* weights, const float* positions, const float* velocities, const float* rotation,
     const float* commands, const float* clearance, const float* goal, const float* hover,
     int64_t steps, int64_t scenes, int64_t candidates, float* costs) {
-  const Shape shape{steps, scenes, candidates};
-  for (int64_t s = 0; s < scenes; ++s)
-    for (int64_t k = 0; k < candidates; k += LANES) {
-      const int64_t along = s * steps * candidates + k, across = s * candidates + k;
-      const Scene at{positions + along,
-                     velocities + along,
-                     rotation + across,
-                     commands + across,
-                     clearance + along,
-                     {goal[s], goal[scenes + s], goal[2 * scenes + s]},
-                     hover[s]};
-      store(costs + across, cost(*weights, at, shape));
-    }
+  for (int64_t s = 0; s < scenes; ++s) {
+    const int64_t along = s * steps * candidates, across = s * candidates;
+    const Scene at{positions + along,
+                   velocities + along,
+                   rotation + across,
+                   commands + across,
+                   clearance + along,
+                   {goal[s], goal[scenes + s], goal[2 * scenes + s]},
+                   hover[s],
+                   scenes * steps * candidates,
+                   scenes * candidates};
+    score(*weights, at, steps, candidates, costs + across);
+  }
 }
 
 // `weights` [S, K] from `costs` [S, K]: the softmax at a temperature that is `fraction` of the spread
