@@ -13,6 +13,7 @@ SLOW_TOY = f"{HERE / 'slow_toy.py'}"
 @pytest.fixture(autouse=True)
 def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
 
 
 TOY_MISTAKES = {
@@ -75,6 +76,8 @@ QUADROTOR_MISTAKES = {
     "predictor": ({"predictor": "oracle"}, ["'oracle'", "dki, dki-drag, true-parameter"]),
     "clearance": ({"clearance": "radar"}, ["'radar'", "depth, true"]),
     "planner": ({"planner": "rrt"}, ["'rrt'", "terminal, running"]),
+    "device": ({"device": "tpu"}, ["'tpu'", "cpu, cuda"]),
+    "device that is not there": ({"device": "cuda"}, ["needs a GPU", "leave --device out"]),
     "option": ({"set": "colour=red"}, ["'colour'", "wind, environment, clearance, predictor"]),
     "library": ({"library": "heldout"}, ["'heldout'", "training, selection, held-out"]),
     "calibration -1": ({"fault": "calibration=-1"}, ["between -1 and 1"]),

@@ -4,9 +4,8 @@ Most of this needs no GPU. What a GPU computes is simulated by shape and place a
 through the program brings is flown on the CPU; a machine that has one flies both and compares.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
-import numpy as np
 import pytest
 import torch
 from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, trace, with_halls
@@ -72,20 +71,30 @@ def _system(options: dict[str, str]) -> Quadrotor:
     return Quadrotor(parsed)
 
 
-@pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
-def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts, gpu):
-    built, scenes = _system(options), HELD_OUT[:3]
+def _wired(
+    built: Quadrotor,
+    variant: str,
+    texts: Sequence[str],
+    scenes: Sequence[str],
+    kind: type[Taps] = Taps,
+) -> Taps:
     parts = built.variants[variant]
-    taps = PlacedTaps(
+    return kind(
         built.interface,
         [fault(text, built) for text in texts],
-        scenes=scenes,
+        scenes=tuple(scenes),
         dt_s=built.control_dt_s,
         seed=0,
         bindings=parts.bindings,
         consumers=parts.consumers,
         privileged=parts.privileged,
     )
+
+
+@pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
+def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts, gpu):
+    built, scenes = _system(options), HELD_OUT[:3]
+    taps = _wired(built, variant, texts, scenes, PlacedTaps)
     flight = built.flight(variant, scenes, taps, seed=0)
     gpu.watching = True
     commands = flight.commands()
@@ -223,22 +232,23 @@ def test_cuda_without_a_gpu_is_a_mistake_of_the_user():
 
 
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
-def test_a_gpu_flies_what_the_cpu_flies(monkeypatch):  # pragma: no cover
-    """To rounding: 1 mm after a second of flight. Torch itself raises where a step waits."""
+@pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
+def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts, monkeypatch):
+    """To 1 mm after a second of flight; torch itself raises where a step waits."""
     monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 20)
-    for options, variant, texts in FLIGHTS:
-        here, there = quadrotor(**options), quadrotor(**options, device="cuda")
-        faults = [fault(text, here) for text in texts]
-        (expected, _), taps = fly(here, variant, HELD_OUT, faults), None
-        parts = there.variants[variant]
-        taps = Taps(
-            there.interface,
-            faults,
-            scenes=HELD_OUT,
-            dt_s=there.control_dt_s,
-            bindings=parts.bindings,
-            consumers=parts.consumers,
-            privileged=parts.privileged,
-        )
-        for one, two in zip(expected, there.run(variant, HELD_OUT, taps, 0), strict=True):
-            assert np.abs(trace(one) - trace(two)).max() < 1e-3
+    here, there = quadrotor(**options), quadrotor(**options, device="cuda")
+    with torch.no_grad():
+        taps = _wired(there, variant, texts, HELD_OUT)
+        commands = there.flight(variant, HELD_OUT, taps, seed=0).commands()
+        next(commands)  # libraries are loaded
+        torch.cuda.set_sync_debug_mode("error")
+        try:
+            next(commands)
+        finally:
+            torch.cuda.set_sync_debug_mode("default")
+    ends = [
+        built.run(variant, HELD_OUT, _wired(built, variant, texts, HELD_OUT), 0)
+        for built in (here, there)
+    ]
+    for one, two in zip(*ends, strict=True):
+        assert trace(two) == pytest.approx(trace(one), abs=1e-3)
