@@ -23,6 +23,13 @@ class Chunk:
     index: Tensor = field(compare=False)
     """The same, long `[S]`, where the flight is computed."""
 
+    @property
+    def rows(self) -> slice | Tensor:
+        """What picks them from a block: a slice where they lie together, which copies nothing."""
+        first, last = self.scenes[0], self.scenes[-1]
+        whole = last - first + 1 == len(self.scenes)
+        return slice(first, last + 1) if whole else self.index
+
 
 def chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
     """Split scenes into as few chunks as may be, of nearly equal size; an accelerator takes all."""

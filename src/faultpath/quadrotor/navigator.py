@@ -103,7 +103,7 @@ class Navigator:
         clearance = self._query(parts, proposals, step)
         command = self._planner.initial_plan(hover)[0]
         for part, proposal in zip(parts, proposals, strict=True):
-            rows = part.index
+            rows = part.rows
             plan = self._planner.decide(proposal, clearance[rows], goal[:, rows])
             command[:, rows] = plan[0]
             self._plan[..., rows] = shift(plan)
@@ -197,7 +197,7 @@ class Navigator:
         for part, proposal in zip(parts, proposals, strict=True):
             points = proposal.rollout.positions
             values = self._clearance.query(points.flatten(2), part)
-            clearance[part.index] = values.view(points.shape[1:])
+            clearance[part.rows] = values.view(points.shape[1:])
         reading = Reading(clearance, self._clearance.name, step)
         return self._planner_taps.deliver("clearance", "risk_cost", reading, step)
 
