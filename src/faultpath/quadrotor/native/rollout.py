@@ -17,7 +17,7 @@ from faultpath.quadrotor.predictors import (
     UnanchoredPredictor,
 )
 from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
-from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, LATENT, FoldedNetwork
+from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, FoldedNetwork
 from faultpath.quadrotor.predictors.unanchored import OUTPUTS, UnanchoredNetwork
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
@@ -54,6 +54,18 @@ class _Model(ctypes.Structure):
     )
 
 
+class _Inputs(ctypes.Structure):
+    """`Inputs` of `rollout.cpp`."""
+
+    _fields_ = tuple(
+        (name, ctypes.c_void_p)
+        for name in (
+            *("position", "velocity", "rotation", "rate", "mass", "thrust_scale", "wind"),
+            *("wind_mass", "thrust_mass", "shown_mass", "shown_scale", "code"),
+        )
+    )
+
+
 class CompiledRollout:
     """Rolls candidates of one predictor out, with the weights that it has when this is made."""
 
@@ -86,11 +98,11 @@ class CompiledRollout:
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        starts = _starts(inputs)
+        told = _told(inputs)
         self._kernels.call(
             "faultpath_roll",
             ctypes.byref(self._model),
-            starts,
+            ctypes.byref(_Inputs(*(part if part is None else part.data_ptr() for part in told))),
             commands.contiguous(),
             *(horizon, scenes, candidates),
             *(positions, velocities, ends),
@@ -128,8 +140,8 @@ def _layers(folded: FoldedNetwork) -> dict[str, tuple[Tensor, int]]:
     return {
         "embed": (_bias_first(folded.embed[:-1]), BLOCK),
         "gates": (gates * -_LOG2_E, BLOCK),
-        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), BLOCK // 2),
-        "remembered": (folded.remembered * (-2 * _LOG2_E), BLOCK // 2),
+        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), BLOCK),
+        "remembered": (folded.remembered * (-2 * _LOG2_E), BLOCK),
         "first": (first, BLOCK),
         "second": (second, BLOCK),
         "last": (_bias_first(folded.last), BLOCK),
@@ -140,26 +152,14 @@ def _bias_first(weights: Tensor) -> Tensor:
     return weights.roll(1, dims=1)
 
 
-def _starts(inputs: PredictorInputs) -> Tensor:
-    """Return `Start` of `rollout.cpp` for every scene, `[S, 58]`; what is not read is zero."""
-    state, dynamics, conditioning = inputs.state, inputs.dynamics, inputs.conditioning
-    mass, wind, weight = inputs.wind_map_mass_kg, inputs.wind_mps, inputs.thrust_mass_kg
-    parts: tuple[tuple[int, Tensor | None], ...] = (
-        (3, state.position),
-        (3, state.velocity),
-        (9, state.rotation),
-        (3, state.rate),
-        (1, dynamics and dynamics.thrust_scale / dynamics.mass_kg),
-        (3, None if mass is None or wind is None else wind / mass),
-        (1, None if mass is None else 1 / mass),
-        (1, None if weight is None else 1 / (weight * GRAVITY_MPS2)),
-        (1, conditioning and conditioning.mass_kg),
-        (1, conditioning and conditioning.thrust_scale),
-        (LATENT, inputs.code),
+def _told(inputs: PredictorInputs) -> tuple[Tensor | None, ...]:
+    """Return the tensors of `Inputs` of `rollout.cpp`, each `[rows, S]` in memory."""
+    state, dynamics, shown = inputs.state, inputs.dynamics, inputs.conditioning
+    told = (
+        *(state.position, state.velocity, state.rotation, state.rate),
+        *((None, None) if dynamics is None else (dynamics.mass_kg, dynamics.thrust_scale)),
+        *(inputs.wind_mps, inputs.wind_map_mass_kg, inputs.thrust_mass_kg),
+        *((None, None) if shown is None else (shown.mass_kg, shown.thrust_scale)),
+        inputs.code,
     )
-    scenes = state.position.shape[1]
-    rows = [
-        state.position.new_zeros(count, scenes) if part is None else part.reshape(count, scenes)
-        for count, part in parts
-    ]
-    return torch.cat(rows).T.contiguous()
+    return tuple(None if part is None else part.contiguous() for part in told)

@@ -32,6 +32,20 @@ struct Predictor {
   float spread[12];
 };
 
+// What a predictor is told, each `[rows, S]`; null where it does not read it.
+struct Inputs {
+  const float *position, *velocity, *rotation, *rate;
+  const float *mass, *thrust_scale;        // of the integrator
+  const float *wind, *wind_mass;           // of its wind term
+  const float* thrust_mass;                // normalises the thrust
+  const float *shown_mass, *shown_scale;   // appended to the features
+  const float* code;
+};
+
+}  // extern "C"
+
+namespace {
+
 // What is the same for all candidates of a scene.
 struct Start {
   float position[3], velocity[3], rotation[9], rate[3];
@@ -39,13 +53,32 @@ struct Start {
   float wind[3];  // over the mass
   float inverse_mass;
   float inverse_weight;
-  float conditioning[2];
+  float shown[2];
   float code[LATENT];
 };
 
-}  // extern "C"
+INLINE void pick(const float* from, int64_t rows, int64_t s, int64_t scenes, float* to) {
+  if (from == nullptr) return;
+  for (int64_t i = 0; i < rows; ++i) to[i] = from[i * scenes + s];
+}
 
-namespace {
+Start gather(const Inputs& in, int64_t s, int64_t scenes, float gravity) {
+  Start start = {};
+  pick(in.position, 3, s, scenes, start.position);
+  pick(in.velocity, 3, s, scenes, start.velocity);
+  pick(in.rotation, 9, s, scenes, start.rotation);
+  pick(in.rate, 3, s, scenes, start.rate);
+  if (in.mass != nullptr) start.thrust_gain = in.thrust_scale[s] / in.mass[s];
+  if (in.wind != nullptr) {
+    start.inverse_mass = 1.0f / in.wind_mass[s];
+    for (int i = 0; i < 3; ++i) start.wind[i] = in.wind[i * scenes + s] / in.wind_mass[s];
+  }
+  if (in.thrust_mass != nullptr) start.inverse_weight = 1.0f / (in.thrust_mass[s] * gravity);
+  pick(in.shown_mass, 1, s, scenes, start.shown);
+  pick(in.shown_scale, 1, s, scenes, start.shown + 1);
+  pick(in.code, LATENT, s, scenes, start.code);
+  return start;
+}
 
 struct Motion {
   Row position[3], velocity[3], rotation[9], rate[3];
@@ -56,7 +89,7 @@ struct Network {
   Row known[EMBEDDING + LATENT + MOST_FEATURES];
   Row hidden[2][MOST_HIDDEN];
   Row gates[2 * LATENT];
-  Row next[LATENT];
+  Row memory[LATENT];
   Row outputs[MOST_OUTPUTS];
 
   Row* embedding() { return known; }
@@ -73,31 +106,27 @@ INLINE void observe(const Motion& now, const Row* command, const Start& start, R
   for (int i = 1; i < COMMAND; ++i) features[MOTION + i] = command[i];
 }
 
-// One step of the gated unit: latent <- (1 - update) candidate + update latent. Its weights carry
-// the scale that `logistic` wants.
+// One step of the gated unit: latent <- (1 - update) candidate + update latent, in place: what all
+// outputs need of the latent is worked out before. Its weights carry the scale that `logistic` wants.
 INLINE void remember(const Predictor& model, Network& net) {
   dense(model.gates, net.embedding(), net.gates, logistic);
-  constexpr int BLOCK = OUTPUTS / 2;
-  const float* given = model.candidate.weights;
-  const float* kept = model.remembered.weights;
-  for (int first = 0; first < LATENT; first += BLOCK) {
-    Row input[BLOCK], memory[BLOCK];
-    start<BLOCK>(given, input);
-    accumulate<BLOCK>(given + BLOCK, net.embedding(), EMBEDDING, input);
-    start<BLOCK>(kept, memory);
-    accumulate<BLOCK>(kept + BLOCK, net.latent(), LATENT, memory);
-    given += (1 + EMBEDDING) * BLOCK;
-    kept += (1 + LATENT) * BLOCK;
-    for (int o = 0; o < BLOCK; ++o)
+  dense(model.remembered, net.latent(), net.memory, [](Vector x) { return x; });
+  const float* weights = model.candidate.weights;
+  for (int first = 0; first < LATENT; first += OUTPUTS) {
+    Row sums[OUTPUTS];
+    start<OUTPUTS>(weights, sums);
+    accumulate<OUTPUTS>(weights + OUTPUTS, net.embedding(), EMBEDDING, sums);
+    weights += (1 + EMBEDDING) * OUTPUTS;
+    for (int o = 0; o < OUTPUTS; ++o)
       for (int v = 0; v < WIDE; ++v) {
-        const Vector reset = net.gates[first + o].part[v];
-        const Vector update = net.gates[LATENT + first + o].part[v];
-        const Vector half = logistic(fma(reset, memory[o].part[v], input[o].part[v]));
+        const int at = first + o;
+        const Vector reset = net.gates[at].part[v], update = net.gates[LATENT + at].part[v];
+        const Vector half = logistic(fma(reset, net.memory[at].part[v], sums[o].part[v]));
         const Vector fresh = fma(splat(2.0f), half, splat(-1.0f));  // the hyperbolic tangent
-        net.next[first + o].part[v] = fma(update, net.latent()[first + o].part[v] - fresh, fresh);
+        Vector& latent = net.latent()[at].part[v];
+        latent = fma(update, latent - fresh, fresh);
       }
   }
-  std::memcpy(net.latent(), net.next, sizeof net.next);
 }
 
 INLINE void think(const Predictor& model, Network& net) {
@@ -184,7 +213,7 @@ INLINE void begin(const Start& start, Motion& now, Network& net) {
   }
   for (int i = 0; i < 9; ++i) now.rotation[i] = each(start.rotation[i]);
   for (int i = 0; i < LATENT; ++i) net.latent()[i] = each(start.code[i]);
-  for (int i = 0; i < 2; ++i) net.features()[MOTION + COMMAND + i] = each(start.conditioning[i]);
+  for (int i = 0; i < 2; ++i) net.features()[MOTION + COMMAND + i] = each(start.shown[i]);
 }
 
 void roll_tile(const Predictor& model, const Start& start, const float* commands, int64_t steps,
@@ -217,15 +246,18 @@ void roll_tile(const Predictor& model, const Start& start, const float* commands
 
 }  // namespace
 
+// `commands` [H, 4, S, K]; `positions` and `velocities` [3, S, H, K]; `ends` [12, S, K]: rotation and
+// rate at the end.
 extern "C" __attribute__((visibility("default"))) void faultpath_roll(
-    const Predictor* model, const Start* starts, const float* commands, int64_t steps,
+    const Predictor* model, const Inputs* inputs, const float* commands, int64_t steps,
     int64_t scenes, int64_t candidates, float* positions, float* velocities, float* ends) {
-  for (int64_t s = 0; s < scenes; ++s)
+  for (int64_t s = 0; s < scenes; ++s) {
+    const Start start = gather(*inputs, s, scenes, model->gravity);
     for (int64_t first = 0; first < candidates; first += TILE) {
-      const int64_t left = candidates - first;
       const int64_t at = s * candidates + first;
       const int64_t along = s * steps * candidates + first;
-      roll_tile(*model, starts[s], commands + at, steps, scenes, candidates,
-                left, positions + along, velocities + along, ends + at);
+      roll_tile(*model, start, commands + at, steps, scenes, candidates, candidates - first,
+                positions + along, velocities + along, ends + at);
     }
+  }
 }

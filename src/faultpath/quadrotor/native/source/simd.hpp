@@ -124,18 +124,40 @@ constexpr float ROUNDER = 12582912.0f;  // 1.5 * 2^23: adding it rounds to a who
 
 constexpr float LOG2_E = 1.44269504088896341f;
 
-// 2^x, for x up to 126 in size, beyond which it stays; relative error about 2e-7 (minimax).
+// x as a whole number and the rest, in [-1/2, 1/2].
+INLINE void divide(Vector x, Vector& whole, Vector& rest) {
+#if defined(__AVX512F__)
+  whole = _mm512_roundscale_ps(x, 0);
+#else
+  whole = (x + ROUNDER) - ROUNDER;
+#endif
+  rest = x - whole;
+}
+
+// x * 2^whole, for a normal result.
+INLINE Vector scaled(Vector x, Vector whole) {
+#if defined(__AVX512F__)
+  return _mm512_scalef_ps(x, whole);
+#else
+  return as_float(as_bits(x) + (__builtin_convertvector(whole, Integers) << 23));
+#endif
+}
+
+// 2^x, for x up to 126 in size; relative error about 2e-7 (minimax). Beyond, it stays or goes on to
+// zero and infinity, which no caller can tell apart.
 INLINE Vector power_of_two(Vector x) {
+#if !defined(__AVX512F__)
   x = bounded(x, splat(-126.0f), splat(126.0f));
-  const Vector shifted = x + ROUNDER;
-  const Vector f = x - (shifted - ROUNDER);
+#endif
+  Vector whole, f;
+  divide(x, whole, f);
   Vector p = splat(1.327647129073739e-3f);
   p = fma(p, f, splat(9.675541892647743e-3f));
   p = fma(p, f, splat(5.550713092088699e-2f));
   p = fma(p, f, splat(2.4022120237350464e-1f));
   p = fma(p, f, splat(6.931469440460205e-1f));
   p = fma(p, f, splat(1.0000001192092896f));
-  return as_float(as_bits(p) + (as_bits(shifted) << 23));
+  return scaled(p, whole);
 }
 
 // The logistic function of -x ln 2: who can scale its argument beforehand saves a product.
