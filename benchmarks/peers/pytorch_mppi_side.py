@@ -26,7 +26,6 @@ class Command(Side):
 
     def __init__(self, scenes: int = 1, layout: str = "rows", compiled: bool = False) -> None:
         torch.set_num_threads(1)
-        torch.manual_seed(0)
         self.amount = scenes
         self._layout = layout
         self._step = rows.RowsModel() if layout == "rows" else None

@@ -27,7 +27,6 @@ class Planning(Side):
 
     def __init__(self) -> None:
         torch.set_num_threads(1)
-        torch.manual_seed(0)
         warnings.simplefilter("ignore")
         self._step = rows.RowsModel()
         world = WorldModelWrapper(

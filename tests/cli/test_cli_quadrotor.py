@@ -6,6 +6,7 @@ from cli_runs import audit, faultpath
 
 from faultpath.cli.records import read_record
 from faultpath.execution.worker import Hello
+from faultpath.quadrotor import native
 from faultpath.quadrotor.scenes.library import write_library
 from faultpath.trials import SystemSpec, load_system
 
@@ -51,6 +52,11 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     assert (again.status, again.err) == (0, "")
     assert page.read_bytes() == before
     assert b"mine/001" in before
+
+    backend = native.describe()
+    assert f"Computing with {backend}." in ended.out
+    assert json.loads((tmp_path / "run" / "provenance.json").read_text())["backend"] == backend
+    assert backend.encode() in before
 
 
 def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
