@@ -34,9 +34,9 @@ class Run:
 
 
 def workers_command(workers: int, out: Path) -> list[str]:
-    """Return the main job on a few selection scenes and two seeds: enough units for two workers."""
+    """Return the main job on a few selection scenes."""
     question = ["--baseline", "gru", "--repair", "gru+dcc", "--fault", "calibration=+0.1"]
-    where = ["--library", "selection", "--scenes", str(SCENES), "--wind", "L3", "--seeds", "0,1"]
+    where = ["--library", "selection", "--scenes", str(SCENES), "--wind", "L3"]
     return ["audit", "quadrotor", *question, *where, "--workers", str(workers), "--out", str(out)]
 
 

@@ -110,9 +110,8 @@ resamples once and uses them for every effect: the second row is what each furth
         """\
 The rollout over candidates, steps and scenes: the time at the largest size against what the
 smallest foretells; below one it grows more slowly than the size. The small audit is the main job
-on a few selection scenes with two seeds, from the start of the command to its report. Two
-processors may share what a core has: matrix products in two processes show what the machine gives
-the second.""",
+on a few selection scenes, from the start of the command to its report. Two processors may share
+what a core has: matrix products in two processes show what the machine gives the second.""",
         "![Time of a rollout over candidates, steps and scenes](images/performance-scaling.svg)",
     ),
     Section(
