@@ -111,6 +111,37 @@ def test_weights_are_the_portable_ones(
     close(mine.sum(1), torch.ones(3))
 
 
+@pytest.mark.parametrize("lost", [1, 200, 500, 512])
+def test_a_cost_that_is_no_number_spoils_the_scene_as_in_torch(
+    kernels: native.Kernels, lost: int, stream: torch.Generator
+) -> None:
+    cost = torch.randn(2, 512, generator=stream).exp()
+    cost[0, torch.randperm(512, generator=stream)[:lost]] = torch.nan
+    temperature = ScaledTemperature(0.08)
+    mine = CompiledTemperature(kernels, temperature).weights(cost)
+    assert mine[0].isnan().all()
+    torch.testing.assert_close(
+        mine, temperature.weights(cost), rtol=1e-4, atol=1e-4, equal_nan=True
+    )
+
+
+def test_what_is_no_number_stays_so_in_candidates_and_costs(
+    kernels: native.Kernels, stream: torch.Generator
+) -> None:
+    sampler = AutoregressiveSampler(SamplerSettings(candidates=16))
+    plan = torch.zeros(20, 4, 2)
+    plan[3, :, 1] = torch.nan
+    noise = torch.randn(20, 4, 2, 16, generator=stream)
+    hover = torch.full((2,), 9.8)
+    mine = CompiledSampler(kernels, sampler).candidates(plan, hover, noise.clone())
+    assert torch.equal(mine.isnan(), sampler.candidates(plan, hover, noise).isnan())
+
+    case = scored(stream, 16)
+    case.clearance[1, 4, 3] = torch.nan
+    cost = NavigationCost(TerminalGoal())
+    assert torch.equal(CompiledCost(kernels, cost)(case).isnan(), cost(case).isnan())
+
+
 def test_tiny_weights_are_none(kernels: native.Kernels) -> None:
     cost = torch.linspace(0, 1e5, 512)[None]
     weights = CompiledTemperature(kernels, ScaledTemperature(0.001)).weights(cost)
@@ -153,6 +184,10 @@ def test_codes_are_the_portable_ones(kernels: native.Kernels, stream: torch.Gene
     codes = CompiledEncoder(kernels, model)(depth)
     close(codes, model.encode(depth), 1e-4)
     assert torch.equal(codes[:, 3:], CompiledEncoder(kernels, model)(depth[3:]))
+    depth[2, 7, 7] = torch.nan
+    lost = CompiledEncoder(kernels, model)(depth).isnan()
+    assert torch.equal(lost, model.encode(depth).isnan())
+    assert lost[:, 2].all()
 
 
 def test_a_query_before_the_first_image_is_refused(kernels: native.Kernels) -> None:

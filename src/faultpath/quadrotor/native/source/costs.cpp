@@ -64,6 +64,9 @@ INLINE Vector heading(const Scene& at, int64_t end, int64_t k) {
   return 1.0f - along / sqrt(scale + 1e-4f);
 }
 
+// An order of all numbers: what is none comes last.
+bool cheaper(float one, float other) { return one < other || (other != other && one == one); }
+
 // Steps outside and candidates inside: rows are read from end to end, as they lie in memory.
 void score(const Weights& w, const Scene& at, int64_t steps, int64_t candidates, float* costs) {
   Weights mean = w;
@@ -116,7 +119,7 @@ extern "C" __attribute__((visibility("default"))) void faultpath_weights(
   const int64_t half = candidates / 2;
   for (int64_t s = 0; s < scenes; ++s, costs += candidates, weights += candidates) {
     std::memcpy(scratch, costs, candidates * sizeof(float));
-    std::nth_element(scratch, scratch + half, scratch + candidates);
+    std::nth_element(scratch, scratch + half, scratch + candidates, cheaper);
     const float lowest = *std::min_element(scratch, scratch + half);
     double sum = 0.0, squares = 0.0;
     for (int64_t k = 0; k < half; ++k) sum += scratch[k];

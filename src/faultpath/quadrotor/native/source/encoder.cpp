@@ -97,7 +97,7 @@ void see(const Encoder& model, const float* depth, Features& features) {
       const float d = depth[y * Depth::WIDTH + x];
       float* pixel = image.at[y + Depth::MARGIN][x + Depth::MARGIN];
       pixel[0] = d / model.range;
-      pixel[1] = model.scale / (d > model.nearest ? d : model.nearest);
+      pixel[1] = model.scale / (d < model.nearest ? model.nearest : d);
     }
   convolve<5>(image, model.first, model.first_bias, half);
   convolve<3>(half, model.second, model.second_bias, quarter);
@@ -116,7 +116,7 @@ extern "C" __attribute__((visibility("default"))) void faultpath_encode(
     alignas(64) float hidden[GROUP * DENSE], code[GROUP * CODE];
     for (int64_t g = 0; g < count; ++g) see(*model, depth + (first + g) * PIXELS, features[g]);
     multiply(model->dense, model->dense_bias, &features[0].at[0][0][0], FLAT, DENSE, hidden);
-    for (float& value : hidden) value = value > 0.0f ? value : 0.0f;
+    for (float& value : hidden) value = value < 0.0f ? 0.0f : value;
     multiply(model->last, model->last_bias, hidden, DENSE, CODE, code);
     for (int64_t g = 0; g < count; ++g)
       for (int i = 0; i < CODE; ++i) codes[i * scenes + first + g] = code[g * CODE + i];

@@ -79,28 +79,28 @@ INLINE Vector sqrt(Vector x) {
 
 INLINE Vector select(Integers mask, Vector yes, Vector no) { return mask ? yes : no; }
 
-// What is not a number comes out of these as the bound.
+// What is not a number stays that, as in torch: of two operands the processor returns the second.
 INLINE Vector at_most(Vector x, Vector bound) {
 #if defined(__AVX512F__)
-  return _mm512_min_ps(x, bound);
+  return _mm512_min_ps(bound, x);
 #elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_min_ps(x, bound);
+  return _mm256_min_ps(bound, x);
 #elif defined(__x86_64__)
-  return _mm_min_ps(x, bound);
+  return _mm_min_ps(bound, x);
 #else
-  return x < bound ? x : bound;
+  return bound < x ? bound : x;
 #endif
 }
 
 INLINE Vector at_least(Vector x, Vector bound) {
 #if defined(__AVX512F__)
-  return _mm512_max_ps(x, bound);
+  return _mm512_max_ps(bound, x);
 #elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_max_ps(x, bound);
+  return _mm256_max_ps(bound, x);
 #elif defined(__x86_64__)
-  return _mm_max_ps(x, bound);
+  return _mm_max_ps(bound, x);
 #else
-  return x > bound ? x : bound;
+  return bound > x ? bound : x;
 #endif
 }
 
