@@ -93,7 +93,8 @@ INLINE Vector distance(const Field& field, const float* points, int64_t scenes, 
     const Vector point = take(points + i * stride, filled);
     const Vector local = (point - field.origin[i * scenes + s]) * field.per_metre;
     // What is not a number reads a cell all the same: the fraction stays what it is.
-    const Vector inside = bounded(local, splat(0.0f), splat(field.last[i * scenes + s]));
+    const Vector known = select(local == local, local, splat(0.0f));
+    const Vector inside = bounded(known, splat(0.0f), splat(field.last[i * scenes + s]));
     cell[i] = __builtin_convertvector(__builtin_convertvector(inside, Integers), Vector);
     fraction[i] = local - cell[i];
   }
