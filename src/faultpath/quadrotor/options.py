@@ -55,6 +55,13 @@ class PlannerName(StrEnum):
     RUNNING = "running"
 
 
+class SamplerName(StrEnum):
+    """Samplers of candidates; see `AutoregressiveSampler` and `planner.modes`."""
+
+    AUTOREGRESSIVE = "autoregressive"
+    MODE_PRESERVING = "mode-preserving"
+
+
 class PlannerSettings(BaseModel):
     """Everything of the planner that the platform search chose; frozen since."""
 
@@ -82,6 +89,8 @@ class QuadrotorOptions(BaseModel):
     predictor_seed: int = Field(default=0, ge=0, le=2)
     """Which training of it; variants that name a predictor take the seed of their arm."""
     planner: PlannerName = PlannerName.TERMINAL
+    sampler: SamplerName = SamplerName.AUTOREGRESSIVE
+    candidates: int = SamplerSettings().candidates
     settings: PlannerSettings = PlannerSettings()
     device: DeviceName = DeviceName.CPU
     """What computes worlds and planners; see `docs/design/device.md`."""
@@ -100,6 +109,8 @@ class QuadrotorOptions(BaseModel):
             "predictor": tuple(PREDICTORS),
             "predictor_seed": ("0", "1", "2"),
             "planner": tuple(PlannerName),
+            "sampler": tuple(SamplerName),
+            "candidates": ("512", "1024", "2048"),  # paper, Sections IV-A and VII-B
             "device": tuple(DeviceName),
         }
         unknown = sorted(set(options) - set(kinds))
@@ -134,10 +145,12 @@ class QuadrotorOptions(BaseModel):
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
         }
         goal, weights = goals[self.planner]
+        sampler = self.settings.sampler.model_copy(update={"candidates": self.candidates})
         return build_planner(
             predictor,
-            AutoregressiveSampler(self.settings.sampler),
+            AutoregressiveSampler(sampler),
             NavigationCost(goal, weights),
             ScaledTemperature(self.settings.temperature),
             self.place,
+            bundled=self.sampler is SamplerName.MODE_PRESERVING,
         )

@@ -190,11 +190,14 @@ def _outcomes(
     return outcomes
 
 
+_NOT_FLOWN = ("training", "evidence")
+
+
 @cache
 def _code_digest() -> str:
     """Hash of every file that decides a trial: results of two codes never mix in a folder.
 
-    Trained weights are among them; how they were trained is not.
+    Trained weights are among them; how they were trained and what is measured beside is not.
     """
     package = files("faultpath")
     parts = [package / name for name in ("quadrotor", "taps", "faults", "arrays.py", "streams.py")]
@@ -202,7 +205,7 @@ def _code_digest() -> str:
     while parts:
         part = parts.pop()
         if part.is_dir():
-            children = (child for child in part.iterdir() if child.name != "training")
+            children = (child for child in part.iterdir() if child.name not in _NOT_FLOWN)
             parts += sorted(children, key=lambda child: child.name)
         elif part.name.endswith((".py", ".cpp", ".hpp", ".yaml", ".safetensors")):
             digest.update(part.name.encode() + part.read_bytes())

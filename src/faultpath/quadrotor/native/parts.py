@@ -11,7 +11,15 @@ from faultpath.quadrotor.native.library import kernels, kernels_on
 from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
-from faultpath.quadrotor.planner import MPPI, NavigationCost, Sampler, Temperature, weighted_mean
+from faultpath.quadrotor.planner import (
+    MPPI,
+    BundledSampler,
+    NavigationCost,
+    Sampler,
+    Temperature,
+    WithinBundle,
+    weighted_mean,
+)
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.rollout import rollout
 
@@ -22,18 +30,24 @@ def build_planner(
     cost: NavigationCost,
     temperature: Temperature,
     device: torch.device = CPU,
+    bundled: bool = False,
 ) -> MPPI:
-    """Return the planner for `device`, compiled as far as there are kernels for its parts."""
+    """Return the planner for `device`, compiled as far as there are kernels for its parts.
+
+    `bundled` keeps its modes apart; see `planner.modes`.
+    """
     host, built = kernels(), kernels_on(device)
     if host is not None and CompiledSampler.covers(sampler):
         sampler = CompiledSampler(host, sampler)  # the host draws for every device
+    if built is not None and CompiledTemperature.covers(temperature):
+        temperature = CompiledTemperature(built, temperature)
+    if bundled:
+        sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
     if built is None:
         roll, mean = partial(rollout, predictor), weighted_mean
         return MPPI(predictor, sampler, cost, temperature, roll, mean)
     if CompiledCost.covers(cost):
         cost = CompiledCost(built, cost)
-    if CompiledTemperature.covers(temperature):
-        temperature = CompiledTemperature(built, temperature)
     covered = CompiledRollout.covers(predictor)
     roll = CompiledRollout(built, predictor) if covered else partial(rollout, predictor)
     return MPPI(predictor, sampler, cost, temperature, roll, CompiledMean(built))

@@ -8,6 +8,7 @@ from faultpath.quadrotor.planner.costs import (
     Scored,
     TerminalGoal,
 )
+from faultpath.quadrotor.planner.modes import BundledSampler, WithinBundle
 from faultpath.quadrotor.planner.mppi import (
     MPPI,
     FixedTemperature,
@@ -22,6 +23,7 @@ from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, 
 __all__ = [
     "MPPI",
     "AutoregressiveSampler",
+    "BundledSampler",
     "CostWeights",
     "FixedTemperature",
     "GoalCost",
@@ -34,6 +36,7 @@ __all__ = [
     "Scored",
     "Temperature",
     "TerminalGoal",
+    "WithinBundle",
     "shift",
     "weighted_mean",
 ]
