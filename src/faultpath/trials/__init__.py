@@ -4,7 +4,7 @@ from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
-from faultpath.trials.registry import load_system
+from faultpath.trials.registry import load_measurer, load_system
 from faultpath.trials.system import Library, SceneRef, System, Variant
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -27,6 +27,7 @@ __all__ = [
     "SystemSpec",
     "TrialRow",
     "Variant",
+    "load_measurer",
     "load_system",
     "pair",
 ]

@@ -9,11 +9,15 @@ from pathlib import Path
 from types import ModuleType
 
 from faultpath.errors import UserError
+from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.system import System
 
 BUILT_IN = {"quadrotor": "faultpath.quadrotor.system:create"}
 """Names that stand for a factory. They are strings, so that naming one imports nothing."""
+
+MEASURERS = {"quadrotor": "faultpath.quadrotor.evidence:measure"}
+"""What measures on recorded windows, by name of the system."""
 
 _EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco"}
 
@@ -52,6 +56,24 @@ def load_system(spec: SystemSpec) -> System:
             "faultpath.trials.system.System"
         )
     return system
+
+
+def load_measurer(name: str) -> Measurer:
+    """Return what measures evidence of the system `name` on recorded windows.
+
+    It stands beside the system, not in it: a system object has one set of options, and recordings
+    have several. `UserError` for a system that offers none, or a missing package.
+    """
+    if name not in MEASURERS:
+        raise UserError(
+            f"system {name!r} offers no measurements on recorded windows: "
+            f"{', '.join(sorted(MEASURERS))} does"
+        )
+    place, _, attribute = MEASURERS[name].partition(":")
+    try:
+        return getattr(importlib.import_module(place), attribute)
+    except ModuleNotFoundError as error:
+        raise _missing(name, error) from error
 
 
 def _load_module(name: str) -> ModuleType:
