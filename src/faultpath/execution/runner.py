@@ -67,12 +67,15 @@ def run_study(
     progress: ProgressCallback | None = None,
     notice: Callable[[str], None] = _log.warning,
     system: System | None = None,
+    shared: bool = False,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
     `workers` is the number of worker processes; 0 runs in this one. `progress` is called after
     each block and about twice a second; `notice` with what a user should read, such as a damaged
     file or another process in the folder. `system` saves building it here when the caller has.
+    `shared` lets studies with other arms use the folder one after the other: an arm that one of
+    them ran is there for the next; the folder's tables are those of the last.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -95,7 +98,7 @@ def run_study(
     ledger = Ledger(units, run, workers)
     report = progress or _ignore
     try:
-        with run.open(manifest, notice):
+        with run.open(manifest, notice, shared):
             missing = _keep_finished(ledger, run, notice)
             report(ledger.progress())
             if workers == 0:

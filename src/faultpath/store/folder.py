@@ -33,16 +33,18 @@ class RunFolder:
         self.traces = path / "traces.parquet"
 
     @contextmanager
-    def open(self, manifest: Manifest, notice: Notice) -> Generator[None, None, None]:
+    def open(
+        self, manifest: Manifest, notice: Notice, shared: bool = False
+    ) -> Generator[None, None, None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
-        `UserError` when the folder cannot be written, or holds something else.
+        `shared` lets studies with other arms use the folder one after the other. `UserError` when the folder cannot be written, or holds something else.
         """
         self._create()
         with locked(self.path, notice):
             found = read_manifest(self.manifest)
             if found is not None:
-                check_same(self.path, found, manifest)
+                check_same(self.path, found, manifest, shared)
             try:
                 for folder in (self.shards, self.failures):
                     folder.mkdir(exist_ok=True)

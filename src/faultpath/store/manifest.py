@@ -50,12 +50,17 @@ def read_manifest(path: Path) -> Manifest | None:
         raise _damaged(path) from error
 
 
-def check_same(folder: Path, found: Manifest, asked: Manifest) -> None:
+def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = False) -> None:
     """Raise `UserError` unless `folder` may go on with the study that is asked for.
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
-    in the same folder, and keeps what it has.
+    in the same folder, and keeps what it has. In a folder that studies of one system share, their
+    names and arms may differ as well.
     """
+    same_study = (
+        ("study", found.study.name, asked.study.name),
+        ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
+    )
     differences = [
         what
         for what, one, two in (
@@ -64,8 +69,7 @@ def check_same(folder: Path, found: Manifest, asked: Manifest) -> None:
             ("state of the system", found.system_fingerprint, asked.system_fingerprint),
             ("library", found.study.library, asked.study.library),
             ("state of the library", found.library_hash, asked.library_hash),
-            ("study", found.study.name, asked.study.name),
-            ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
+            *(() if shared else same_study),
         )
         if one != two
     ]

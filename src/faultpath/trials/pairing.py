@@ -95,11 +95,18 @@ class Pairs:
 
 
 def pair(
-    table: OutcomeTable, first: Side, second: Side, seeds: Sequence[int] | None = None
+    table: OutcomeTable,
+    first: Side,
+    second: Side,
+    seeds: Sequence[int] | None = None,
+    *,
+    other_noise: bool = False,
 ) -> Pairs:
     """Pair two sides scene by scene and seed by seed.
 
-    `seeds` are those of the first side when left out. `PairingRefused` when the sides do not hold
+    `seeds` are those of the first side when left out. `other_noise` says that the sides are
+    planners that draw differently, by number of candidates for one: their noise is not compared.
+    `PairingRefused` when the sides do not hold
     the same seeds and scenes, or when two trials of a pair differ in their initial state, in
     their disturbance or in the planner's noise.
     """
@@ -108,11 +115,12 @@ def pair(
     twos = [_arm(table, second, seed) for seed in seeds]
     if not ones:
         raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
+    hashes = _HASHES[:-1] if other_noise else _HASHES
     for seed, one, two in zip(seeds, ones, twos, strict=True):
         _check_scenes(ones[0], one, first, first, seed)
         _check_scenes(one, two, first, second, seed)
         for a, b in zip(one, two, strict=True):
-            _check_conditions(a.outcome, b.outcome, first, second, seed)
+            _check_conditions(a.outcome, b.outcome, first, second, seed, hashes)
     void = _flags(ones, Status.FAILED) | _flags(twos, Status.FAILED)
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
     kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
@@ -150,10 +158,17 @@ def _check_scenes(
         )
 
 
-def _check_conditions(a: Outcome, b: Outcome, first: Side, second: Side, seed: int) -> None:
+def _check_conditions(
+    a: Outcome,
+    b: Outcome,
+    first: Side,
+    second: Side,
+    seed: int,
+    hashes: Sequence[tuple[str, str]],
+) -> None:
     if a.failed or b.failed:
         return  # a failed trial has no conditions to compare; its pair is void
-    for name, what in _HASHES:
+    for name, what in hashes:
         if getattr(a, name) != getattr(b, name):
             raise PairingRefused(
                 f"cannot pair {first} with {second} in scene {a.scene!r} (seed {seed}): their "

@@ -1,0 +1,91 @@
+"""What the paper's studies fly, as data: settings, cells, and the profiles that size them."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from faultpath.trials import Side
+
+HELD_OUT = "held-out"
+SELECTION = "selection"
+CORRECT = "correct"
+SEEDS = (0, 1, 2)
+"""The paper trains every learned model three times."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where a cell is flown: everything of the system that no arm changes."""
+
+    library: str = HELD_OUT
+    """Role of the library; a run may put another library into the place of the held-out one."""
+    wind: str = "L0"
+    environment: str = "obstacles"
+    others: tuple[tuple[str, str], ...] = ()
+    """Further options of the system, for example `("clearance", "true")`."""
+
+    @property
+    def options(self) -> dict[str, str]:
+        """Options of the system."""
+        return {"wind": self.wind, "environment": self.environment, **dict(self.others)}
+
+    def __str__(self) -> str:
+        changed = [f"{name}={value}" for name, value in self.others]
+        return ", ".join([self.library, self.environment, self.wind, *changed])
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One variant under one set of faults in one setting, with its seeds: a figure of a table."""
+
+    setting: Setting
+    variant: str
+    faults: tuple[str, ...] = ()
+    """As on the command line; none for correct inputs."""
+    seeds: tuple[int, ...] = (0,)
+    quick: bool = True
+    """Whether the quick profile flies it."""
+
+    @property
+    def path(self) -> str:
+        """Path of the outcome table that holds the cell's trials."""
+        return f"{self.setting}: {' and '.join(self.faults) or CORRECT}"
+
+    @property
+    def side(self) -> Side:
+        """Side of a contrast."""
+        return Side(self.variant, self.path)
+
+    def __str__(self) -> str:
+        return f"{self.variant} ({self.path})"
+
+
+@dataclass(frozen=True)
+class Profile:
+    """How much of the paper is flown."""
+
+    name: str
+    scenes: int | None
+    """The first so many scenes of each library; `None`: all of them."""
+    seeds: tuple[int, ...]
+
+    def cells(self, cells: Iterable[Cell]) -> tuple[Cell, ...]:
+        """Return what this profile flies of `cells`: each variant and path once, all its seeds."""
+        wanted: dict[Side, Cell] = {}
+        for cell in cells:
+            seeds = [seed for seed in cell.seeds if seed in self.seeds]
+            if not seeds or (self.name == QUICK.name and not cell.quick):
+                continue
+            known = wanted.get(cell.side)
+            every = {*seeds, *(known.seeds if known else ())}
+            wanted[cell.side] = Cell(cell.setting, cell.variant, cell.faults, tuple(sorted(every)))
+        return tuple(wanted.values())
+
+
+QUICK = Profile("quick", scenes=15, seeds=(0,))
+PAPER = Profile("paper", scenes=None, seeds=SEEDS)
+PROFILES = {profile.name: profile for profile in (QUICK, PAPER)}
+
+
+def calibration(error: float, module: str | None = None) -> str:
+    """Return the coupled calibration fault (paper, Section IV-B), at one module or at all."""
+    return f"calibration={error:+g}" + (f"@{module}" if module else "")

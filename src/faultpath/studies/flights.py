@@ -1,0 +1,156 @@
+"""From cells to trials: one study a setting, flown into one folder and laid out in one table."""
+
+import re
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from faultpath.execution import Progress, RunResult, run_study
+from faultpath.faults import parse_fault
+from faultpath.studies.cells import Cell, Profile, Setting
+from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
+
+SYSTEM = "quadrotor"
+
+
+@dataclass(frozen=True)
+class Leg:
+    """All cells of one setting, ready to fly."""
+
+    setting: Setting
+    system: System
+    study: Study
+
+    @property
+    def folder(self) -> str:
+        """Name of the folder that keeps its trials."""
+        return re.sub(r"[^A-Za-z0-9.=-]+", "_", str(self.setting))
+
+    @property
+    def trials(self) -> int:
+        """Trials of all arms."""
+        return len(self.study.arms()) * len(self.study.scenes)
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What the legs left."""
+
+    outcomes: OutcomeTable
+    results: Mapping[Setting, RunResult]
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How far all legs together are."""
+
+    leg: str
+    trials_done: float
+    trials_total: int
+    seconds_left: float | None
+
+
+def plan_legs(
+    cells: Iterable[Cell], profile: Profile, libraries: Mapping[str, str]
+) -> tuple[Leg, ...]:
+    """Return what a profile flies of `cells`, setting by setting in the order of the cells.
+
+    `libraries` gives the library that stands for a role, where it is not the one of that name.
+    Raises `UserError` for a library that cannot be read.
+    """
+    by_setting: dict[Setting, list[Cell]] = {}
+    for cell in profile.cells(cells):
+        by_setting.setdefault(cell.setting, []).append(cell)
+    return tuple(
+        _leg(setting, members, profile, libraries) for setting, members in by_setting.items()
+    )
+
+
+def fly(
+    legs: Sequence[Leg],
+    folder: Path,
+    workers: int,
+    progress: Callable[[Pace], None],
+    notice: Callable[[str], None],
+) -> Flown:
+    """Fly the legs one after the other, keeping what `folder` already holds.
+
+    Raises as `run_study` does.
+    """
+    clock = _Clock(sum(leg.trials for leg in legs), progress)
+    results: dict[Setting, RunResult] = {}
+    for leg in legs:
+        clock.begin(str(leg.setting))
+        results[leg.setting] = run_study(
+            leg.study,
+            folder / leg.folder,
+            workers,
+            clock.show,
+            notice,
+            leg.system,
+            shared=True,
+        )
+        clock.end(leg.trials)
+    rows = tuple(row for result in results.values() for row in result.outcomes.rows)
+    return Flown(OutcomeTable(rows), results)
+
+
+class _Clock:
+    """Adds the progress of the legs up; the pace is that of the trials flown by this process."""
+
+    def __init__(self, total: int, progress: Callable[[Pace], None]) -> None:
+        self._total, self._tell = total, progress
+        self._before, self._flown = 0, 0.0
+        self._leg = ""
+        self._kept: float | None = None
+        self._began, self._spent = time.monotonic(), 0.0
+
+    def begin(self, leg: str) -> None:
+        self._leg, self._kept, self._began = leg, None, time.monotonic()
+
+    def show(self, now: Progress) -> None:
+        if self._kept is None:  # the first report comes before anything is flown
+            self._kept = now.trials_estimated
+        flown = self._flown + now.trials_estimated - self._kept
+        done = self._before + now.trials_estimated
+        spent = self._spent + time.monotonic() - self._began
+        left = (self._total - done) * spent / flown if flown > 0 else None
+        self._tell(Pace(self._leg, done, self._total, left))
+
+    def end(self, trials: int) -> None:
+        flown = trials - (self._kept or 0)
+        self._before += trials
+        if flown > 0:
+            self._flown += flown
+            self._spent += time.monotonic() - self._began
+
+
+def _leg(
+    setting: Setting, cells: Sequence[Cell], profile: Profile, libraries: Mapping[str, str]
+) -> Leg:
+    spec = SystemSpec(name=SYSTEM, options=setting.options)
+    system = load_system(spec)
+    name = libraries.get(setting.library, setting.library)
+    library = system.library(name)
+    study = Study(
+        name=str(setting),
+        system=spec,
+        library=name,
+        scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
+        rows=tuple(_row(system, cell, seed) for cell in cells for seed in cell.seeds),
+    )
+    return Leg(setting, system, study)
+
+
+def _row(system: System, cell: Cell, seed: int) -> Row:
+    consumers = system.variants[cell.variant].consumers
+    faults = tuple(
+        fault
+        for text in cell.faults
+        for fault in parse_fault(
+            text, system.interface, system.fault_presets, system.control_dt_s
+        ).resolved(system.interface, consumers)
+    )
+    arm = Arm(variant=cell.variant, faults=faults, seed=seed)
+    return Row(variant=cell.variant, path=cell.path, seed=seed, arm=arm)

@@ -1,0 +1,173 @@
+"""What the studies' runs left, as tables, figures and claims ask for it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from faultpath.evidence import EvidenceTable, Measured, Measurement
+from faultpath.statistics import (
+    Detectable,
+    Effect,
+    Estimate,
+    Resamples,
+    SeedCounts,
+    TestResult,
+    detectable,
+    discordant_by_seed,
+    mean_effect,
+    median_effect,
+    success_effect,
+    success_rate,
+    success_test,
+)
+from faultpath.studies.cells import Cell
+from faultpath.trials import OutcomeTable, Pairs, Status, pair
+
+
+class NotRun(Exception):
+    """The run holds no trial of a cell, or no value of a measurement, that was asked for."""
+
+
+@dataclass(frozen=True)
+class Contrast:
+    """Two cells over the same scenes, first minus second."""
+
+    pairs: Pairs
+    resamples: Resamples
+
+    @cached_property
+    def draws(self) -> Effect:
+        """Difference in success with its bootstrap draws, percentage points."""
+        return success_effect(self.pairs.first.success, self.pairs.second.success, self.resamples)
+
+    @cached_property
+    def success(self) -> Estimate:
+        """Difference in success, percentage points."""
+        return self.draws.estimate()
+
+    @property
+    def counts(self) -> SeedCounts:
+        """Scenes in which only one of the two succeeded, seed by seed."""
+        return discordant_by_seed(self.pairs.first.success, self.pairs.second.success)
+
+    @property
+    def test(self) -> TestResult:
+        """The paper's test: exact McNemar for one seed, else the sign test on scene means."""
+        return success_test(self.pairs.first.success, self.pairs.second.success)
+
+    @property
+    def detectable(self) -> Detectable:
+        """The least difference in success that this contrast could have detected."""
+        return detectable(self.pairs.first.success, self.pairs.second.success)
+
+    @property
+    def detected_sign(self) -> int:
+        """Side of 0 on which interval and test agree that the difference lies; 0 for neither."""
+        return self.success.detected_sign if self.test.rejects() else 0
+
+    def terminal_distance(self) -> Effect:
+        """Mean difference in the distance to the goal at the end, metres, all paired scenes."""
+        first, second = self.pairs.first, self.pairs.second
+        if first.terminal_distance_m is None or second.terminal_distance_m is None:
+            raise NotRun("a trial without a terminal distance")
+        return mean_effect(
+            first.terminal_distance_m, second.terminal_distance_m, self.resamples, "m"
+        )
+
+    def crashes(self) -> Effect:
+        """Difference in crashes, percentage points."""
+        return success_effect(self.pairs.first.crash, self.pairs.second.crash, self.resamples)
+
+    def timeouts(self) -> Effect:
+        """Difference in timeouts, percentage points."""
+        first, second = self.pairs.first, self.pairs.second
+        late = [~(side.success | side.crash) for side in (first, second)]
+        return success_effect(late[0], late[1], self.resamples)
+
+    def time(self) -> Estimate:
+        """Median difference in time over jointly successful scenes, s; `NotRun` without one."""
+        first, second = self.pairs.first, self.pairs.second
+        joint = first.success & second.success
+        if not joint.any():
+            raise NotRun("a jointly successful scene")
+        return median_effect(first.time_s, second.time_s, joint, self.resamples).estimate()
+
+
+@dataclass(frozen=True)
+class Results:
+    """A run of studies: its outcome table, and what was measured on recorded windows."""
+
+    outcomes: OutcomeTable
+    evidence: EvidenceTable | None
+    library_hash: str
+    """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
+
+    def seeds(self, cell: Cell) -> tuple[int, ...]:
+        """Return the seeds of a cell that were run; `NotRun` without any."""
+        run = [s for s in self.outcomes.seeds(cell.variant, cell.path) if s in cell.seeds]
+        if not run:
+            raise NotRun(str(cell))
+        return tuple(run)
+
+    def has(self, cell: Cell) -> bool:
+        """Return whether any trial of a cell was run."""
+        return bool(self.outcomes.seeds(cell.variant, cell.path))
+
+    def contrast(
+        self,
+        first: Cell,
+        second: Cell,
+        *,
+        scenes: Sequence[int] | None = None,
+        other_noise: bool = False,
+    ) -> Contrast:
+        """Pair two cells over the seeds that both were run with; `scenes` keeps some indices.
+
+        `other_noise` pairs planners that differ in how they draw: their noise cannot agree.
+        """
+        seeds = [seed for seed in self.seeds(first) if seed in self.seeds(second)]
+        if not seeds:
+            raise NotRun(f"a seed that {first} and {second} share")
+        pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
+        if scenes is not None:
+            kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
+            pairs = pairs.only([scene for scene, index in kept if index in scenes])
+        if not pairs.scenes:
+            raise NotRun(f"a scene of {first} and {second} to compare")
+        return Contrast(pairs, self.resamples(len(pairs.scenes)))
+
+    def rate(self, cell: Cell, scenes: Sequence[int] | None = None) -> Estimate:
+        """Return the success of a cell in percent, mean over its seeds."""
+        contrast = self.contrast(cell, cell, scenes=scenes)
+        return success_rate(contrast.pairs.first.success, contrast.resamples).estimate()
+
+    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
+        """Return how many trials of a cell ended in each way, for one seed."""
+        if seed not in self.seeds(cell):
+            raise NotRun(f"{cell}, seed {seed}")
+        ends = [row.outcome.status for row in self.outcomes.arm(cell.variant, cell.path, seed)]
+        return {status: ends.count(status) for status in Status}
+
+    def median_time(self, cell: Cell, seed: int = 0) -> float:
+        """Return the median time of a cell's successful trials, s; `NotRun` without a success."""
+        self.counts(cell, seed)
+        rows = self.outcomes.arm(cell.variant, cell.path, seed)
+        times = [row.outcome.time_s for row in rows if row.outcome.status is Status.SUCCESS]
+        if not times:
+            raise NotRun(f"a success of {cell}")
+        return float(np.median(times))
+
+    def measured(self, measurement: Measurement) -> Measured:
+        """Return the values of a measurement; `NotRun` when it was not made."""
+        try:
+            if self.evidence is not None:
+                return self.evidence.values(measurement)
+        except KeyError:
+            pass
+        raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+
+    def resamples(self, n_scenes: int) -> Resamples:
+        """Return the scene resamples that every effect over so many scenes shares."""
+        return Resamples.draw(self.library_hash, n_scenes)
