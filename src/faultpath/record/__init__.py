@@ -1,5 +1,6 @@
 """The decision: effects, break-even frequency, verdict."""
 
+from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
 from faultpath.record.decide import decide
 from faultpath.record.model import (
     Cell,
@@ -12,19 +13,34 @@ from faultpath.record.model import (
     Verdict,
 )
 from faultpath.record.provenance import RunProvenance
+from faultpath.record.reproduction import Reproduction, SceneShown
+from faultpath.record.table import MISSING, Entry, Line, Point, Series, Sweep, Table
 from faultpath.record.words import CORRECT, SHARED
 
 __all__ = [
     "CORRECT",
+    "MISSING",
     "SHARED",
+    "Answer",
     "Cell",
+    "ClaimVerdict",
     "DecisionRecord",
     "Effect",
+    "Entry",
+    "Ledger",
+    "Line",
+    "Part",
     "Path",
     "PathBreakEven",
+    "Point",
     "Question",
+    "Reproduction",
     "Reversal",
     "RunProvenance",
+    "SceneShown",
+    "Series",
+    "Sweep",
+    "Table",
     "Verdict",
     "decide",
 ]

@@ -1,0 +1,61 @@
+"""A published claim set beside a run: confirmed, refuted or undecided."""
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+Answer = Literal["confirmed", "refuted", "undecided"]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Part(_Frozen):
+    """One of the statements that a claim is made of."""
+
+    words: str
+    """The statement, such as `WM-A+DCC minus WM-A at e = +0.1 is above 0`."""
+    answer: Answer
+    estimate: float | None = None
+    interval: tuple[float, float] | None = None
+    unit: str = ""
+    p_value: float | None = None
+    test: str = ""
+    mde: float | None = None
+    """Least effect that could have been detected, in `unit`."""
+    counts: str = ""
+    """Discordant scenes, first:second, seed by seed."""
+    reason: str = ""
+    """Why it is undecided, where the numbers do not say it."""
+
+
+class ClaimVerdict(_Frozen):
+    """A claim and what the run says of it; confirmed when every part is."""
+
+    id: str
+    kind: Literal["platform", "finding"]
+    verdict: Answer
+    estimate: float | None
+    """That of the part that decides: the first that fails to hold, or else the first."""
+    interval: tuple[float, float] | None
+    mde: float | None
+    unit: str
+    paper: str
+    """What the paper reports."""
+    claim: str
+    parts: tuple[Part, ...]
+
+
+class Ledger(_Frozen):
+    """All claims over one run."""
+
+    library: str
+    library_hash: str
+    scenes: int
+    seeds: tuple[int, ...]
+    claims: tuple[ClaimVerdict, ...]
+
+    def count(self, answer: Answer) -> int:
+        """Return how many claims got this answer."""
+        return sum(claim.verdict == answer for claim in self.claims)
