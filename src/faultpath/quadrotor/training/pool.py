@@ -26,8 +26,8 @@ _AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True)
-class Pool:
-    """A pool in memory."""
+class Flown:
+    """Recorded episodes in memory, wherever they were flown."""
 
     name: str
     values: np.ndarray
@@ -36,12 +36,29 @@ class Pool:
     """Control steps of each episode, [E]; it has one row more than steps."""
     vehicles: dict[str, np.ndarray]
     """Fields of `Vehicle` by name, float64, [E] or [3, E]."""
-    provenance: Provenance
 
     @property
     def first_row(self) -> np.ndarray:
         """Return the row of each episode's first instant, [E]."""
         return np.concatenate(([0], np.cumsum(self.steps + 1)[:-1]))
+
+    @classmethod
+    def decode(cls, name: str, rows: bytes, episodes: bytes) -> Flown:
+        """Read what `encode_rows` and `encode_episodes` wrote."""
+        table, flights = read_table(rows), read_table(episodes)
+        return cls(
+            name=name,
+            values=np.stack([table.column(name).to_numpy() for name in COMPONENTS]),
+            steps=steps_of(episodes),
+            vehicles={name: _vehicle(flights, name) for name in VehicleParameters.model_fields},
+        )
+
+
+@dataclass(frozen=True)
+class Pool(Flown):
+    """A pool in memory."""
+
+    provenance: Provenance
 
 
 def episodes_path(path: Path) -> Path:
@@ -95,15 +112,10 @@ def read_pool(path: Path) -> Pool:
     provenance = read_provenance(path)
     if provenance is None:
         raise UserError(f"there is no finished pool at {path}: collect it first.")
-    table = _read(path, provenance.rows_sha256)
+    rows = _read(path, provenance.rows_sha256)
     episodes = _read(episodes_path(path), provenance.episodes_sha256)
-    return Pool(
-        name=provenance.pool,
-        values=np.stack([table.column(name).to_numpy() for name in COMPONENTS]),
-        steps=episodes.column("steps").to_numpy().astype(np.int64),
-        vehicles={name: _vehicle(episodes, name) for name in VehicleParameters.model_fields},
-        provenance=provenance,
-    )
+    flown = Flown.decode(provenance.pool, rows, episodes)
+    return Pool(**vars(flown), provenance=provenance)
 
 
 def steps_of(episodes: bytes) -> np.ndarray:
@@ -116,7 +128,7 @@ def vehicle_seconds(steps: np.ndarray) -> float:
     return round(float(steps.sum()) * CONTROL_DT_S, 3)
 
 
-def _read(path: Path, sha256: str) -> pa.Table:
+def _read(path: Path, sha256: str) -> bytes:
     try:
         data = path.read_bytes()
     except OSError as error:
@@ -128,7 +140,7 @@ def _read(path: Path, sha256: str) -> pa.Table:
             f"{path} is not the file that its pool was finished with: delete the pool and collect "
             "it again."
         )
-    return read_table(data)
+    return data
 
 
 def _vehicle(episodes: pa.Table, name: str) -> np.ndarray:

@@ -47,9 +47,9 @@ def estimate(reconstruction: Reconstruction, windows: Windows, supplied: Supplie
     for index in torch.arange(len(windows)).split(BATCH):
         batch = windows.take(index)
         told = {tap: value[index] for tap, value in supplied.items()}
-        memory = reconstruction.begin(_delivered(reconstruction, batch, told, 0))
+        memory = reconstruction.begin(delivered(reconstruction, batch, told, 0))
         for step in range(1, HISTORY + 1):
-            memory = reconstruction.update(memory, _delivered(reconstruction, batch, told, step))
+            memory = reconstruction.update(memory, delivered(reconstruction, batch, told, step))
         found.append(reconstruction.wind(memory))
     return torch.cat(found, 1)
 
@@ -91,10 +91,10 @@ def measure(
     )
 
 
-def _delivered(
+def delivered(
     reconstruction: Reconstruction, windows: Windows, supplied: Supplied, step: int
 ) -> Delivered:
-    """Return what the module reads at a state; at the first, the command means nothing."""
+    """Return what the module reads at state `step`; at the first, the command means nothing."""
     state = windows.state(step)
     readings = {
         "position": state.position,

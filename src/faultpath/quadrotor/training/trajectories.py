@@ -14,15 +14,13 @@ from itertools import chain, product
 from multiprocessing import get_context
 from pathlib import Path
 
-import numpy as np
 import torch
-from torch import Tensor
 
 import faultpath
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import native
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training.flight import COMPONENTS, Flights
+from faultpath.quadrotor.training.closed_loop import record_flights
 from faultpath.quadrotor.training.pool import (
     encode_episodes,
     encode_rows,
@@ -32,11 +30,8 @@ from faultpath.quadrotor.training.pool import (
     write_pool,
 )
 from faultpath.quadrotor.training.provenance import Provenance
-from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
-from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.store import atomic
 from faultpath.store.lock import locked
-from faultpath.taps import Taps
 
 POOL = "trajectory"
 LIBRARY = "selection"
@@ -106,57 +101,15 @@ def _fly_all(todo: Sequence[Shard], place: Path, workers: int) -> Iterator[int]:
             yield 1
 
 
-@torch.inference_mode()
 @native.using(native.PORTABLE)
 def fly(shard: Shard, place: Path) -> None:
     """Fly a shard and write its two files, the rows last."""
     torch.set_num_threads(1)
     system = Quadrotor.parse(wind=shard.level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
-    scenes = scenes[shard.first : shard.first + BLOCK]
-    variant = system.variants[VARIANT]
-    taps = Taps(
-        system.interface,
-        scenes=scenes,
-        dt_s=system.control_dt_s,
-        seed=SEED,
-        bindings=variant.bindings,
-        consumers=variant.consumers,
-        privileged=variant.privileged,
-    )
-    flight = system.flight(VARIANT, scenes, taps, SEED)
-    world = flight.world
-    rows = [_row(world, command) for command in flight.commands()]
-    rows.append(_row(world, torch.full((4, len(world.lanes)), torch.nan)))
-    flights = _flights(torch.stack(rows, 1), world, system, scenes)
+    flights = record_flights(system, VARIANT, scenes[shard.first : shard.first + BLOCK], SEED)
     atomic.write(place / f"{shard.name}.episodes", encode_episodes(shard.episodes, flights))
     atomic.write(place / f"{shard.name}.rows", encode_rows(shard.episodes, flights))
-
-
-def _row(world: World, command: Tensor) -> Tensor:
-    """Return what is recorded at an instant, `[C, L]`, in the order of `COMPONENTS`."""
-    state = world.state
-    return torch.cat(
-        [
-            state.position,
-            state.velocity,
-            state.rotation.flatten(0, 1),
-            state.rate,
-            command,
-            world.wind_mps,
-            world.plant_state.thrusts.sum(0, keepdim=True),
-        ]
-    ).float()
-
-
-def _flights(rows: Tensor, world: World, system: Quadrotor, scenes: Sequence[str]) -> Flights:
-    """Cut flights off at the last instant before their trial ended."""
-    assert rows.shape[0] == len(COMPONENTS)
-    values = np.full((len(COMPONENTS), CONTROL_STEPS + 1, len(scenes)), np.nan, np.float32)
-    values[:, : rows.shape[1]] = rows[..., : len(scenes)].numpy()
-    steps = np.floor(world.progress.time_s.numpy()[: len(scenes)] * CONTROL_RATE_HZ + 1e-6)
-    vehicles = tuple(system.scene(scene).vehicle for scene in scenes)
-    return Flights(values, steps.astype(np.int64), vehicles)
 
 
 def _recipe() -> str:

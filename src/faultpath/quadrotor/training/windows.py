@@ -13,7 +13,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS
-from faultpath.quadrotor.training.pool import Pool, read_pool
+from faultpath.quadrotor.training.pool import Flown, read_pool
 
 HISTORY = 12  # paper, Section IV-A
 HORIZON = 20  # paper, Section IV-A
@@ -110,26 +110,31 @@ def windows_of(pool_path: Path) -> Windows:
     return cut(read_pool(pool_path))
 
 
-def starts(steps: int) -> list[int]:
+def starts(steps: int, stride: int = STRIDE) -> list[int]:
     """Return the first step of each window in an episode of `steps` control steps.
 
-    They are spread evenly, at least `STRIDE` apart, from the episode's start to its end.
+    They are spread evenly, at least `stride` apart, from the episode's start to its end.
     """
     room = steps - COMMANDS
     if room < 0:
         return []
-    gaps = room // STRIDE
+    gaps = room // stride
     return [room * i // gaps for i in range(gaps + 1)] if gaps else [room // 2]
 
 
-def cut(pool: Pool) -> Windows:
-    """Return the windows of a pool in memory."""
-    places = [
+def places(pool: Flown, stride: int = STRIDE) -> np.ndarray:
+    """Return where the windows of a pool stand, [W, 3]: episode, number in it, first step."""
+    found = [
         (episode, i, first)
         for episode, steps in enumerate(pool.steps.tolist())
-        for i, first in enumerate(starts(steps))
+        for i, first in enumerate(starts(steps, stride))
     ]
-    table = np.array(places, dtype=np.int64).reshape(-1, 3)
+    return np.array(found, dtype=np.int64).reshape(-1, 3)
+
+
+def cut(pool: Flown, stride: int = STRIDE) -> Windows:
+    """Return the windows of a pool in memory."""
+    table = places(pool, stride)
     episode, first = table[:, 0].copy(), table[:, 2]
     rows = np.arange(COMMANDS + 1)[:, None] + pool.first_row[episode] + first
 
@@ -148,7 +153,7 @@ def cut(pool: Pool) -> Windows:
             return values.view(3, 3, *values.shape[1:])
         return values[0] if name == "motor_thrust_n" else values
 
-    return Windows._build(tensor, tuple(f"{pool.name}/{e:05d}/{i}" for e, i, _ in places))
+    return Windows._build(tensor, tuple(f"{pool.name}/{e:05d}/{i}" for e, i, _ in table.tolist()))
 
 
 def _unit(name: str) -> float:

@@ -1,0 +1,159 @@
+"""Measuring: record what is missing, measure what is missing, and keep both."""
+
+import hashlib
+import os
+import signal
+import threading
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from functools import lru_cache
+from multiprocessing import get_context, parent_process
+from pathlib import Path
+from typing import TypeVar
+
+import torch
+
+from faultpath.errors import UserError
+from faultpath.evidence import EvidenceTable, Measurement, Progress
+from faultpath.quadrotor.evidence.code import digest
+from faultpath.quadrotor.evidence.quantities import measured
+from faultpath.quadrotor.evidence.recording import Block, Recorded, blocks, recorded
+from faultpath.store import atomic
+from faultpath.store.evidence import read_evidence, write_evidence
+from faultpath.store.lock import locked
+
+_ONE_THREAD = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+
+
+@dataclass(frozen=True)
+class Flying:
+    """A block that is not stored yet."""
+
+    block: Block
+    folder: Path
+
+    @property
+    def flights(self) -> int:
+        """What it counts for in the progress."""
+        return len(self.block.scenes)
+
+    def run(self) -> None:
+        """Fly it and store it."""
+        self.block.fly(self.folder)
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """A measurement, the blocks that it is made on, and where it is stored."""
+
+    measurement: Measurement
+    blocks: tuple[Block, ...]
+    folder: Path
+
+    flights: int = 1
+    """What it counts for in the progress: about as long as a flight."""
+
+    @property
+    def path(self) -> Path:
+        """Its file, named by a hash of everything that decides the numbers."""
+        content = (
+            self.measurement.key(),
+            tuple(block.stem for block in self.blocks),
+            digest("windows"),
+        )
+        name = hashlib.sha256(repr(content).encode()).hexdigest()[:24]
+        return self.folder / f"{name}.measured.parquet"
+
+    def run(self) -> None:
+        """Measure it and store it."""
+        found = measured(self.measurement, _recorded(self.blocks, self.folder))
+        write_evidence(self.path, EvidenceTable({self.measurement: found}))
+
+
+_Job = TypeVar("_Job", Flying, Measuring)
+
+
+def measure(
+    measurements: Sequence[Measurement],
+    scenes: int | None,
+    folder: Path,
+    workers: int = 1,
+    progress: Progress | None = None,
+) -> EvidenceTable:
+    """Measure the quadrotor on recorded windows; see `faultpath.evidence.Measurer`."""
+    tell = progress or (lambda done, total: None)
+    asked = tuple(dict.fromkeys(measurements))
+    recordings = dict.fromkeys(measurement.recording for measurement in asked)
+    flown = {recording: blocks(recording, scenes) for recording in recordings}
+    # One recording after the other: a worker keeps the windows of the one that it is at.
+    jobs = [
+        Measuring(measurement, flown[recording], folder)
+        for recording in recordings
+        for measurement in asked
+        if measurement.recording == recording
+    ]
+    _create(folder)
+    with locked(folder, lambda text: None):
+        atomic.sweep(folder)
+        waiting = [job for job in jobs if not job.path.exists()]
+        missing = [
+            Flying(block, folder)
+            for recording in dict.fromkeys(job.measurement.recording for job in waiting)
+            for block in flown[recording]
+            if not block.stored(folder)
+        ]
+        total, done = sum(job.flights for job in (*missing, *waiting)), 0
+        tell(done, total)
+        for stage in (missing, waiting):
+            for job in _run_all(stage, workers):
+                done += job.flights
+                tell(done, total)
+    found = {job.measurement: read_evidence(job.path).values(job.measurement) for job in jobs}
+    return EvidenceTable({measurement: found[measurement] for measurement in asked})
+
+
+@lru_cache(maxsize=1)
+def _recorded(blocks: tuple[Block, ...], folder: Path) -> Recorded:
+    return recorded(blocks, folder)
+
+
+def _create(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(
+            f"cannot make the folder {folder} ({error.strerror}): choose another path"
+        ) from error
+
+
+def _run_all(jobs: Sequence[_Job], workers: int) -> Iterator[_Job]:
+    """Run jobs and yield each when it is done; fewer than two workers are this process itself."""
+    if min(workers, len(jobs)) < 2:
+        for job in jobs:
+            job.run()
+            yield job
+        return
+    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
+    pool = ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn"), _start)
+    try:
+        running = {pool.submit(job.run): job for job in jobs}
+        for future in as_completed(running):
+            future.result()
+            yield running[future]
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _start() -> None:
+    """Make a worker process one thread that ends with Ctrl-C, silently, and with its parent."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    torch.set_num_threads(1)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)

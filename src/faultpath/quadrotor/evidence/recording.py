@@ -1,0 +1,131 @@
+"""Recorded flights, kept in a folder block by block, and the windows cut from them."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.errors import UserError
+from faultpath.evidence import Recording
+from faultpath.quadrotor.evidence.code import digest
+from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.training.closed_loop import record_flights
+from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows, join
+from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
+from faultpath.store import atomic
+
+BLOCK = 25
+"""Scenes flown together and stored together."""
+
+STRIDE = 5
+"""Least spacing of the windows of a flight, control steps. The paper has 1,461 windows of 100
+scenes; a quarter of a second between them gives about as many (derived)."""
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive scenes of a recording, and the stem of the two files that hold their flights."""
+
+    recording: Recording
+    first: int
+    scenes: tuple[str, ...]
+    stem: str
+
+    def stored(self, folder: Path) -> bool:
+        """Return whether the flights are there; the rows are written last."""
+        return (folder / f"{self.stem}.rows").exists()
+
+    def fly(self, folder: Path) -> None:
+        """Fly the scenes and store the flights."""
+        recording = self.recording
+        system = quadrotor(recording)
+        system.library(recording.library)
+        flights = record_flights(system, recording.variant, self.scenes, recording.seed)
+        episodes = range(self.first, self.first + len(self.scenes))
+        atomic.write(folder / f"{self.stem}.episodes", encode_episodes(episodes, flights))
+        atomic.write(folder / f"{self.stem}.rows", encode_rows(episodes, flights))
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """The windows of a recording, in the order of their scenes, then of their time."""
+
+    windows: Windows
+    scenes: tuple[str, ...]
+    """Scene of each window, `[W]`."""
+    steps: NDArray[np.int64]
+    """Control step of each window's present, `[W]`."""
+
+
+def quadrotor(recording: Recording) -> Quadrotor:
+    """Return the system that a recording is flown with; `UserError` for a wrong option."""
+    system = create(**recording.options)
+    assert isinstance(system, Quadrotor)
+    return system
+
+
+def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
+    """Return the blocks of the first `count` scenes of the recording's library, `None`: of all.
+
+    The stem is a hash of everything that decides the flights. `UserError` for an unknown library,
+    variant or option, or for more scenes than there are.
+    """
+    system = quadrotor(recording)
+    library = system.library(recording.library)
+    if recording.variant not in system.variants:
+        raise UserError(
+            f"the quadrotor has no variant {recording.variant!r} to record flights with: choose "
+            f"from {', '.join(system.variants)}"
+        )
+    scenes = tuple(scene.id for scene in library.scenes)
+    if count is not None and not 1 <= count <= len(scenes):
+        raise UserError(
+            f"{count} scenes of library {recording.library!r} cannot be recorded: ask for 1 to "
+            f"{len(scenes)}"
+        )
+    decisive = (
+        system.fingerprint(),
+        library.content_hash,
+        recording.variant,
+        recording.seed,
+        digest("flights"),
+    )
+    chosen = scenes[:count]
+    return tuple(
+        Block(recording, first, part, _hash((*decisive, first, part)))
+        for first, part in _parts(chosen)
+    )
+
+
+def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
+    """Read stored blocks of one recording and cut their windows.
+
+    `UserError` when no flight is as long as a window.
+    """
+    rows = join((folder / f"{block.stem}.rows").read_bytes() for block in blocks)
+    episodes = join((folder / f"{block.stem}.episodes").read_bytes() for block in blocks)
+    recording = blocks[0].recording
+    flown = Flown.decode(recording.name, rows, episodes)
+    place = places(flown, STRIDE)
+    if not len(place):
+        raise UserError(
+            f"no flight of the recording {recording.name} is as long as a window: record more "
+            "scenes"
+        )
+    scenes = [scene for block in blocks for scene in block.scenes]
+    return Recorded(
+        cut(flown, STRIDE),
+        tuple(scenes[episode] for episode in place[:, 0].tolist()),
+        place[:, 2] + HISTORY,
+    )
+
+
+def _parts(scenes: tuple[str, ...]) -> list[tuple[int, tuple[str, ...]]]:
+    return [(first, scenes[first : first + BLOCK]) for first in range(0, len(scenes), BLOCK)]
+
+
+def _hash(content: object) -> str:
+    return hashlib.sha256(repr(content).encode()).hexdigest()[:24]
