@@ -1,6 +1,17 @@
 """Table IV: reconstructions of the wind under an isolated and under a shared calibration error."""
 
+from collections.abc import Sequence
+
+from faultpath.record import Entry, Line, Table
+from faultpath.report import wording
+from faultpath.statistics import Estimate, difference_of_effects
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
+from faultpath.studies.contrasts import attempt, contrast_lines, joint, published_contrasts
+from faultpath.studies.entries import BLANK, bracket, difference, interval, printed, success
+from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS, flown
+from faultpath.studies.page import Built, Page
+from faultpath.studies.published import published
+from faultpath.studies.results import Results
 
 WINDY = Setting(wind="L3")
 METHODS = ("gru", "gru+dcc", "dob")
@@ -26,3 +37,120 @@ def cell(method: str, path: str) -> Cell:
 
 CELLS = tuple(cell(method, path) for method in METHODS for path in PATHS)
 MEASUREMENTS = ()
+
+TITLE = "Wind reconstruction under an isolated and under a shared calibration error"
+_PUBLISHED = "table_4_shared_calibration"
+NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}
+"""Names in print."""
+
+
+def build(results: Results) -> Built:
+    """Return Table IV."""
+    paper = published(_PUBLISHED)
+    rates = tuple(
+        Line(
+            label=NAMES[method],
+            entries=tuple(
+                success(printed(value), results, cell(method, path))
+                for value, path in zip(paper[NAMES[method]], PATHS, strict=True)
+            ),
+        )
+        for method in METHODS
+    )
+    contrasts = [line for pair in CONTRASTS for line in _contrast(results, *pair)]
+    table = Table(
+        name="table-4",
+        title=f"{TITLE} (paper, Table IV)",
+        columns=("Correct (0, 0)", "Reconstruction-only (+0.1, 0)", "Shared (+0.1, +0.1)"),
+        lines=(
+            Line(label="Success (%)"),
+            *rates,
+            *contrasts,
+            *_interaction(results),
+            *_terminal_distance(results),
+        ),
+        notes=(
+            flown(results, CELLS),
+            "Columns: calibration error of the reconstruction and of the predictor. Held-out "
+            "obstacles, wind L3. Predictor of seed 0 throughout; seeds are those of the "
+            "reconstruction.",
+            EVERY_NOISE,
+            WINS,
+            INTERVALS,
+            "Terminal distance: all paired scenes at the end of the trial; lower is better.",
+        ),
+    )
+    return (table,)
+
+
+def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:
+    return cell(first, path), cell(second, path)
+
+
+def _contrast(results: Results, first: str, second: str) -> tuple[Line, ...]:
+    one, two = NAMES[first], NAMES[second]
+    paper = published(_PUBLISHED, f"{one}_minus_{two}")
+    pairs = [_cells(first, second, path) for path in PATHS]
+    papers = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
+    return (
+        Line(label=f"{one} minus {two}, success (pp)"),
+        *contrast_lines(results, pairs, papers),
+    )
+
+
+def _interaction(results: Results) -> tuple[Line, ...]:
+    """Return how DOB minus GRU changes from reconstruction-only to shared error."""
+    paper = published(_PUBLISHED, "DOB_GRU_interaction_pp")
+
+    def change() -> tuple[Entry, ...]:
+        alone, shared = joint(
+            results, *(_cells("dob", "gru", path) for path in ("reconstruction-only", "shared"))
+        )
+        return _shown(difference_of_effects(alone.draws, shared.draws).estimate(), 1)
+
+    found = attempt(change, (wording.signed(paper["mean"]), bracket(paper["ci95"])))
+    return _last_column("DOB minus GRU, shared minus reconstruction-only (pp)", found)
+
+
+def _terminal_distance(results: Results) -> tuple[Line, ...]:
+    """Return GRU+DCC minus GRU in terminal goal distance, and its change to the shared error."""
+    paper = published(_PUBLISHED, "terminal_distance_GRU+DCC_minus_GRU_m")
+    rise = paper["shared_minus_isolated"]
+
+    def at(path: str) -> tuple[Entry, ...]:
+        contrast = results.contrast(*_cells("gru+dcc", "gru", path))
+        return _shown(contrast.terminal_distance().estimate(), 2)
+
+    def change() -> tuple[Entry, ...]:
+        alone, shared = joint(
+            results,
+            *(_cells("gru+dcc", "gru", path) for path in ("reconstruction-only", "shared")),
+        )
+        effect = difference_of_effects(alone.terminal_distance(), shared.terminal_distance())
+        return _shown(effect.estimate(), 2)
+
+    columns = [
+        attempt(lambda path=path: at(path), (wording.signed(mean, 2), bracket(ends, 2)))
+        for path, mean, ends in zip(PATHS, paper["mean"], paper["ci95"], strict=True)
+    ]
+    values, intervals = zip(*columns, strict=True)
+    found = attempt(change, (wording.signed(rise["mean"], 2), bracket(rise["ci95"], 2)))
+    return (
+        Line(label="Terminal distance, GRU+DCC minus GRU (m)"),
+        Line(label="Mean difference", entries=values),
+        Line(label="95 % interval", entries=intervals),
+        *_last_column("Shared minus reconstruction-only (m)", found),
+    )
+
+
+def _shown(estimate: Estimate, digits: int) -> tuple[Entry, ...]:
+    return difference(estimate, digits), interval(estimate, digits)
+
+
+def _last_column(label: str, entries: Sequence[Entry]) -> tuple[Line, ...]:
+    """Return a change between two columns, in the last of them."""
+    value, ends = ((BLANK,) * (len(PATHS) - 1) + (entry,) for entry in entries)
+    return Line(label=label, entries=value), Line(label="95 % interval", entries=ends)
+
+
+PAGE = Page("table-4", TITLE, CELLS, MEASUREMENTS, build)

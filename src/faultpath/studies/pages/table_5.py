@@ -1,7 +1,17 @@
 """Table V: from which fault frequency on each repair pays."""
 
+from typing import Any
+
+from faultpath.record import Entry, Line, Table
+from faultpath.report import wording
+from faultpath.statistics import BreakEven, break_even
 from faultpath.studies.cells import Cell
+from faultpath.studies.contrasts import attempt, joint
+from faultpath.studies.notes import INTERVALS, flown
+from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import table_2, table_4
+from faultpath.studies.published import published
+from faultpath.studies.results import Contrast, Results
 
 REPAIRS: dict[str, tuple[Cell, Cell, Cell, Cell]] = {
     "WM-A": tuple(
@@ -21,3 +31,73 @@ REPAIRS: dict[str, tuple[Cell, Cell, Cell, Cell]] = {
 
 CELLS = tuple(cell for cells in REPAIRS.values() for cell in cells)
 MEASUREMENTS = ()
+
+TITLE = "From which fault frequency on each repair pays"
+_PUBLISHED = "table_5_decision_record"
+_LABELS = {
+    "GRU/reconstruction-only": "GRU: reconstruction only",
+    "GRU/shared": "GRU: shared with predictor",
+}
+NO_CROSSING = "no crossing"
+
+
+def build(results: Results) -> Built:
+    """Return Table V."""
+    table = Table(
+        name="table-5",
+        title=f"{TITLE} (paper, Table V)",
+        columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]"),
+        lines=tuple(_line(results, key, cells) for key, cells in REPAIRS.items()),
+        notes=(
+            flown(results, CELLS),
+            "Success of the repair minus that of its baseline, under correct inputs (Δ0) and under "
+            "e = +0.1 (Δf). The repair is favoured above the fault frequency p* = −Δ0/(Δf − Δ0), "
+            "unless the entry says below; 0: at every frequency; no crossing: at none.",
+            "Predictors without wind, GRU at wind L3. p* resamples both effects together.",
+            INTERVALS,
+        ),
+    )
+    return (table,)
+
+
+def _line(results: Results, key: str, cells: tuple[Cell, Cell, Cell, Cell]) -> Line:
+    paper = published(_PUBLISHED, key)
+    texts = (
+        wording.signed(paper["delta_0_pp"]),
+        wording.signed(paper["delta_f_pp"]),
+        _published_frequency(paper),
+    )
+
+    def entries() -> tuple[Entry, ...]:
+        correct, faulty = joint(results, cells[:2], cells[2:])
+        result = break_even(correct.draws, faulty.draws)
+        return _difference(correct), _difference(faulty), Entry(text=_frequency(result))
+
+    return Line(label=_LABELS.get(key, key), entries=attempt(entries, texts))
+
+
+def _difference(contrast: Contrast) -> Entry:
+    text = wording.signed(contrast.success.value)
+    return Entry(text=text, detected=bool(contrast.detected_sign))
+
+
+def _frequency(result: BreakEven) -> str:
+    if result.p_star is None or result.low is None or result.high is None:
+        return NO_CROSSING
+    text = " ".join(
+        (
+            wording.percent(result.p_star),
+            f"[{wording.percent(result.low)}, {wording.percent(result.high)}]",
+        )
+    )
+    return f"below {text}" if result.direction == "below" else text
+
+
+def _published_frequency(paper: dict[str, Any]) -> str:
+    if paper["p_star_percent"] is None:
+        return NO_CROSSING
+    low, high = paper["ci95"]
+    return f"{paper['p_star_percent']} [{low}, {high}]"
+
+
+PAGE = Page("table-5", TITLE, CELLS, MEASUREMENTS, build)

@@ -1,9 +1,19 @@
 """Table VI: how reconstruction bias and calibration error compensate, and the negative offset."""
 
+from collections.abc import Callable, Iterable
+
 from faultpath.evidence import Measurement
+from faultpath.record import Entry, Line, Table
+from faultpath.report import wording
 from faultpath.studies.cells import Cell, calibration
+from faultpath.studies.contrasts import PublishedContrast, contrast_entries
+from faultpath.studies.entries import BLANK, guarded, mean_of_medians, printed, success
+from faultpath.studies.notes import flown
+from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import recording
-from faultpath.studies.pages.table_4 import ERROR, METHODS, PATHS, WINDY
+from faultpath.studies.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
+from faultpath.studies.published import published
+from faultpath.studies.results import Results
 
 INTERFACES: dict[str, tuple[str, ...]] = {
     "correct": PATHS["correct"],
@@ -81,3 +91,117 @@ MEASUREMENTS = (
         for seed in seeds(method)
     ),
 )
+
+TITLE = "How reconstruction bias and calibration error compensate"
+_PUBLISHED = "table_6_compensation"
+_HEADS = {
+    "correct": "(0, 0)",
+    "reconstruction-only": "(+0.1, 0)",
+    "predictor-only": "(0, +0.1)",
+    "shared": "(+0.1, +0.1)",
+}
+_SEEDS_OF_WINDOWS = (
+    "Mean over reconstruction seeds of the median over windows; DOB has nothing to train. Windows: "
+    "flights with the GRU of seed 0 under correct inputs, obstacles at L3."
+)
+
+
+def build(results: Results) -> Built:
+    """Return Table VI, part (a) and part (b)."""
+    return _acceleration(results), _negative_offset(results)
+
+
+def by_seed(
+    measure: Callable[[str, str, int], Measurement], method: str, interface: str
+) -> tuple[Measurement, ...]:
+    """Return one measurement for each seed of a method."""
+    return tuple(measure(method, interface, seed) for seed in seeds(method))
+
+
+def _acceleration(results: Results) -> Table:
+    paper = published(_PUBLISHED, "a_analytic_acceleration_error_mps2")
+    alone = paper["GRU_wind_term_only"]
+    wind_term = {"reconstruction-only": alone["isolated"], "shared": alone["shared"]}
+    return Table(
+        name="table-6a",
+        title="Error of the analytic acceleration (paper, Table VI (a))",
+        columns=tuple(f"{head} (m/s²)" for head in _HEADS.values()),
+        lines=(
+            *(
+                Line(
+                    label=NAMES[method],
+                    entries=tuple(
+                        _accelerations(
+                            printed(value, 2), results, by_seed(acceleration_error, method, at)
+                        )
+                        for value, at in zip(paper[NAMES[method]], INTERFACES, strict=True)
+                    ),
+                )
+                for method in METHODS
+            ),
+            Line(
+                label="GRU, wind term alone",
+                entries=tuple(
+                    _accelerations(
+                        printed(wind_term[at], 2), results, by_seed(wind_term_error, "gru", at)
+                    )
+                    if at in wind_term
+                    else BLANK
+                    for at in INTERFACES
+                ),
+            ),
+        ),
+        notes=(
+            "Columns: calibration error of the reconstruction and of the predictor.",
+            _SEEDS_OF_WINDOWS,
+        ),
+    )
+
+
+@guarded
+def _accelerations(results: Results, measurements: Iterable[Measurement]) -> Entry:
+    return Entry(text=wording.plain(mean_of_medians(results, measurements), 2))
+
+
+def _negative_offset(results: Results) -> Table:
+    paper = published(_PUBLISHED, "b_negative_offset_success")
+    printed_tests = zip(paper["dcc_only_gru_only"], paper["mcnemar_exact_p"], strict=True)
+    columns = [
+        contrast_entries(
+            results,
+            negative("gru+dcc", path),
+            negative("gru", path),
+            PublishedContrast(wins_losses=counts, p_value=wording.p_value(p)),
+        )
+        for path, (counts, p) in zip(NEGATIVE, printed_tests, strict=True)
+    ]
+    _, intervals, counts, tests, least = zip(*columns, strict=True)
+    return Table(
+        name="table-6b",
+        title="Success under the negative offset (paper, Table VI (b))",
+        columns=("(0, 0)", "(−0.1, 0)", "(−0.1, −0.1)"),
+        lines=(
+            *(
+                Line(
+                    label=f"{NAMES[method]} (%)",
+                    entries=tuple(
+                        success(printed(value), results, negative(method, path))
+                        for value, path in zip(paper[NAMES[method]], NEGATIVE, strict=True)
+                    ),
+                )
+                for method in ("gru", "gru+dcc")
+            ),
+            Line(label="GRU+DCC minus GRU, 95 % interval (pp)", entries=intervals),
+            Line(label="GRU+DCC only:GRU only", entries=counts),
+            Line(label="Exact McNemar p", entries=tests),
+            Line(label="Least detectable difference (pp)", entries=least),
+        ),
+        notes=(
+            flown(results, CELLS),
+            "Columns: calibration error of the reconstruction and of the predictor, both of seed "
+            "0; obstacles at L3.",
+        ),
+    )
+
+
+PAGE = Page("table-6", TITLE, CELLS, MEASUREMENTS, build)

@@ -1,0 +1,42 @@
+"""Notes below tables: what was flown for them, and how to read their intervals."""
+
+from collections.abc import Iterable
+
+from faultpath.report import wording
+from faultpath.studies.cells import Cell
+from faultpath.studies.results import NotRun, Results
+
+INTERVALS = (
+    "Intervals: 95 % percentile bootstrap of whole scenes, for these trained models and recorded "
+    "executions. Bold: the interval excludes 0 and, for success, the paper's test rejects at 0.05 "
+    "(exact McNemar for one seed, sign test on scene means for several)."
+)
+WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
+EVERY_NOISE = (
+    "What is not trained anew meets the planner noise of every seed, so that it pairs with every "
+    "trained seed; the paper pairs one run of it with each."
+)
+WINDOWS = "Errors: median over all windows, 20 control steps ahead."
+
+
+def flown(results: Results, cells: Iterable[Cell]) -> str:
+    """Return scenes and seeds that a run holds of cells, library by library."""
+    scenes: dict[str, set[str]] = {}
+    seeds: dict[str, set[int]] = {}
+    for cell in cells:
+        library = cell.setting.library
+        try:
+            run = results.seeds(cell)
+        except NotRun:
+            continue
+        seeds.setdefault(library, set()).update(run)
+        rows = results.outcomes.arm(cell.variant, cell.path, run[0])
+        scenes.setdefault(library, set()).update(row.outcome.scene for row in rows)
+    if not scenes:
+        return "No trial of this table was run."
+    parts = (
+        f"{wording.counted(len(scenes[library]), 'scene')} of the {library} library, "
+        f"{wording.seeds(tuple(sorted(seeds[library])))}"
+        for library in scenes
+    )
+    return wording.sentence("; ".join(parts))
