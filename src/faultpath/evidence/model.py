@@ -70,3 +70,7 @@ class Measurement(_Frozen):
         """Content hash: equal measurements have equal keys, on every machine."""
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+    def __hash__(self) -> int:
+        """Hash by content, as `key`."""
+        return hash(self.key())

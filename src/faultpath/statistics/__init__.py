@@ -11,6 +11,13 @@ from faultpath.statistics.bootstrap import (
     success_rate,
 )
 from faultpath.statistics.breakeven import break_even, break_even_point
+from faultpath.statistics.clustered import (
+    WindowQuantiles,
+    quantile_difference,
+    quantile_estimate,
+    quantile_log_ratio,
+    quantile_ratio,
+)
 from faultpath.statistics.correlation import spearman
 from faultpath.statistics.estimate import (
     SCENES,
@@ -61,6 +68,7 @@ __all__ = [
     "Reversal",
     "SeedCounts",
     "TestResult",
+    "WindowQuantiles",
     "against_each_seed",
     "break_even",
     "break_even_point",
@@ -78,6 +86,10 @@ __all__ = [
     "mean_value",
     "median_effect",
     "percentile_interval",
+    "quantile_difference",
+    "quantile_estimate",
+    "quantile_log_ratio",
+    "quantile_ratio",
     "reversal",
     "sign_counts",
     "sign_test",

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from multiprocessing import get_context, parent_process
 from pathlib import Path
-from typing import TypeVar
 
 import torch
 
@@ -71,9 +70,6 @@ class Measuring:
         write_evidence(self.path, EvidenceTable({self.measurement: found}))
 
 
-_Job = TypeVar("_Job", Flying, Measuring)
-
-
 def measure(
     measurements: Sequence[Measurement],
     scenes: int | None,
@@ -127,7 +123,7 @@ def _create(folder: Path) -> None:
         ) from error
 
 
-def _run_all(jobs: Sequence[_Job], workers: int) -> Iterator[_Job]:
+def _run_all(jobs: Sequence[Flying | Measuring], workers: int) -> Iterator[Flying | Measuring]:
     """Run jobs and yield each when it is done; fewer than two workers are this process itself."""
     if min(workers, len(jobs)) < 2:
         for job in jobs:

@@ -1,0 +1,214 @@
+"""Quantiles over windows, with intervals that resample whole scenes.
+
+Windows of a scene share a vehicle, a flight and its wind, so they are not independent: a resample
+takes or leaves a scene with all its windows. Arrays are [windows, seeds], or [windows] for one
+seed; a quantile is taken over the windows of each seed, and then the mean over seeds (paper, Table
+VI: "mean of per-seed window medians").
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.bootstrap import Effect
+from faultpath.statistics.estimate import SCENES, Estimate
+from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
+from faultpath.statistics.resamples import Resamples
+
+N_RESAMPLES = 10_000
+
+_SLACK = 1e-9
+"""On a count of windows: q times a count may miss the whole number that it is by rounding."""
+
+
+class WindowQuantiles:
+    """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
+
+    Args:
+        scenes: Scene of each window, [windows].
+        seed: Seed of the resamples; the scenes themselves name the stream.
+        n_resamples: How many.
+    """
+
+    def __init__(
+        self, scenes: Sequence[str], *, seed: int = 0, n_resamples: int = N_RESAMPLES
+    ) -> None:
+        if not scenes:
+            raise ValueError("no window, so there is no quantile")
+        names, self._scene = np.unique(np.asarray(scenes), return_inverse=True)
+        label = "windows/" + "/".join(map(str, names))
+        self.resamples = Resamples.draw(label, len(names), seed=seed, n_resamples=n_resamples)
+
+    def value(self, values: Numbers, q: float, unit: str = "") -> Effect:
+        """Return the quantile ``q`` of ``values``."""
+        array = self._checked(by_scene_and_seed(values), q)
+        return self._effect(self._quantiles(array, q), unit, f"quantile {q:g} over windows")
+
+    def difference(self, first: Numbers, second: Numbers, q: float, unit: str = "") -> Effect:
+        """Return the quantile ``q`` of ``first`` minus that of ``second``, on the same windows."""
+        return self._compare(
+            first, second, q, np.subtract, unit, f"difference of quantiles {q:g} over windows"
+        )
+
+    def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Effect:
+        """Return the natural logarithm of the ratio of two quantiles, which must be positive.
+
+        Without a difference it is 0, as for other effects. Over seeds it is the mean logarithm.
+        """
+        return self._compare(
+            first,
+            second,
+            q,
+            lambda one, two: np.log(_positive(one)) - np.log(_positive(two)),
+            "log",
+            f"log ratio of quantiles {q:g} over windows",
+        )
+
+    def _compare(
+        self,
+        first: Numbers,
+        second: Numbers,
+        q: float,
+        how: Callable[[Floats, Floats], Floats],
+        unit: str,
+        what: str,
+    ) -> Effect:
+        one, two = (self._quantiles(self._checked(array, q), q) for array in paired(first, second))
+        return self._effect(np.asarray(how(one, two), dtype=np.float64), unit, what)
+
+    def _checked(self, values: Floats, q: float) -> Floats:
+        if not 0.0 < q < 1.0:
+            raise ValueError(f"a quantile lies between 0 and 1, not at {q}")
+        if len(values) != len(self._scene):
+            raise ValueError(f"{len(values)} values are not of {len(self._scene)} windows")
+        return values
+
+    def _quantiles(self, values: Floats, q: float) -> Floats:
+        """Return [1 + resamples, seeds]: the quantile itself, and in every resample."""
+        return np.stack([self._column(column, q) for column in values.T], axis=1)
+
+    def _column(self, values: Floats, q: float) -> Floats:
+        order = np.argsort(values, kind="stable")
+        ordered, scene = values[order], self._scene[order]
+        whole = np.ones((1, self.resamples.n_scenes))
+        blocks = (whole, *self.resamples.blocks())
+        # A block is cut further: there are many more windows than scenes.
+        parts = [part for block in blocks for part in _cut(block, len(values))]
+        return np.concatenate([_quantile(ordered, part[:, scene], q) for part in parts])
+
+    def _effect(self, quantiles: Floats, unit: str, what: str) -> Effect:
+        means = quantiles.mean(axis=1)
+        return Effect(
+            value=float(means[0]),
+            draws=means[1:],
+            per_seed=tuple(float(value) for value in quantiles[0]),
+            unit=unit,
+            method=f"{what}, percentile bootstrap of scenes",
+            estimand=SCENES,
+            n_scenes=self.resamples.n_scenes,
+            n_seeds=quantiles.shape[1],
+            resamples=self.resamples,
+        )
+
+
+def quantile_estimate(
+    values: Numbers,
+    scenes: Sequence[str],
+    q: float = 0.5,
+    *,
+    unit: str = "",
+    level: float = 0.95,
+    seed: int = 0,
+    n_resamples: int = N_RESAMPLES,
+) -> Estimate:
+    """Return a quantile over windows, mean over seeds, with its interval."""
+    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
+    return drawn.value(values, q, unit).estimate(level)
+
+
+def quantile_difference(
+    first: Numbers,
+    second: Numbers,
+    scenes: Sequence[str],
+    q: float = 0.5,
+    *,
+    unit: str = "",
+    level: float = 0.95,
+    seed: int = 0,
+    n_resamples: int = N_RESAMPLES,
+) -> Estimate:
+    """Return the difference of two quantiles over the same windows, first minus second."""
+    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
+    return drawn.difference(first, second, q, unit).estimate(level)
+
+
+def quantile_log_ratio(
+    first: Numbers,
+    second: Numbers,
+    scenes: Sequence[str],
+    q: float = 0.5,
+    *,
+    level: float = 0.95,
+    seed: int = 0,
+    n_resamples: int = N_RESAMPLES,
+) -> Estimate:
+    """Return the logarithm of first over second; 0 is no difference."""
+    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
+    return drawn.log_ratio(first, second, q).estimate(level)
+
+
+def quantile_ratio(
+    first: Numbers,
+    second: Numbers,
+    scenes: Sequence[str],
+    q: float = 0.5,
+    *,
+    level: float = 0.95,
+    seed: int = 0,
+    n_resamples: int = N_RESAMPLES,
+) -> Estimate:
+    """Return first over second, geometric mean over seeds; 1 is no difference.
+
+    Its ``detected_sign`` means nothing: ask ``quantile_log_ratio``, of which this is the
+    exponential.
+    """
+    log = quantile_log_ratio(
+        first, second, scenes, q, level=level, seed=seed, n_resamples=n_resamples
+    )
+    assert log.low is not None
+    assert log.high is not None
+    return log.model_copy(
+        update={
+            "value": float(np.exp(log.value)),
+            "low": float(np.exp(log.low)),
+            "high": float(np.exp(log.high)),
+            "per_seed": tuple(float(np.exp(value)) for value in log.per_seed or ()),
+            "unit": "1",
+            "method": log.method.removeprefix("log "),
+        }
+    )
+
+
+def _quantile(ordered: Floats, counts: Floats, q: float) -> Floats:
+    """Return the quantile of ascending values [n] that occur ``counts`` [resamples, n] times.
+
+    Where q of the count is a whole number it is the mean of the two values beside it, so that the
+    quantile 0.5 is the median.
+    """
+    reached = np.cumsum(counts, axis=1)
+    rank = q * reached[:, -1:]
+    lower = (reached < rank - _SLACK).sum(axis=1)
+    upper = (reached <= rank + _SLACK).sum(axis=1)
+    return (ordered[lower] + ordered[upper]) / 2.0
+
+
+def _cut(block: Floats, n_windows: int) -> list[NDArray[np.float64]]:
+    step = max(1, 100_000 // n_windows)
+    return [block[first : first + step] for first in range(0, len(block), step)]
+
+
+def _positive(quantiles: Floats) -> Floats:
+    if not (quantiles > 0.0).all():
+        raise ValueError("a ratio needs quantiles above 0 in every resample")
+    return quantiles

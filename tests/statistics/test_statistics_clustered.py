@@ -1,0 +1,120 @@
+"""Quantiles over windows: what they are, and that whole scenes are resampled."""
+
+import numpy as np
+import pytest
+
+from faultpath.statistics import (
+    Resamples,
+    WindowQuantiles,
+    difference_of_effects,
+    quantile_difference,
+    quantile_estimate,
+    quantile_log_ratio,
+    quantile_ratio,
+)
+from faultpath.streams import generator
+
+FEW = {"n_resamples": 400}
+
+
+def windows(n_scenes=20, each=8, seeds=1):
+    """Return values and scenes; windows of a scene lie close together."""
+    stream = generator("test-windows", "clustered", 0)
+    level = stream.normal(size=(n_scenes, 1, seeds))
+    values = np.exp(level + 0.1 * stream.normal(size=(n_scenes, each, seeds)))
+    scenes = [f"s{i:02d}" for i in range(n_scenes) for _ in range(each)]
+    return values.reshape(-1, seeds), scenes
+
+
+@pytest.mark.parametrize("q", [0.1, 0.5, 0.9])
+@pytest.mark.parametrize("each", [1, 7, 8])
+def test_the_value_is_the_quantile_of_all_windows(q, each):
+    values, scenes = windows(each=each)
+    found = quantile_estimate(values, scenes, q, unit="m", **FEW)
+    assert found.value == np.quantile(values, q, method="averaged_inverted_cdf")
+    assert found.unit == "m"
+    assert found.n_scenes == 20
+    assert quantile_estimate(values, scenes, 0.5, **FEW).value == np.median(values)
+
+
+def test_draws_are_the_quantiles_of_the_windows_of_the_resampled_scenes():
+    values, scenes = windows(n_scenes=6, each=5)
+    drawn = WindowQuantiles(scenes, n_resamples=30)
+    found = drawn.value(values, 0.5).draws
+    by_scene = values.reshape(6, 5)
+    for draw, counts in zip(found, drawn.resamples.counts, strict=True):
+        repeated = np.repeat(by_scene, counts.astype(int), axis=0)
+        assert draw == np.median(repeated)
+
+
+def test_an_interval_over_scenes_is_wider_than_one_that_takes_windows_for_independent():
+    values, scenes = windows(each=40)
+    clustered = quantile_estimate(values, scenes, **FEW)
+    alone = quantile_estimate(values, [str(i) for i in range(len(values))], **FEW)
+    assert clustered.high - clustered.low > 2 * (alone.high - alone.low)
+
+
+def test_the_order_of_windows_does_not_matter():
+    values, scenes = windows()
+    order = generator("test-order", "clustered", 0).permutation(len(values))
+    shuffled = quantile_estimate(values[order], [scenes[i] for i in order], **FEW)
+    assert shuffled == quantile_estimate(values, scenes, **FEW)
+
+
+def test_seeds_are_averaged_after_their_quantiles():
+    values, scenes = windows(seeds=3)
+    found = quantile_estimate(values, scenes, **FEW)
+    assert found.per_seed == tuple(np.median(values, axis=0))
+    assert found.value == pytest.approx(np.mean(found.per_seed), rel=1e-12)
+    assert found.n_seeds == 3
+
+
+def test_a_difference_is_paired_and_mirrors_when_the_arms_are_swapped():
+    values, scenes = windows()
+    noise = windows()[0][::-1]
+    same = quantile_difference(values, values, scenes, **FEW)
+    assert (same.value, same.low, same.high) == (0.0, 0.0, 0.0)
+    shifted = quantile_difference(values + 0.5, values, scenes, **FEW)
+    assert shifted.low == pytest.approx(0.5)
+    assert shifted.high == pytest.approx(0.5)
+    forth = quantile_difference(values, noise, scenes, **FEW)
+    assert quantile_difference(noise, values, scenes, **FEW) == forth.swapped()
+
+
+def test_a_ratio_is_the_exponential_of_its_logarithm_and_scale_free():
+    values, scenes = windows(seeds=2)
+    other = values[::-1].copy()
+    log = quantile_log_ratio(values, other, scenes, **FEW)
+    ratio = quantile_ratio(values, other, scenes, **FEW)
+    assert [ratio.value, ratio.low, ratio.high] == list(np.exp([log.value, log.low, log.high]))
+    assert quantile_ratio(3 * values, 3 * other, scenes, **FEW).value == pytest.approx(ratio.value)
+    tripled = quantile_log_ratio(3 * values, values, scenes, **FEW)
+    assert tripled.value == pytest.approx(np.log(3))
+    assert tripled.detected_sign == 1
+
+
+def test_effects_of_the_same_windows_are_joint():
+    values, scenes = windows()
+    drawn = WindowQuantiles(scenes, **FEW)
+    one, two = drawn.value(values, 0.5, "m"), drawn.value(values + 1.0, 0.5, "m")
+    change = difference_of_effects(one, two).estimate()
+    assert (change.value, change.low, change.high) == pytest.approx((1.0, 1.0, 1.0))
+    assert WindowQuantiles(scenes, **FEW).resamples.same_as(drawn.resamples)
+    assert isinstance(drawn.resamples, Resamples)
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda values, scenes: quantile_estimate(values, scenes, 0.0),
+        lambda values, scenes: quantile_estimate(values, scenes, 1.0),
+        lambda values, scenes: quantile_estimate(values[:-1], scenes),
+        lambda values, scenes: quantile_estimate(np.full_like(values, np.nan), scenes),
+        lambda values, scenes: quantile_difference(values, values[:-1], scenes),
+        lambda values, scenes: quantile_ratio(values, values * 0, scenes),
+        lambda values, scenes: WindowQuantiles([]),
+    ],
+)
+def test_what_has_no_quantile_is_refused(ask):
+    with pytest.raises(ValueError, match=r"."):
+        ask(*windows())
