@@ -6,7 +6,7 @@ from dataclasses import astuple, dataclass
 from faultpath.record import MISSING, Entry, Line
 from faultpath.report import wording
 from faultpath.studies.cells import Cell
-from faultpath.studies.entries import bracket, interval
+from faultpath.studies.entries import bracket, interval, success
 from faultpath.studies.results import Contrast, NotRun, Results
 
 ROWS = ("Difference", "95 % interval", "Wins:losses")
@@ -18,6 +18,8 @@ COLUMNS = (
     "Least detectable (pp)",
 )
 """Headings of what `contrast_entries` returns: the first as rows, or all as columns."""
+COMPARED = ("First (%)", "Second (%)", *COLUMNS)
+"""Headings of what `comparison` returns."""
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,27 @@ def contrast_lines(
     rows = zip(*columns, strict=True)
     return tuple(
         Line(label=label, entries=entries) for label, entries in zip(ROWS, rows, strict=True)
+    )
+
+
+def comparison(
+    results: Results,
+    label: str,
+    first: Cell,
+    second: Cell,
+    rates: tuple[str, str] = ("", ""),
+    published: PublishedContrast = UNPUBLISHED,
+    *,
+    other_noise: bool = False,
+) -> Line:
+    """Return the success of two cells and their contrast as one row; `rates` are the paper's."""
+    return Line(
+        label=label,
+        entries=(
+            success(rates[0], results, first),
+            success(rates[1], results, second),
+            *contrast_entries(results, first, second, published, other_noise=other_noise),
+        ),
     )
 
 

@@ -1,6 +1,7 @@
 """Entries of tables: our figure as text beside the paper's, and a dash where the run has none."""
 
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec
@@ -17,6 +18,8 @@ from faultpath.trials import Status
 
 P = ParamSpec("P")
 
+MIN_SCENES = 6
+"""With fewer, no interval is called a detection: even if all agree no test rejects at 0.05."""
 BLANK = Entry(text="")
 """Where a column has nothing to say of a line."""
 
@@ -94,13 +97,17 @@ def time_difference(results: Results, first: Cell, second: Cell) -> Entry:
     """Median difference in time over jointly successful scenes, s, with their number."""
     found = results.contrast(first, second).time()
     text = f"{wording.with_interval(found, 2)} (n = {found.n_scenes})"
-    return Entry(text=text, detected=bool(found.detected_sign))
+    return Entry(text=text, detected=detected(found))
+
+
+def detected(estimate: Estimate) -> bool:
+    """Return whether a difference without a test is detected: its interval excludes 0."""
+    return estimate.n_scenes >= MIN_SCENES and estimate.detected_sign != 0
 
 
 def difference(estimate: Estimate, digits: int = 1) -> Entry:
-    """Return a difference that is no success: detected where its interval excludes 0."""
-    text = wording.signed(estimate.value, digits)
-    return Entry(text=text, detected=bool(estimate.detected_sign))
+    """Return a difference for which the paper has no test."""
+    return Entry(text=wording.signed(estimate.value, digits), detected=detected(estimate))
 
 
 def interval(estimate: Estimate, digits: int = 1) -> Entry:
@@ -113,20 +120,18 @@ def quantile(results: Results, measurement: Measurement, q: float = 0.5) -> floa
     values = results.measured(measurement).values
     if not len(values):
         raise NotRun(f"a window for {measurement.subject}")
-    return float(np.quantile(values, q))
+    # As `statistics.clustered` takes it, so that tables and claims agree to the bit.
+    return float(np.quantile(values, q, method="averaged_inverted_cdf"))
 
 
 def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
     """Return the mean over seeds of their window medians, over the seeds that were measured."""
     medians: list[float] = []
-    missing = NotRun("a measurement")
     for measurement in by_seed:
-        try:
+        with suppress(NotRun):
             medians.append(quantile(results, measurement))
-        except NotRun as reason:
-            missing = reason
     if not medians:
-        raise missing
+        raise NotRun("a measurement of any seed")
     return float(np.mean(medians))
 
 

@@ -12,6 +12,10 @@ INTERVALS = (
     "(exact McNemar for one seed, sign test on scene means for several)."
 )
 WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
+LEAST = (
+    "Least detectable: the difference that would be detected at 0.05 with power 0.8; none: so few "
+    "scenes detect no difference."
+)
 EVERY_NOISE = (
     "What is not trained anew meets the planner noise of every seed, so that it pairs with every "
     "trained seed; the paper pairs one run of it with each."

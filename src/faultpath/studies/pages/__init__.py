@@ -2,6 +2,7 @@
 
 from faultpath.studies.page import Page
 from faultpath.studies.pages import (
+    detection,
     figure_1,
     figure_2,
     figure_3,
@@ -11,19 +12,25 @@ from faultpath.studies.pages import (
     table_4,
     table_5,
     table_6,
+    text_calibration,
+    text_mechanism,
+    text_planning,
+    text_wind,
 )
 
-PAGES: tuple[Page, ...] = tuple(
-    module.PAGE
-    for module in (
-        figure_1,
-        figure_2,
-        table_1,
-        table_2,
-        figure_3,
-        table_3,
-        table_4,
-        table_5,
-        table_6,
-    )
+PAGES: tuple[Page, ...] = (
+    figure_1.PAGE,
+    figure_2.PAGE,
+    table_1.PAGE,
+    table_2.PAGE,
+    figure_3.PAGE,
+    text_calibration.PAGE,
+    table_3.PAGE,
+    table_4.PAGE,
+    table_5.PAGE,
+    text_wind.PAGE,
+    table_6.PAGE,
+    text_mechanism.PAGE,
+    text_planning.PAGE,
+    detection.PAGE,
 )

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from faultpath.evidence import Measurement
 from faultpath.record import Entry, Line, Table
 from faultpath.studies.cells import SEEDS, Cell, calibration
-from faultpath.studies.contrasts import contrast_lines, published_contrasts
+from faultpath.studies.contrasts import PublishedContrast, contrast_lines, published_contrasts
 from faultpath.studies.entries import centimetres, of_seed, printed, success
 from faultpath.studies.notes import INTERVALS, WINDOWS, WINS, flown
 from faultpath.studies.page import Built, Page
@@ -63,6 +63,16 @@ def build(results: Results) -> Built:
     return (table,)
 
 
+def published_repairs(baseline: str) -> tuple[PublishedContrast, ...]:
+    """Return what the paper prints of repair minus baseline, one for each of `ERRORS`."""
+    paper, name = published(_PUBLISHED), NAMES[baseline]
+    return published_contrasts(
+        paper[f"{name}_dcc_minus_baseline_pp"],
+        paper[f"{name}_ci95"],
+        paper[f"{name}_wins_losses"],
+    )
+
+
 def _matched(results: Results, repair: str, baseline: str) -> tuple[Line, ...]:
     name = NAMES[baseline]
     paper = published(_PUBLISHED)
@@ -79,15 +89,7 @@ def _matched(results: Results, repair: str, baseline: str) -> tuple[Line, ...]:
             for model in (baseline, repair)
         ),
         Line(label=f"{NAMES[repair]} minus {name} (pp)"),
-        *contrast_lines(
-            results,
-            pairs,
-            published_contrasts(
-                paper[f"{name}_dcc_minus_baseline_pp"],
-                paper[f"{name}_ci95"],
-                paper[f"{name}_wins_losses"],
-            ),
-        ),
+        *contrast_lines(results, pairs, published_repairs(baseline)),
     )
 
 

@@ -6,7 +6,13 @@ from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.statistics import Estimate, difference_of_effects
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
-from faultpath.studies.contrasts import attempt, contrast_lines, joint, published_contrasts
+from faultpath.studies.contrasts import (
+    PublishedContrast,
+    attempt,
+    contrast_lines,
+    joint,
+    published_contrasts,
+)
 from faultpath.studies.entries import BLANK, bracket, difference, interval, printed, success
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS, flown
 from faultpath.studies.page import Built, Page
@@ -83,18 +89,21 @@ def build(results: Results) -> Built:
     return (table,)
 
 
+def published_methods(first: str, second: str) -> tuple[PublishedContrast, ...]:
+    """Return what the paper prints of one method minus another, one for each of `PATHS`."""
+    paper = published(_PUBLISHED, f"{NAMES[first]}_minus_{NAMES[second]}")
+    return published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
+
+
 def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:
     return cell(first, path), cell(second, path)
 
 
 def _contrast(results: Results, first: str, second: str) -> tuple[Line, ...]:
-    one, two = NAMES[first], NAMES[second]
-    paper = published(_PUBLISHED, f"{one}_minus_{two}")
     pairs = [_cells(first, second, path) for path in PATHS]
-    papers = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
     return (
-        Line(label=f"{one} minus {two}, success (pp)"),
-        *contrast_lines(results, pairs, papers),
+        Line(label=f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
+        *contrast_lines(results, pairs, published_methods(first, second)),
     )
 
 

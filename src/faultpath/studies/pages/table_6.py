@@ -118,6 +118,15 @@ def by_seed(
     return tuple(measure(method, interface, seed) for seed in seeds(method))
 
 
+def published_negative() -> tuple[PublishedContrast, ...]:
+    """Return what the paper prints of GRU+DCC minus GRU, one for each of `NEGATIVE`."""
+    paper = published(_PUBLISHED, "b_negative_offset_success")
+    return tuple(
+        PublishedContrast(wins_losses=counts, p_value=wording.p_value(p))
+        for counts, p in zip(paper["dcc_only_gru_only"], paper["mcnemar_exact_p"], strict=True)
+    )
+
+
 def _acceleration(results: Results) -> Table:
     paper = published(_PUBLISHED, "a_analytic_acceleration_error_mps2")
     alone = paper["GRU_wind_term_only"]
@@ -165,15 +174,9 @@ def _accelerations(results: Results, measurements: Iterable[Measurement]) -> Ent
 
 def _negative_offset(results: Results) -> Table:
     paper = published(_PUBLISHED, "b_negative_offset_success")
-    printed_tests = zip(paper["dcc_only_gru_only"], paper["mcnemar_exact_p"], strict=True)
     columns = [
-        contrast_entries(
-            results,
-            negative("gru+dcc", path),
-            negative("gru", path),
-            PublishedContrast(wins_losses=counts, p_value=wording.p_value(p)),
-        )
-        for path, (counts, p) in zip(NEGATIVE, printed_tests, strict=True)
+        contrast_entries(results, negative("gru+dcc", path), negative("gru", path), printed_test)
+        for path, printed_test in zip(NEGATIVE, published_negative(), strict=True)
     ]
     _, intervals, counts, tests, least = zip(*columns, strict=True)
     return Table(
