@@ -1,0 +1,150 @@
+"""C05 to C15: calibration errors and training on them (paper, Table II, Figure 3 and text)."""
+
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims.contrasts import combined, success
+from faultpath.studies.claims.found import Found
+from faultpath.studies.claims.rules import (
+    ABOVE,
+    BELOW,
+    NO_LOSS,
+    REPORTED,
+    ByPoint,
+    at_least,
+    more_than,
+)
+from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.claims.summaries import at_lower_success
+from faultpath.studies.claims.sweep import above_worst, range_gained, worst_difference
+from faultpath.studies.claims.windows import ratio
+from faultpath.studies.pages import figure_3, in_text, table_2
+
+FAULTS = (0.1, -0.1)
+WM_A, WM_U = table_2.PAIRS
+REPAIR, BASELINE = WM_A
+PLUS, MINUS = ((table_2.cell(BASELINE, e), (table_2.error_under(e),)) for e in FAULTS)
+"""Success and prediction error of WM-A under each error."""
+
+
+def _lost(model: str, error: float) -> tuple[Cell, Cell]:
+    """Return the cells whose difference is the success that a model loses to an error."""
+    return table_2.cell(model, 0.0), table_2.cell(model, error)
+
+
+def _repaired(pair: tuple[str, str], error: float) -> Statement[Found]:
+    repair, baseline = pair
+    return Statement(
+        f"success of {_name(repair)} minus {_name(baseline)} at e = {error:+g}",
+        success(table_2.cell(repair, error), table_2.cell(baseline, error)),
+        ABOVE,
+    )
+
+
+def _noisy(error: float) -> tuple[Cell, Cell]:
+    return in_text.noisy(REPAIR, error), in_text.noisy(BASELINE, error)
+
+
+def _responds(first: str, second: str, probe: str, times: float) -> Statement[Found]:
+    return Statement(
+        f"median response of {_name(first)} to the {probe} probe over that of {_name(second)}",
+        ratio((in_text.response(first, probe),), (in_text.response(second, probe),)),
+        at_least(times),
+    )
+
+
+def _name(model: str) -> str:
+    return model.upper()
+
+
+CLAIMS: dict[str, Statements] = {
+    **{
+        claim: (
+            Statement(
+                f"success of WM-A lost at e = {error:+g}",
+                success(*_lost(BASELINE, error)),
+                at_least(lost_pp, detected=True),
+            ),
+        )
+        for claim, error, lost_pp in (("C05", 0.1, 30), ("C06", -0.1, 20))
+    },
+    "C07": (
+        Statement(
+            "success of WM-U at e = +0.1 minus at e = 0",
+            success(*reversed(_lost(WM_U[1], 0.1))),
+            BELOW,
+        ),
+        Statement(
+            "success lost at e = +0.1 by WM-A, minus that by WM-U",
+            combined((1, _lost(BASELINE, 0.1)), (-1, _lost(WM_U[1], 0.1))),
+            more_than(0),
+        ),
+    ),
+    "C08": (
+        Statement(
+            "success of WM-U lost at e = -0.1, minus a third of that lost at e = +0.1,",
+            combined((1, _lost(WM_U[1], -0.1)), (-1 / 3, _lost(WM_U[1], 0.1))),
+            ByPoint(-1),
+        ),
+    ),
+    "C09": tuple(_repaired(WM_A, error) for error in FAULTS),
+    "C10": (_repaired(WM_U, 0.1),),
+    "C11": tuple(
+        Statement(
+            f"success of {_name(repair)} minus {_name(baseline)} at e = 0",
+            success(table_2.cell(repair, 0.0), table_2.cell(baseline, 0.0)),
+            NO_LOSS,
+        )
+        for repair, baseline in table_2.PAIRS
+    ),
+    "C12": (
+        Statement(
+            "median error of WM-A at the sign with less success, minus at the other,",
+            at_lower_success(PLUS, MINUS, 0.5),
+            BELOW,
+        ),
+        Statement(
+            "90th percentile of that error at the sign with less success, minus at the other,",
+            at_lower_success(PLUS, MINUS, 0.9),
+            ABOVE,
+        ),
+    ),
+    "C13": (
+        Statement(
+            "worst success of WM-U+DCC over the sweep, minus that of WM-A+DCC,",
+            worst_difference("wm-u+dcc", "wm-a+dcc"),
+            ByPoint(1),
+        ),
+        Statement(
+            f"success of WM-A+DCC at e = {figure_3.ERRORS[0]:g}, minus its worst,",
+            above_worst("wm-a+dcc", figure_3.ERRORS[0]),
+            ByPoint(-1, strict=False),
+        ),
+        *(
+            Statement(
+                f"errors around 0 with success of 90 and more, {_name(repair)} minus "
+                f"{_name(baseline)},",
+                range_gained(repair, baseline),
+                ByPoint(1),
+            )
+            for repair, baseline in table_2.PAIRS
+        ),
+    ),
+    "C14": (
+        _responds(BASELINE, REPAIR, "calibration", 3),
+        _responds(REPAIR, BASELINE, "history shuffle", 2),
+    ),
+    "C15": (
+        *(
+            Statement(
+                f"success of WM-A+DCC minus WM-A with noise and delay at e = {error:+g}",
+                success(*_noisy(error)),
+                ABOVE,
+            )
+            for error in FAULTS
+        ),
+        Statement(
+            "success of WM-A+DCC minus WM-A with noise and delay at e = 0",
+            success(*_noisy(0.0)),
+            REPORTED,
+        ),
+    ),
+}

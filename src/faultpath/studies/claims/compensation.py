@@ -1,0 +1,126 @@
+"""C30, C31, C34, C35: how a biased reconstruction makes up for a wrong model (paper, Table VI)."""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+from faultpath.evidence import Measurement
+from faultpath.studies.claims.found import Found
+from faultpath.studies.claims.rules import (
+    BELOW,
+    NO_LOSS,
+    ByPoint,
+    Rule,
+    Within,
+    at_least,
+    less_than,
+)
+from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.claims.summaries import rank_correlation
+from faultpath.studies.claims.windows import (
+    Subject,
+    difference_of_changes,
+    difference_of_quantiles,
+    ratio,
+)
+from faultpath.studies.pages import table_4, table_6
+
+NOMINAL, ISOLATED, PREDICTOR, SHARED = table_6.INTERFACES
+GRU, DCC, DOB = table_4.METHODS
+WITHIN_15_PERCENT = Within(0.85, 1.15)
+Measure: TypeAlias = Callable[[str, str, int], Measurement]
+
+
+def _of(measure: Measure, method: str, interface: str) -> Subject:
+    return tuple(measure(method, interface, seed) for seed in table_6.seeds(method))
+
+
+def _acceleration(method: str, interface: str) -> Subject:
+    return _of(table_6.acceleration_error, method, interface)
+
+
+def _over_nominal(method: str, interface: str, rule: Rule[Found]) -> Statement[Found]:
+    return Statement(
+        f"acceleration error of {method.upper()}, {interface} over correct,",
+        ratio(_acceleration(method, interface), _acceleration(method, NOMINAL)),
+        rule,
+    )
+
+
+def _repair_moves_less(
+    what: str, other: str, first: str, second: str, *, size: bool
+) -> Statement[Found]:
+    """State that GRU+DCC changes less than another method from one interface to another."""
+    repair, rival = (
+        (_acceleration(method, first), _acceleration(method, second)) for method in (DCC, other)
+    )
+    return Statement(
+        f"{what} in acceleration error, GRU+DCC minus {other.upper()},",
+        difference_of_changes(repair, rival, size=size),
+        BELOW,
+    )
+
+
+def _correlation(what: str, measure: Measure) -> Statement[Found]:
+    cells = [
+        (table_4.cell(method, path), _of(measure, method, path))
+        for method in table_4.METHODS
+        for path in table_4.PATHS
+    ]
+    return Statement(
+        f"rank correlation of success with {what} over {len(cells)} cells",
+        rank_correlation(cells),
+        ByPoint(-1, -0.5, strict=False),
+    )
+
+
+CLAIMS: dict[str, Statements] = {
+    "C30": (
+        *(_over_nominal(method, SHARED, WITHIN_15_PERCENT) for method in (GRU, DOB)),
+        *(
+            _over_nominal(method, path, at_least(1.5))
+            for method in (GRU, DOB)
+            for path in (ISOLATED, PREDICTOR)
+        ),
+        *(
+            _repair_moves_less(
+                "change from correct to reconstruction-only", other, NOMINAL, ISOLATED, size=True
+            )
+            for other in (GRU, DOB)
+        ),
+        *(
+            _repair_moves_less(
+                "recovery from reconstruction-only to shared", other, SHARED, ISOLATED, size=False
+            )
+            for other in (GRU, DOB)
+        ),
+    ),
+    "C31": (
+        Statement(
+            "wind-term error of GRU, shared over reconstruction-only,",
+            ratio(
+                _of(table_6.wind_term_error, GRU, SHARED),
+                _of(table_6.wind_term_error, GRU, ISOLATED),
+            ),
+            WITHIN_15_PERCENT,
+        ),
+        Statement(
+            "acceleration error of GRU, shared over reconstruction-only,",
+            ratio(_acceleration(GRU, SHARED), _acceleration(GRU, ISOLATED)),
+            less_than(0.7),
+        ),
+    ),
+    "C34": (
+        _correlation("acceleration error", table_6.acceleration_error),
+        _correlation("20-step position error", table_6.position_error),
+    ),
+    "C35": (
+        Statement(
+            "median position error with GRU, shared minus reconstruction-only,",
+            difference_of_quantiles(
+                _of(table_6.position_error, GRU, SHARED),
+                _of(table_6.position_error, GRU, ISOLATED),
+            ),
+            NO_LOSS,
+        ),
+    ),
+}

@@ -1,0 +1,143 @@
+"""Quantities of paired trials: differences between cells, and differences of differences."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TypeAlias, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics import (
+    Effect,
+    Resamples,
+    detectable,
+    discordant_by_seed,
+    median_effect,
+    success_effect,
+    success_test,
+)
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims.found import MIN_SCENES, Found, Quantity, of_effect
+from faultpath.studies.results import Contrast, NotRun, Results
+from faultpath.trials.pairing import Trials
+
+Pair: TypeAlias = tuple[Cell, Cell]
+Bools: TypeAlias = NDArray[np.bool_]
+T = TypeVar("T")
+
+TELLING_PP = 20.0
+"""A difference in success that a run must be able to detect for its absence to say anything."""
+
+
+def seed_zero(cell: Cell) -> Cell:
+    """Return a cell cut to its first seed."""
+    return replace(cell, seeds=(0,))
+
+
+def success(first: Cell, second: Cell, *, other_noise: bool = False) -> Quantity:
+    """Return the difference in success; `other_noise` as in `Results.contrast`."""
+    return _outcomes(first, second, lambda trials: trials.success, other_noise)
+
+
+def crashes(first: Cell, second: Cell) -> Quantity:
+    """Return the difference in crashes."""
+    return _outcomes(first, second, lambda trials: trials.crash)
+
+
+def timeouts(first: Cell, second: Cell) -> Quantity:
+    """Return the difference in timeouts."""
+    return _outcomes(first, second, lambda trials: ~(trials.success | trials.crash))
+
+
+def time(first: Cell, second: Cell) -> Quantity:
+    """Return the median difference in time over jointly successful scenes."""
+
+    def found(results: Results) -> Found:
+        contrast = results.contrast(first, second)
+        one, two = contrast.pairs.first, contrast.pairs.second
+        joint = one.success & two.success
+        if not joint.any():
+            raise NotRun(f"a scene in which both {first} and {second} succeed")
+        return of_effect(median_effect(one.time_s, two.time_s, joint, contrast.resamples))
+
+    return found
+
+
+def success_draws(contrast: Contrast) -> Effect:
+    """Return the difference in success with its draws."""
+    return contrast.draws
+
+
+def combined(
+    *terms: tuple[float, Pair], effect: Callable[[Contrast], Effect] = success_draws
+) -> Quantity:
+    """Return a weighted sum of differences over common scenes, on shared resamples."""
+
+    def found(results: Results) -> Found:
+        contrasts = together(results, *(pair for _, pair in terms))
+        weights = [weight for weight, _ in terms]
+        return of_effect(weighted(weights, [effect(contrast) for contrast in contrasts]))
+
+    return found
+
+
+def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
+    """Return contrasts over the seeds and the scenes that all of them have, so that they join.
+
+    `NotRun` when there is no such seed or scene.
+    """
+    seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
+    cut = [(replace(one, seeds=seeds), replace(two, seeds=seeds)) for one, two in pairs]
+    if not seeds:
+        raise NotRun(f"a seed that {pairs[0][0]} and all it is compared with share")
+    contrasts = [results.contrast(one, two) for one, two in cut]
+    scenes = _common([contrast.pairs.scenes for contrast in contrasts])
+    if not scenes:
+        raise NotRun(f"a scene that {pairs[0][0]} and all it is compared with share")
+    resamples = results.resamples(len(scenes))
+    return tuple(Contrast(contrast.pairs.only(scenes), resamples) for contrast in contrasts)
+
+
+def weighted(weights: list[float], effects: list[Effect]) -> Effect:
+    """Return a weighted sum of effects, draw by draw; they share their resamples."""
+    assert all(effect.resamples.same_as(effects[0].resamples) for effect in effects)
+    alike = len({len(effect.per_seed) for effect in effects}) == 1
+    by_seed = zip(*(effect.per_seed for effect in effects), strict=True) if alike else ()
+    return replace(
+        effects[0],
+        value=sum(w * effect.value for w, effect in zip(weights, effects, strict=True)),
+        draws=np.sum([w * e.draws for w, e in zip(weights, effects, strict=True)], axis=0),
+        per_seed=tuple(sum(np.multiply(weights, each).tolist()) for each in by_seed),
+        counts=None,
+    )
+
+
+def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:
+    """Return the difference of two binary arms [scenes, seeds] with the paper's test."""
+    effect = success_effect(first, second, resamples)
+    return Found(
+        value=effect.value,
+        interval=effect.estimate().interval if effect.n_scenes >= MIN_SCENES else None,
+        unit=effect.unit,
+        n_scenes=effect.n_scenes,
+        test=success_test(first, second),
+        mde=detectable(first, second).value,
+        telling_mde=TELLING_PP,
+        counts=str(discordant_by_seed(first, second)),
+    )
+
+
+def _outcomes(
+    first: Cell, second: Cell, ended: Callable[[Trials], Bools], other_noise: bool = False
+) -> Quantity:
+    def found(results: Results) -> Found:
+        contrast = results.contrast(first, second, other_noise=other_noise)
+        pairs = contrast.pairs
+        return compared(ended(pairs.first), ended(pairs.second), contrast.resamples)
+
+    return found
+
+
+def _common(groups: list[tuple[T, ...]]) -> tuple[T, ...]:
+    first, *others = groups
+    return tuple(item for item in first if all(item in other for other in others))

@@ -1,0 +1,82 @@
+"""What a run shows of a statement: a number, its interval, and the paper's test where one is."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from faultpath.statistics import Effect, TestResult
+from faultpath.statistics.distributions import normal_quantile
+from faultpath.studies.results import Results
+
+MIN_SCENES = 6
+"""Fewer scenes than this decide nothing: they cannot reject at 0.05 even when all agree."""
+ROUNDING = 1e-12
+"""Draws that spread no more than this are all the same."""
+MULTIPLE = normal_quantile(0.975) + normal_quantile(0.8)
+"""Standard errors that a difference must have to be detected at 0.05 in four runs of five."""
+
+
+class Undecidable(Exception):
+    """The run holds everything that was asked for, and yet nothing that decides."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """A quantity of the run; rules say what it makes of a statement."""
+
+    value: float | None
+    interval: tuple[float, float] | None
+    """Ends of the 95 % interval; `None` where none is known or too few scenes give it."""
+    unit: str
+    n_scenes: int
+    test: TestResult | None = None
+    """The paper's test, for outcomes that are yes or no."""
+    mde: float | None = None
+    """Least difference from 0 that would have been detected, in `unit`."""
+    telling_mde: float | None = None
+    """With a greater `mde` than this, not detecting a difference says nothing."""
+    counts: str = ""
+
+    @property
+    def enough(self) -> bool:
+        """Whether there are scenes enough to decide anything."""
+        return self.n_scenes >= MIN_SCENES
+
+    @property
+    def side(self) -> int:
+        """Side of 0 on which the whole interval lies; 0 when it touches 0, or without one."""
+        if self.interval is None:
+            return 0
+        low, high = self.interval
+        return 1 if low > 0 else -1 if high < 0 else 0
+
+    @property
+    def detected(self) -> int:
+        """Side of 0 on which interval and test agree; the interval decides where no test is."""
+        return self.side if self.test is None or self.rejected == self.side else 0
+
+    @property
+    def rejected(self) -> int:
+        """Side that the test finds ahead; without a test, the side of the interval."""
+        if self.test is None:
+            return self.side
+        if not self.test.rejects():
+            return 0
+        return 1 if self.test.counts.first_only > self.test.counts.second_only else -1
+
+
+Quantity = Callable[[Results], Found]
+"""Works a quantity out; raises `NotRun` or `Undecidable`."""
+
+
+def of_effect(effect: Effect, telling_mde: float | None = None) -> Found:
+    """Return an effect without a test: its interval decides."""
+    enough = effect.n_scenes >= MIN_SCENES
+    spread = float(effect.draws.std())
+    return Found(
+        value=effect.value,
+        interval=effect.estimate().interval if enough else None,
+        unit=effect.unit,
+        n_scenes=effect.n_scenes,
+        mde=MULTIPLE * spread if enough and spread > ROUNDING else None,
+        telling_mde=telling_mde,
+    )

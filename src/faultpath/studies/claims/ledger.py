@@ -1,0 +1,43 @@
+"""Every claim of the paper, answered from the tables of one run."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from faultpath.record import ClaimVerdict, Ledger
+from faultpath.studies.claims import (
+    calibration,
+    compensation,
+    others,
+    predictors,
+    record,
+    shared,
+    wind,
+)
+from faultpath.studies.claims.statement import Statements, verdict
+from faultpath.studies.published import published_claims
+from faultpath.studies.results import Results
+
+SUBJECTS = (predictors, calibration, wind, shared, compensation, record, others)
+
+STATEMENTS: Mapping[str, Statements] = MappingProxyType(
+    {claim: statements for subject in SUBJECTS for claim, statements in subject.CLAIMS.items()}
+)
+"""What each claim consists of, by its id."""
+
+
+def evaluate(results: Results) -> tuple[ClaimVerdict, ...]:
+    """Answer every published claim, in the paper's order; what was not run leaves it undecided."""
+    return tuple(verdict(claim, STATEMENTS[claim.id], results) for claim in published_claims())
+
+
+def ledger(
+    results: Results, library: str, library_hash: str, scenes: int, seeds: Sequence[int]
+) -> Ledger:
+    """Return all answers with what they were answered on."""
+    return Ledger(
+        library=library,
+        library_hash=library_hash,
+        scenes=scenes,
+        seeds=tuple(seeds),
+        claims=evaluate(results),
+    )

@@ -1,0 +1,77 @@
+"""C01 to C04: prediction accuracy and closed-loop performance (paper, Table I)."""
+
+from itertools import combinations
+
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims.contrasts import crashes, seed_zero, success, time, timeouts
+from faultpath.studies.claims.rules import ABOVE, BELOW, NotDetected, at_least
+from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.claims.windows import Subject, difference_of_quantiles, ratio
+from faultpath.studies.pages import table_1
+
+NAMES = {
+    table_1.DKI: "DKI",
+    table_1.WM_A: "WM-A",
+    table_1.WM_U: "WM-U",
+    table_1.TRUE_PARAMETER: "the true-parameter model",
+}
+SEEN = {table_1.WM_A: table_1.WM_A_SEEN, table_1.TRUE_PARAMETER: table_1.TRUE_PARAMETER_SEEN}
+"""Each with ground-truth clearance."""
+WORSE_THAN = (
+    (table_1.DKI, table_1.WM_A),
+    (table_1.DKI, table_1.WM_U),
+    (table_1.WM_A, table_1.TRUE_PARAMETER),
+    (table_1.WM_U, table_1.TRUE_PARAMETER),
+)
+
+
+def _error(cell: Cell) -> Subject:
+    return (table_1.common_error(cell),)
+
+
+def _clearance(cell: Cell, what: str) -> str:
+    return f"{what} of {NAMES[cell]} with ground-truth clearance minus without"
+
+
+CLAIMS: dict[str, Statements] = {
+    "C01": (
+        Statement(
+            "median common error of DKI over that of the true-parameter model",
+            ratio(_error(table_1.DKI), _error(table_1.TRUE_PARAMETER)),
+            at_least(5),
+        ),
+        *(
+            Statement(
+                f"median common error of {NAMES[worse]} minus that of {NAMES[better]}",
+                difference_of_quantiles(_error(worse), _error(better)),
+                ABOVE,
+            )
+            for worse, better in WORSE_THAN
+        ),
+    ),
+    "C02": tuple(
+        Statement(
+            f"success of {NAMES[first]} minus {NAMES[second]}",
+            success(seed_zero(first), seed_zero(second)),
+            NotDetected(),
+        )
+        for first, second in combinations(table_1.PREDICTORS, 2)
+    ),
+    "C03": (
+        Statement(
+            "median difference in time where both succeed, DKI minus WM-A",
+            time(table_1.DKI, table_1.WM_A),
+            ABOVE,
+        ),
+    ),
+    "C04": (
+        *(
+            Statement(_clearance(cell, "crashes"), crashes(seen, cell), BELOW)
+            for cell, seen in SEEN.items()
+        ),
+        *(
+            Statement(_clearance(cell, "timeouts"), timeouts(seen, cell), at_least(0))
+            for cell, seen in SEEN.items()
+        ),
+    ),
+}

@@ -1,0 +1,78 @@
+"""Whether an effect is above 0 in one condition and below 0 in another."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from faultpath.statistics import difference_of_effects
+from faultpath.studies.claims.contrasts import Pair, together
+from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
+from faultpath.studies.results import Results
+
+ALL_SEEDS = 3
+"""Trainings that the paper speaks of."""
+
+
+@dataclass(frozen=True)
+class Turn(Found):
+    """The change of an effect, second condition minus first, with the effect in both."""
+
+    before: int = 0
+    """Side of 0 on which the effect is detected in the first condition."""
+    after: int = 0
+    signs_differ: bool = False
+    """Whether the estimates are above 0 before and below 0 after."""
+
+
+@dataclass(frozen=True)
+class TurnsDown:
+    """The effect is above 0 before and below 0 after, and the change is detected."""
+
+    def words(self, subject: str) -> str:
+        """Return the statement."""
+        return f"{subject} turns from above 0 to below 0"
+
+    def judge(self, found: Turn) -> Judged:
+        """Refute when the change, or either effect, is detected on the other side."""
+        if found.interval is None:
+            return FEW_SCENES
+        if found.detected > 0 or found.before < 0 or found.after > 0:
+            return REFUTED
+        if found.detected < 0 and found.signs_differ:
+            return CONFIRMED
+        why = "the estimates do not differ in sign as claimed" if found.detected else ""
+        return Judged("undecided", why)
+
+
+def turn(before: Pair, after: Pair) -> Callable[[Results], Turn]:
+    """Return the change of a difference in success from one pair of cells to another."""
+
+    def found(results: Results) -> Turn:
+        one, two = together(results, before, after)
+        change = of_effect(difference_of_effects(one.draws, two.draws))
+        return Turn(
+            value=change.value,
+            interval=change.interval,
+            unit=change.unit,
+            n_scenes=change.n_scenes,
+            mde=change.mde,
+            counts=f"{one.counts}, then {two.counts}",
+            before=one.detected_sign,
+            after=two.detected_sign,
+            signs_differ=one.draws.value > 0 > two.draws.value,
+        )
+
+    return found
+
+
+def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
+    """Return in how many seeds the difference is above 0 before and below 0 after."""
+
+    def found(results: Results) -> Found:
+        one, two = (contrast.draws for contrast in together(results, before, after))
+        if one.n_seeds < ALL_SEEDS:
+            raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
+        turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
+        return Found(float(turning), None, "seeds", one.n_scenes)
+
+    return found

@@ -1,0 +1,86 @@
+"""C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
+
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims.contrasts import combined, success
+from faultpath.studies.claims.found import Found
+from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turn
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule
+from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.pages.table_4 import cell
+from faultpath.studies.pages.table_6 import negative
+from faultpath.studies.results import Contrast
+
+CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
+GRU, DCC, DOB = "gru", "gru+dcc", "dob"
+
+
+def _between_paths(method: str, first: str, second: str, rule: Rule[Found]) -> Statement[Found]:
+    return Statement(
+        f"success of {method.upper()}, {first} minus {second},",
+        success(cell(method, first), cell(method, second)),
+        rule,
+    )
+
+
+def _between_methods(first: str, second: str, path: str, rule: Rule[Found]) -> Statement[Found]:
+    return Statement(
+        f"success of {first.upper()} minus {second.upper()}, {path},",
+        success(cell(first, path), cell(second, path)),
+        rule,
+    )
+
+
+def _repair(path: str) -> tuple[Cell, Cell]:
+    return cell(DCC, path), cell(GRU, path)
+
+
+CLAIMS: dict[str, Statements] = {
+    "C23": (_between_paths(GRU, ISOLATED, CORRECT, BELOW),),
+    "C24": (
+        _between_paths(GRU, SHARED, ISOLATED, ABOVE),
+        _between_paths(GRU, SHARED, CORRECT, NO_LOSS),
+    ),
+    "C25": (
+        _between_methods(DCC, GRU, ISOLATED, ABOVE),
+        _between_methods(DCC, GRU, CORRECT, BELOW),
+    ),
+    "C26": (
+        Statement(
+            "success of GRU+DCC minus GRU, from reconstruction-only to shared,",
+            turn(_repair(ISOLATED), _repair(SHARED)),
+            TurnsDown(),
+        ),
+        Statement(
+            "number of seeds in which success of GRU+DCC minus GRU is above 0 under "
+            "reconstruction-only and below 0 under shared",
+            seeds_that_turn(_repair(ISOLATED), _repair(SHARED)),
+            ByPoint(1, ALL_SEEDS, strict=False),
+        ),
+    ),
+    "C27": (
+        Statement(
+            "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
+            combined(
+                (1, _repair(SHARED)), (-1, _repair(ISOLATED)), effect=Contrast.terminal_distance
+            ),
+            ABOVE,
+        ),
+    ),
+    "C28": (
+        _between_paths(DOB, ISOLATED, CORRECT, BELOW),
+        _between_paths(DOB, SHARED, ISOLATED, ABOVE),
+        _between_methods(DOB, GRU, SHARED, NO_LOSS),
+    ),
+    "C29": (
+        _between_methods(DOB, DCC, ISOLATED, BELOW),
+        _between_methods(DOB, DCC, SHARED, ABOVE),
+    ),
+    "C32": tuple(
+        Statement(
+            f"success of GRU+DCC minus GRU at the negative offset, {path},",
+            success(negative(DCC, path), negative(GRU, path)),
+            rule,
+        )
+        for path, rule in ((ISOLATED, ByPoint(1, strict=False)), (SHARED, ByPoint(-1)))
+    ),
+}

@@ -1,0 +1,72 @@
+"""Quantities over several cells at once: orderings, shares of scenes, rank correlations."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics import spearman, success_rate
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims.contrasts import seed_zero, together
+from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.claims.windows import Subject, difference_of_quantiles, median
+from faultpath.studies.results import Results
+
+Bools = NDArray[np.bool_]
+
+
+def at_lower_success(
+    first: tuple[Cell, Subject], second: tuple[Cell, Subject], q: float
+) -> Quantity:
+    """Return a quantile of the error where success is lower (seed 0), minus that at the other.
+
+    `Undecidable` when both succeed equally often.
+    """
+
+    def found(results: Results) -> Found:
+        (one, error_one), (two, error_two) = first, second
+        difference = results.contrast(seed_zero(one), seed_zero(two)).success.value
+        if difference == 0:
+            raise Undecidable("both conditions succeed equally often")
+        ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
+        return difference_of_quantiles(*ordered, q)(results)
+
+    return found
+
+
+def share(cells: Sequence[Cell], of: Callable[[Bools], Bools]) -> Quantity:
+    """Return the share of scenes that `of` finds in `[cells, scenes]` successes of seed 0."""
+
+    def found(results: Results) -> Found:
+        own = [seed_zero(cell) for cell in cells]
+        contrasts = together(results, *((cell, cell) for cell in own))
+        success = np.stack([each.pairs.first.success[:, 0] for each in contrasts])
+        return replace(of_effect(success_rate(of(success), contrasts[0].resamples)), mde=None)
+
+    return found
+
+
+def in_all(success: Bools) -> Bools:
+    """Return the scenes that succeed in every cell."""
+    return np.all(success, axis=0)
+
+
+def in_none(success: Bools) -> Bools:
+    """Return the scenes that succeed in no cell."""
+    return ~np.any(success, axis=0)
+
+
+def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
+    """Return Spearman's correlation of success with the median of something measured."""
+
+    def found(results: Results) -> Found:
+        rates = [results.rate(cell) for cell, _ in cells]
+        measured = np.array([median(results, subject) for _, subject in cells])
+        value = spearman(np.array([rate.value for rate in rates]), measured).value
+        if value is None:
+            raise Undecidable("one side is the same in all cells")
+        n_scenes = min(rate.n_scenes for rate in rates)
+        return Found(value, None, "rank correlation", n_scenes)
+
+    return found

@@ -1,0 +1,94 @@
+"""Quantities of the free-space sweep over calibration errors (paper, Figure 3)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics import percentile_interval, success_rate
+from faultpath.studies.claims.contrasts import together
+from faultpath.studies.claims.found import MIN_SCENES, Found, Quantity
+from faultpath.studies.pages import figure_3
+from faultpath.studies.results import NotRun, Results
+
+Floats = NDArray[np.float64]
+
+PEAK_PERCENT = 90.0
+
+
+@dataclass(frozen=True)
+class _Sweep:
+    """What some models flew, over common scenes."""
+
+    errors: list[float]
+    rates: list[Floats]
+    """Of each model `[1 + resamples, errors]`: success in percent, and in every resample."""
+    n_scenes: int
+
+    def found(self, drawn: Floats, unit: str) -> Found:
+        """Return a quantity `[1 + resamples]` of the sweep."""
+        interval = percentile_interval(drawn[1:]) if self.n_scenes >= MIN_SCENES else None
+        return Found(float(drawn[0]), interval, unit, self.n_scenes)
+
+
+def worst_difference(first: str, second: str) -> Quantity:
+    """Return the least success of one model over the sweep, minus that of another."""
+
+    def found(results: Results) -> Found:
+        sweep = _sweep(results, first, second)
+        one, two = (rates.min(axis=1) for rates in sweep.rates)
+        return sweep.found(one - two, "pp")
+
+    return found
+
+
+def above_worst(model: str, error: float) -> Quantity:
+    """Return the success of a model at an error, minus its least over the sweep."""
+
+    def found(results: Results) -> Found:
+        sweep = _sweep(results, model)
+        (rates,) = sweep.rates
+        return sweep.found(rates[:, sweep.errors.index(error)] - rates.min(axis=1), "pp")
+
+    return found
+
+
+def range_gained(first: str, second: str) -> Quantity:
+    """Return how many more errors of the sweep one model bears around 0 than another.
+
+    They are counted outwards from 0, on each side to the first error at which success is below
+    `PEAK_PERCENT`.
+    """
+
+    def found(results: Results) -> Found:
+        sweep = _sweep(results, first, second)
+        one, two = (_borne(rates, sweep.errors.index(0.0)) for rates in sweep.rates)
+        return sweep.found(one - two, "errors")
+
+    return found
+
+
+def _sweep(results: Results, *models: str) -> _Sweep:
+    """Return the errors that all of `models` flew; `NotRun` without the middle or an end."""
+    errors = [
+        error
+        for error in figure_3.ERRORS
+        if all(results.has(figure_3.cell(model, error)) for model in models)
+    ]
+    for error in (figure_3.ERRORS[0], 0.0, figure_3.ERRORS[-1]):
+        if error not in errors:
+            raise NotRun(f"the sweep of {' and '.join(models)} at e = {error:+g}")
+    cells = [figure_3.cell(model, error) for model in models for error in errors]
+    contrasts = together(results, *((cell, cell) for cell in cells))
+    effects = [success_rate(each.pairs.first.success, each.resamples) for each in contrasts]
+    columns = np.stack([np.append(effect.value, effect.draws) for effect in effects], axis=1)
+    rates = np.split(columns, len(models), axis=1)
+    return _Sweep(errors, rates, effects[0].n_scenes)
+
+
+def _borne(rates: Floats, middle: int) -> Floats:
+    """Return per row the length of the unbroken range around `middle` that stays at the peak."""
+    held = (rates >= PEAK_PERCENT).astype(np.float64)
+    up = np.cumprod(held[:, middle:], axis=1).sum(axis=1)
+    down = np.cumprod(held[:, middle::-1], axis=1).sum(axis=1)
+    return up + down - held[:, middle]

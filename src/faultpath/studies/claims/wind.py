@@ -1,0 +1,89 @@
+"""C16 to C22: wind that no sensor measures (paper, Table III and text)."""
+
+from faultpath.studies.claims.contrasts import seed_zero, success
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NO_LOSS
+from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.claims.windows import difference_of_quantiles
+from faultpath.studies.pages import in_text
+from faultpath.studies.pages.table_3 import (
+    ENVIRONMENTS,
+    GRU,
+    TRAJECTORY,
+    TRUE,
+    WITHHELD,
+    ZERO,
+    ZERO_OF_EVERY_SEED,
+    cell,
+)
+
+L3 = "L3"
+OBSTACLES = "obstacles"
+
+CLAIMS: dict[str, Statements] = {
+    "C16": tuple(
+        Statement(
+            f"median error of {low} minus that of {high}",
+            difference_of_quantiles((in_text.windy_error(first),), (in_text.windy_error(second),)),
+            BELOW,
+        )
+        for (low, first), (high, second) in (
+            (
+                ("ground-truth wind", f"wm-a-wind/{TRUE}"),
+                ("the wind-withheld model", WITHHELD),
+            ),
+            (("the wind-withheld model", WITHHELD), ("zero wind", ZERO_OF_EVERY_SEED)),
+        )
+    ),
+    # Seed 0 alone: there both models are of one training.
+    "C17": tuple(
+        Statement(
+            f"success of zero wind minus the wind-withheld model at {level}",
+            success(
+                seed_zero(cell(ZERO, OBSTACLES, level)), seed_zero(cell(WITHHELD, OBSTACLES, level))
+            ),
+            NO_GAIN,
+        )
+        for level in ("L2", L3)
+    ),
+    "C18": tuple(
+        Statement(
+            f"success of ground-truth wind minus zero wind at L3, {environment}",
+            success(cell(TRUE, environment, L3), cell(ZERO, environment, L3)),
+            ABOVE,
+        )
+        for environment in ENVIRONMENTS
+    ),
+    "C19": (
+        Statement(
+            "success of GRU minus ground-truth wind at L3",
+            success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
+            NO_LOSS,
+        ),
+        Statement(
+            "success of GRU minus zero wind at L3",
+            success(cell(GRU, OBSTACLES, L3), cell(ZERO, OBSTACLES, L3)),
+            ABOVE,
+        ),
+    ),
+    "C20": (
+        Statement(
+            "success of GRU minus zero wind at L3 with noise and delay",
+            success(in_text.noisy_wind(GRU), in_text.noisy_wind(ZERO)),
+            ABOVE,
+        ),
+    ),
+    "C21": (
+        Statement(
+            "success with the reconstructed wind frozen minus updated, free space at L3",
+            success(in_text.WIND_FROZEN, in_text.WIND_UPDATED),
+            BELOW,
+        ),
+    ),
+    "C22": (
+        Statement(
+            "success of the trajectory-trained GRU minus the collection-trained one at L3",
+            success(cell(TRAJECTORY, OBSTACLES, L3), cell(GRU, OBSTACLES, L3)),
+            BELOW,
+        ),
+    ),
+}

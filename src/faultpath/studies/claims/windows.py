@@ -1,0 +1,126 @@
+"""Quantities of recorded windows: quantiles of errors and responses, compared on common windows."""
+
+from dataclasses import replace
+from functools import lru_cache
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
+from faultpath.statistics import Effect, WindowQuantiles
+from faultpath.studies.claims.contrasts import weighted
+from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.results import NotRun, Results
+
+Subject: TypeAlias = tuple[Measurement, ...]
+"""A measurement of each seed: the quantile is taken seed by seed, and then the mean."""
+
+TELLING_SHARE = 0.2
+"""A share of a median whose change a run must be able to detect for its absence to say anything."""
+
+
+def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
+    """Return a quantile of `first` minus that of `second`."""
+
+    def found(results: Results) -> Found:
+        one, two = quantiles(results, q, first, second)
+        return of_effect(weighted([1, -1], [one, two]), TELLING_SHARE * two.value)
+
+    return found
+
+
+def difference_of_changes(
+    first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
+) -> Quantity:
+    """Return how much more the median changes over `first`, from one to the next, than `second`.
+
+    `size`: changes are compared whatever their sign.
+    """
+
+    def found(results: Results) -> Found:
+        ends = quantiles(results, 0.5, *first, *second)
+        changes = [weighted([-1, 1], ends[:2]), weighted([-1, 1], ends[2:])]
+        if size:
+            changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
+        return of_effect(weighted([1, -1], changes))
+
+    return found
+
+
+def ratio(first: Subject, second: Subject) -> Quantity:
+    """Return the median of `first` over that of `second`."""
+
+    def found(results: Results) -> Found:
+        one, two = quantiles(results, 0.5, first, second)
+        if not (two.value > 0 and bool((two.draws > 0).all())):
+            raise Undecidable("the median that is divided by is 0")
+        draws = one.draws / two.draws
+        return of_effect(replace(one, value=one.value / two.value, draws=draws, unit="times"))
+
+    return found
+
+
+def quantiles(results: Results, q: float, *subjects: Subject) -> list[Effect]:
+    """Return a quantile of each subject on shared resamples, over the seeds that all have.
+
+    A subject of one seed stands beside all seeds of the others. `NotRun` when a subject was not
+    measured, or on other windows.
+    """
+    several = [_run(results, subject) for subject in subjects]
+    trained = [run for run, subject in zip(several, subjects, strict=True) if len(subject) > 1]
+    kept = [
+        tuple(m for m in run if all(m.seed in [o.seed for o in other] for other in trained))
+        if run in trained
+        else run
+        for run in several
+    ]
+    if not all(kept):
+        raise NotRun(f"a seed that all measurements beside {subjects[0][0].subject} share")
+    _check_windows(results, [m for subject in kept for m in subject])
+    assert results.evidence is not None
+    return [_mean(results.evidence, subject, q) for subject in kept]
+
+
+def median(results: Results, subject: Subject) -> float:
+    """Return the mean of the medians of the seeds that were run."""
+    run = _run(results, subject)
+    return float(np.mean([np.median(results.measured(each).values) for each in run]))
+
+
+def _run(results: Results, subject: Subject) -> Subject:
+    evidence = results.evidence
+    run = tuple(each for each in subject if evidence is not None and each in evidence)
+    if not run:
+        results.measured(subject[0])  # says what is missing
+    return run
+
+
+def _check_windows(results: Results, measurements: list[Measurement]) -> None:
+    first = results.measured(measurements[0])
+    if not len(first):
+        raise NotRun(f"a window of {measurements[0].subject}")
+    for each in measurements:
+        if not results.measured(each).same_windows(first):
+            raise NotRun(f"{each.subject} on the windows of {measurements[0].subject}")
+
+
+@lru_cache(maxsize=512)
+def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Effect:
+    """Return the mean over seeds of a quantile; a claim asks for the same one many times."""
+    effects = [_quantile(evidence, measurement, q) for measurement in subject]
+    mean = weighted([1 / len(effects)] * len(effects), effects)
+    per_seed = tuple(effect.value for effect in effects)
+    return replace(mean, per_seed=per_seed, n_seeds=len(effects))
+
+
+@lru_cache(maxsize=512)
+def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Effect:
+    found: Measured = evidence.values(measurement)
+    values: NDArray[np.float64] = found.values
+    return _resampled(found.scenes).value(values, q, QUANTITIES[measurement.quantity])
+
+
+@lru_cache(maxsize=8)
+def _resampled(scenes: tuple[str, ...]) -> WindowQuantiles:
+    return WindowQuantiles(scenes)
