@@ -13,7 +13,7 @@ from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
 from faultpath.studies.results import Contrast, Results
 
-REPAIRS: dict[str, tuple[Cell, Cell, Cell, Cell]] = {
+REPAIRS: dict[str, tuple[Cell, ...]] = {
     "WM-A": tuple(
         table_2.cell(model, error) for error in (0.0, 0.1) for model in ("wm-a+dcc", "wm-a")
     ),
@@ -60,7 +60,7 @@ def build(results: Results) -> Built:
     return (table,)
 
 
-def _line(results: Results, key: str, cells: tuple[Cell, Cell, Cell, Cell]) -> Line:
+def _line(results: Results, key: str, cells: tuple[Cell, ...]) -> Line:
     paper = published(_PUBLISHED, key)
     texts = (
         wording.signed(paper["delta_0_pp"]),
@@ -69,7 +69,8 @@ def _line(results: Results, key: str, cells: tuple[Cell, Cell, Cell, Cell]) -> L
     )
 
     def entries() -> tuple[Entry, ...]:
-        correct, faulty = joint(results, cells[:2], cells[2:])
+        repair, baseline, faulty_repair, faulty_baseline = cells
+        correct, faulty = joint(results, (repair, baseline), (faulty_repair, faulty_baseline))
         result = break_even(correct.draws, faulty.draws)
         return _difference(correct), _difference(faulty), Entry(text=_frequency(result))
 
