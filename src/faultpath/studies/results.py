@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -170,4 +170,10 @@ class Results:
 
     def resamples(self, n_scenes: int) -> Resamples:
         """Return the scene resamples that every effect over so many scenes shares."""
-        return Resamples.draw(self.library_hash, n_scenes)
+        return _drawn(self.library_hash, n_scenes)
+
+
+@lru_cache(maxsize=16)
+def _drawn(library_hash: str, n_scenes: int) -> Resamples:
+    """Draw once: hundreds of contrasts are of as many scenes."""
+    return Resamples.draw(library_hash, n_scenes)

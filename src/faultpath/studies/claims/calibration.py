@@ -1,7 +1,7 @@
 """C05 to C15: calibration errors and training on them (paper, Table II, Figure 3 and text)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.contrasts import combined, success
+from faultpath.studies.claims.differences import combined, success
 from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     ABOVE,

@@ -1,6 +1,6 @@
 """C36 to C39: withheld calibration, frozen histories, planning and perception (paper, text)."""
 
-from faultpath.studies.claims.contrasts import Pair, combined, success
+from faultpath.studies.claims.differences import Pair, combined, success
 from faultpath.studies.claims.rules import BELOW, NO_GAIN, NO_LOSS, at_least, more_than
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.summaries import in_all, in_none, share

@@ -3,7 +3,7 @@
 from itertools import combinations
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.contrasts import crashes, seed_zero, success, time, timeouts
+from faultpath.studies.claims.differences import crashes, seed_zero, success, time, timeouts
 from faultpath.studies.claims.rules import ABOVE, BELOW, NotDetected, at_least
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.windows import Subject, difference_of_quantiles, ratio

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from faultpath.statistics import DirectionShares, break_even
-from faultpath.studies.claims.contrasts import together
+from faultpath.studies.claims.differences import together
 from faultpath.studies.claims.found import MIN_SCENES, Found
 from faultpath.studies.claims.rules import (
     CONFIRMED,
@@ -23,13 +23,14 @@ RARE = 0.025
 """Share of resamples beyond one end of a 95 % interval."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Crossing(Found):
     """A break-even frequency in percent, where the repair pays above it or always."""
 
-    shares: DirectionShares = DirectionShares(above=0, below=0, always=0, never=0)
+    shares: DirectionShares
     """Share of the resamples in each direction."""
-    never: bool = False
+    never: bool
+    """Whether the estimates favour the repair at no frequency."""
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import difference_of_effects
-from faultpath.studies.claims.contrasts import Pair, together
+from faultpath.statistics import difference_of_effects, reversal
+from faultpath.studies.claims.differences import Pair, together
 from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath.studies.results import Results
@@ -13,15 +13,15 @@ ALL_SEEDS = 3
 """Trainings that the paper speaks of."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Turn(Found):
     """The change of an effect, second condition minus first, with the effect in both."""
 
-    before: int = 0
+    before: int
     """Side of 0 on which the effect is detected in the first condition."""
-    after: int = 0
-    signs_differ: bool = False
-    """Whether the estimates are above 0 before and below 0 after."""
+    after: int
+    turned: bool
+    """Whether the change is detected, and the estimates are above 0 before and below 0 after."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class TurnsDown:
             return FEW_SCENES
         if found.detected > 0 or found.before < 0 or found.after > 0:
             return REFUTED
-        if found.detected < 0 and found.signs_differ:
+        if found.turned:
             return CONFIRMED
         why = "the estimates do not differ in sign as claimed" if found.detected else ""
         return Judged("undecided", why)
@@ -59,7 +59,7 @@ def turn(before: Pair, after: Pair) -> Callable[[Results], Turn]:
             counts=f"{one.counts}, then {two.counts}",
             before=one.detected_sign,
             after=two.detected_sign,
-            signs_differ=one.draws.value > 0 > two.draws.value,
+            turned=reversal(one.draws, two.draws).detected and one.draws.value > 0,
         )
 
     return found

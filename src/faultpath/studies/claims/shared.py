@@ -1,7 +1,7 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.contrasts import combined, success
+from faultpath.studies.claims.differences import combined, success
 from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turn
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule

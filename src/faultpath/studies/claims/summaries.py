@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from faultpath.statistics import spearman, success_rate
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.contrasts import seed_zero, together
+from faultpath.studies.claims.differences import seed_zero, together
 from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.claims.windows import Subject, difference_of_quantiles, median
 from faultpath.studies.results import Results

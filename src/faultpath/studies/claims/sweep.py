@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import percentile_interval, success_rate
-from faultpath.studies.claims.contrasts import together
+from faultpath.studies.claims.differences import together
 from faultpath.studies.claims.found import MIN_SCENES, Found, Quantity
 from faultpath.studies.pages import figure_3
 from faultpath.studies.results import NotRun, Results

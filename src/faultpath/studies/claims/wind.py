@@ -1,6 +1,6 @@
 """C16 to C22: wind that no sensor measures (paper, Table III and text)."""
 
-from faultpath.studies.claims.contrasts import seed_zero, success
+from faultpath.studies.claims.differences import seed_zero, success
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NO_LOSS
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.windows import difference_of_quantiles

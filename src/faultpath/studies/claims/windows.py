@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath.statistics import Effect, WindowQuantiles
-from faultpath.studies.claims.contrasts import weighted
+from faultpath.studies.claims.differences import weighted
 from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.results import NotRun, Results
 

@@ -1,8 +1,8 @@
 """Quantities of paired trials: differences between cells, and differences of differences."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,13 +18,14 @@ from faultpath.statistics import (
 )
 from faultpath.studies.cells import Cell
 from faultpath.studies.claims.found import MIN_SCENES, Found, Quantity, of_effect
+from faultpath.studies.contrasts import joint
 from faultpath.studies.results import Contrast, NotRun, Results
 from faultpath.trials.pairing import Trials
 
 Pair: TypeAlias = tuple[Cell, Cell]
 Bools: TypeAlias = NDArray[np.bool_]
-T = TypeVar("T")
 
+DIGITS = 9
 TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
 
@@ -55,10 +56,10 @@ def time(first: Cell, second: Cell) -> Quantity:
     def found(results: Results) -> Found:
         contrast = results.contrast(first, second)
         one, two = contrast.pairs.first, contrast.pairs.second
-        joint = one.success & two.success
-        if not joint.any():
+        both = one.success & two.success
+        if not both.any():
             raise NotRun(f"a scene in which both {first} and {second} succeed")
-        return of_effect(median_effect(one.time_s, two.time_s, joint, contrast.resamples))
+        return of_effect(median_effect(one.time_s, two.time_s, both, contrast.resamples))
 
     return found
 
@@ -87,15 +88,9 @@ def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
     `NotRun` when there is no such seed or scene.
     """
     seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
-    cut = [(replace(one, seeds=seeds), replace(two, seeds=seeds)) for one, two in pairs]
     if not seeds:
         raise NotRun(f"a seed that {pairs[0][0]} and all it is compared with share")
-    contrasts = [results.contrast(one, two) for one, two in cut]
-    scenes = _common([contrast.pairs.scenes for contrast in contrasts])
-    if not scenes:
-        raise NotRun(f"a scene that {pairs[0][0]} and all it is compared with share")
-    resamples = results.resamples(len(scenes))
-    return tuple(Contrast(contrast.pairs.only(scenes), resamples) for contrast in contrasts)
+    return joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
 
 
 def weighted(weights: list[float], effects: list[Effect]) -> Effect:
@@ -105,8 +100,9 @@ def weighted(weights: list[float], effects: list[Effect]) -> Effect:
     by_seed = zip(*(effect.per_seed for effect in effects), strict=True) if alike else ()
     return replace(
         effects[0],
-        value=sum(w * effect.value for w, effect in zip(weights, effects, strict=True)),
-        draws=np.sum([w * e.draws for w, e in zip(weights, effects, strict=True)], axis=0),
+        # Rounded, so that effects that cancel leave exactly 0.
+        value=round(sum(w * e.value for w, e in zip(weights, effects, strict=True)), DIGITS),
+        draws=np.dot(weights, [effect.draws for effect in effects]).round(DIGITS),
         per_seed=tuple(sum(np.multiply(weights, each).tolist()) for each in by_seed),
         counts=None,
     )
@@ -138,6 +134,6 @@ def _outcomes(
     return found
 
 
-def _common(groups: list[tuple[T, ...]]) -> tuple[T, ...]:
-    first, *others = groups
-    return tuple(item for item in first if all(item in other for other in others))
+def _common(seeds: Sequence[tuple[int, ...]]) -> tuple[int, ...]:
+    first, *others = seeds
+    return tuple(seed for seed in first if all(seed in other for other in others))
