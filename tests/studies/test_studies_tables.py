@@ -1,0 +1,386 @@
+"""Tables of the studies: our figures from a run, the paper's beside them, dashes where none is."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from toy_runs import (
+    CELLS,
+    EMPTY,
+    MEASUREMENTS,
+    SCENES,
+    Watched,
+    measured,
+    run,
+    trials,
+    won,
+)
+
+from faultpath.evidence import Measurement
+from faultpath.record import MISSING, Entry, Line, Sweep, Table
+from faultpath.studies.cells import Cell
+from faultpath.studies.entries import printed
+from faultpath.studies.page import Page
+from faultpath.studies.pages import (
+    PAGES,
+    figure_1,
+    figure_3,
+    in_text,
+    table_1,
+    table_2,
+    table_4,
+    table_6,
+)
+from faultpath.studies.published import published
+from faultpath.studies.results import Results
+from faultpath.trials import Status
+
+NAMES = tuple(page.name for page in PAGES)
+
+
+def tables(page: Page, results: Results) -> dict[str, Table]:
+    return {part.name: part for part in page.build(results) if isinstance(part, Table)}
+
+
+def page(name: str) -> Page:
+    return next(page for page in PAGES if page.name == name)
+
+
+def line(table: Table, label: str, *, below: str = "") -> Line:
+    """Return the first line of a label, after the heading `below`."""
+    labels = [each.label for each in table.lines]
+    start = labels.index(below) if below else 0
+    return table.lines[labels.index(label, start)]
+
+
+def texts(found: Line) -> list[str]:
+    return [entry.text for entry in found.entries]
+
+
+def papers(found: Line) -> list[str]:
+    return [entry.published for entry in found.entries]
+
+
+def entries(table: Table) -> Iterator[Entry]:
+    return (entry for each in table.lines for entry in each.entries)
+
+
+def calibrated(cell: Cell) -> int:
+    """Let repairs win 15 of 20 scenes, models without faults 14, and with faults 2."""
+    return 15 if "dcc" in cell.variant else 2 if cell.faults else 14
+
+
+# What a page needs
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
+    watched = Watched(trials(CELLS, won(calibrated)), measured(MEASUREMENTS, lambda m: 0.1), "toy")
+    built = page(name).build(watched)
+    flown = {(cell.side, seed) for cell in page(name).cells for seed in cell.seeds}
+    read = {(cell.side, seed) for cell in watched.cells for seed in cell.seeds}
+    assert read <= flown
+    assert set(watched.measurements) == set(page(name).measurements)
+    if built:  # figure 1 is drawn from a decision record
+        assert {side for side, _ in read} == {side for side, _ in flown}
+
+
+def test_every_result_of_the_text_has_a_page() -> None:
+    flown = {(cell.side, seed) for cell in CELLS for seed in cell.seeds}
+    needed = {(cell.side, seed) for cell in in_text.CELLS for seed in cell.seeds}
+    # Configurations without wind count with their first seed; Table I flies the others.
+    assert needed <= flown
+    assert set(in_text.MEASUREMENTS) <= set(MEASUREMENTS)
+
+
+def test_names_of_pages_and_of_their_parts_are_unique() -> None:
+    parts = [part.name for each in PAGES for part in each.build(EMPTY)]
+    assert len(set(parts)) == len(parts)
+    assert len(set(NAMES)) == len(NAMES)
+
+
+def test_figure_1_shows_the_contrast_that_reverses() -> None:
+    assert (figure_1.REPAIR, figure_1.BASELINE) == ("gru+dcc", "gru")
+    assert {cell.path for cell in figure_1.CELLS} == {
+        table_4.cell("gru", path).path for path in table_4.PATHS
+    }
+
+
+# What was not run
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_empty_run_leaves_dashes_beside_the_published_figures(name: str) -> None:
+    for part in page(name).build(EMPTY):
+        if isinstance(part, Sweep):
+            assert all(not series.points for series in part.series)
+            assert part.published
+            continue
+        assert {entry.text for entry in entries(part)} <= {MISSING, ""}
+        assert all(entry.text == MISSING for entry in entries(part) if entry.published)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("part", [0, 1, 2])
+def test_any_part_of_a_run_makes_whole_tables(name: str, part: int) -> None:
+    cells = [Cell(c.setting, c.variant, c.faults, (part,)) for c in CELLS if part in c.seeds]
+    some = run(won(calibrated), cells[part::3], measured(MEASUREMENTS[part::3], lambda m: 0.1))
+    for built in page(name).build(some):
+        if isinstance(built, Table):
+            widths = {len(each.entries) for each in built.lines}
+            assert widths <= {0, len(built.columns)}
+        assert type(built).model_validate_json(built.model_dump_json()) == built
+
+
+# The paper's figures
+
+
+def _figures(value: Any) -> Iterator[float | str]:
+    if isinstance(value, dict):
+        for each in value.values():
+            yield from _figures(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from _figures(each)
+    elif value is not None and value != "no crossing":
+        yield value
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("table_1_prediction_accuracy", "table-1"),
+        ("table_2_calibration", "table-2"),
+        ("table_3_wind", "table-3"),
+        ("table_4_shared_calibration", "table-4"),
+        ("table_5_decision_record", "table-5"),
+        ("table_6_compensation", "table-6"),
+    ],
+)
+def test_every_published_figure_of_a_table_stands_in_it(key: str, name: str) -> None:
+    built = tables(page(name), EMPTY).values()
+    shown = " ".join(entry.published for table in built for entry in entries(table))
+    shown = f" {shown} ".replace("−", "-").replace("+", "")
+    for mark in "[](),/–":
+        shown = shown.replace(mark, " ")
+    words = shown.split()
+    numbers = {
+        float(word)
+        for word in words
+        if ":" not in word and word.strip("-.").replace(".", "").isdigit()
+    }
+    for figure in _figures(published(key)):
+        assert (figure in words) if isinstance(figure, str) else (figure in numbers)
+
+
+def test_published_figures_of_the_text_stand_in_its_tables() -> None:
+    built = {k: v for each in PAGES for k, v in tables(each, EMPTY).items()}
+    assert papers(line(built["text-probes"], "Calibration, e = +0.1")) == ["62", "9"]
+    assert papers(line(built["text-probes"], "History shuffled")) == ["2", "15"]
+    assert papers(line(built["text-noise"], "Wins:losses")) == ["", "0:7", ""]
+    freezes = [papers(each)[:2] for each in built["text-freezes"].lines]
+    assert freezes == [["59", "97"], ["67", "67"], ["86", "85"]]
+    withheld = line(built["text-reconstructions"], "GRU without calibration minus GRU, seed 0")
+    assert papers(withheld)[0] == "55"
+    assert [papers(each) for each in built["text-ceiling"].lines] == [["63", ""], ["23", ""]]
+    assert [papers(each) for each in built["text-correlations"].lines] == [["−0.84"], ["−0.72"]]
+
+
+def test_a_published_figure_keeps_the_digits_that_the_paper_prints() -> None:
+    assert [printed(69), printed(67.0), printed(2.5, 2), printed(-1.0)] == [
+        "69",
+        "67.0",
+        "2.50",
+        "−1.0",
+    ]
+
+
+# Our figures
+
+
+def test_table_1_counts_how_trials_end_and_when() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        if cell.variant == "dki" and scene == SCENES - 1:
+            return Status.FAILED
+        if scene < 12:
+            return Status.SUCCESS
+        return Status.CRASH if scene < 14 else Status.TIMEOUT
+
+    table = tables(page("table-1"), run(ends))["table-1"]
+    assert texts(line(table, "WM-A"))[2:] == ["60", "10", "30", "3.55"]
+    assert papers(line(table, "WM-A")) == ["8.2", "9.5", "69", "21", "10", "2.75"]
+    # Of 19 trials: the one that failed says nothing.
+    assert texts(line(table, "DKI"))[2:5] == ["63", "11", "26"]
+    assert texts(line(table, "True-parameter", below="With ground-truth clearance"))[2] == "60"
+
+
+def test_table_1_compares_errors_and_pairs_times() -> None:
+    errors = {"dki": 0.4, "wm-a": 0.1, "wm-u": 0.08, "true-parameter": 0.02}
+    evidence = measured(MEASUREMENTS, lambda m: errors.get(m.subject, 1.0))
+    parts = tables(page("table-1"), run(won(lambda cell: 10), evidence=evidence))
+    assert texts(line(parts["table-1"], "DKI"))[:2] == ["40.0", "40.0"]
+    below = parts["table-1-below"]
+    assert texts(line(below, "Largest to smallest common error")) == ["20.0"]
+    assert texts(line(below, "Time, DKI minus WM-A (s)")) == ["0.00 [0.00, 0.00] (n = 10)"]
+    assert papers(line(below, "Time, DKI minus WM-A (s)")) == ["+1.40 (n = 65)"]
+
+
+def test_the_range_over_seeds_names_its_ends() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        wins = 10 + 2 * seed if cell.variant == "wm-a" else 10
+        return Status.SUCCESS if scene < wins else Status.CRASH
+
+    below = tables(page("table-1"), run(ends))["table-1-below"]
+    assert texts(line(below, "Success of WM-A over seeds (%)")) == ["50–70"]
+    assert texts(line(below, "Success of WM-U over seeds (%)")) == ["50"]
+
+
+def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
+    table = tables(page("table-2"), run(won(calibrated)))["table-2"]
+    assert texts(line(table, "WM-A")) == ["10.0", "70.0", "10.0"]
+    assert papers(line(table, "WM-A")) == ["18", "69", "8"]
+    heading = "WM-A+DCC minus WM-A (pp)"
+    difference = line(table, "Difference", below=heading)
+    assert texts(difference) == ["+65.0", "+5.0", "+65.0"]
+    assert papers(difference) == ["+49.7", "−1.0", "+57.3"]
+    assert [entry.detected for entry in difference.entries] == [True, False, True]
+    counts = line(table, "Wins:losses", below=heading)
+    assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
+    assert papers(counts)[0] == "51:0/51:1/49:1"
+    assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
+
+
+def test_intervals_are_those_of_the_contrast() -> None:
+    results = run(won(calibrated))
+    table = tables(page("table-2"), results)["table-2"]
+    found = results.contrast(table_2.cell("wm-a+dcc", 0.1), table_2.cell("wm-a", 0.1)).success
+    expected = f"[{found.low:.1f}, {found.high:.1f}]"
+    assert texts(line(table, "95 % interval", below="WM-A+DCC minus WM-A (pp)"))[2] == expected
+
+
+def test_table_2_gives_median_and_tail_of_the_error() -> None:
+    table = tables(page("table-2"), run(won(calibrated), evidence=measured(MEASUREMENTS, _error)))
+    assert texts(line(table["table-2"], "Error, median (cm)")) == ["50.0", "10.0", "50.0"]
+    tail = texts(line(table["table-2"], "Error, 90th percentile (cm)"))
+    assert tail == ["54.0", "10.8", "54.0"]
+
+
+def _error(measurement: Measurement) -> float:
+    return 0.5 if measurement.faults else 0.1
+
+
+def test_figure_3_has_a_point_with_its_interval_for_each_error() -> None:
+    results = run(won(lambda cell: 20 if not cell.faults else 10))
+    (sweep,) = page("figure-3").build(results)
+    assert isinstance(sweep, Sweep)
+    assert [series.label for series in sweep.series] == ["WM-A", "WM-A+DCC", "WM-U", "WM-U+DCC"]
+    points = sweep.series[0].points
+    assert [point.x for point in points] == list(figure_3.ERRORS)
+    assert [point.y for point in points if point.x == 0] == [100.0]
+    assert all(p.low is not None and p.high is not None and p.low <= p.y <= p.high for p in points)
+    assert "100 throughout" in sweep.published
+
+
+def test_table_3_prints_means_with_a_decimal_and_counts_unseen_winds() -> None:
+    results = run(won(lambda cell: 75), scenes=range(60, 100))
+    parts = tables(page("table-3"), results)
+    trajectory = "Wind-conditioned, trajectory GRU"
+    assert texts(line(parts["table-3"], trajectory)) == ["38", "38", "37.5"]
+    assert papers(line(parts["table-3"], trajectory)) == ["100", "100", "96.7"]
+    unseen = parts["table-3-unseen"]
+    assert texts(line(unseen, trajectory)) == ["5/5/5", "5/5/5"]
+    assert texts(line(unseen, "Wind-conditioned, zero")) == ["5", "5"]
+    assert papers(line(unseen, trajectory)) == ["30/29/30", "14/15/14"]
+
+
+def _reconstructed(cell: Cell) -> int:
+    """GRU falls under the isolated error and recovers under the shared one; GRU+DCC stays."""
+    alone = any("reconstruction" in fault for fault in cell.faults)
+    return 10 if cell.variant == "gru+dcc" else 4 if alone else 16
+
+
+def test_table_4_shows_the_reversal_and_its_changes() -> None:
+    table = tables(page("table-4"), run(won(_reconstructed)))["table-4"]
+    difference = line(table, "Difference", below="GRU+DCC minus GRU, success (pp)")
+    assert texts(difference) == ["−30.0", "+30.0", "−30.0"]
+    assert all(entry.detected for entry in difference.entries)
+    interaction = line(table, "DOB minus GRU, shared minus reconstruction-only (pp)")
+    assert texts(interaction) == ["", "", "0.0"]
+    # Each scene that is lost ends 2 m farther away.
+    assert texts(line(table, "Mean difference")) == ["+0.60", "−0.60", "+0.60"]
+    assert texts(line(table, "Shared minus reconstruction-only (m)"))[2] == "+1.20"
+
+
+def test_table_5_gives_the_break_even_frequency_or_says_that_there_is_none() -> None:
+    table = tables(page("table-5"), run(won(_reconstructed)))["table-5"]
+    alone = texts(line(table, "GRU: reconstruction only"))
+    assert alone[:2] == ["−30.0", "+30.0"]
+    assert alone[2].startswith("50 [")
+    assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
+    assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
+
+
+def test_a_failed_trial_leaves_its_scene_out_of_both_ends_of_a_break_even() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        if scene == 0 and cell == table_4.cell("gru", "reconstruction-only"):
+            return Status.FAILED
+        return won(_reconstructed)(cell, seed, scene)
+
+    table = tables(page("table-5"), run(ends))["table-5"]
+    # Over 19 scenes: 9 against 15, and 9 against 3.
+    assert texts(line(table, "GRU: reconstruction only"))[:2] == ["−31.6", "+31.6"]
+
+
+def test_table_6_averages_the_medians_of_the_seeds() -> None:
+    def value(measurement: Measurement) -> float:
+        return 1.0 + measurement.seed
+
+    evidence = measured(table_6.MEASUREMENTS, value)
+    table = tables(page("table-6"), run(won(calibrated), evidence=evidence))["table-6a"]
+    assert texts(line(table, "GRU")) == ["2.00"] * 4
+    assert texts(line(table, "DOB")) == ["1.00"] * 4
+    assert texts(line(table, "GRU, wind term alone")) == ["", "2.00", "", "2.00"]
+    first = measured([m for m in table_6.MEASUREMENTS if m.seed == 0], value)
+    table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
+    assert texts(line(table, "GRU")) == ["1.00"] * 4
+
+
+def test_table_6_tests_the_negative_offset() -> None:
+    table = tables(page("table-6"), run(won(_reconstructed)))["table-6b"]
+    assert texts(line(table, "GRU+DCC only:GRU only")) == ["0:6", "6:0", "0:6"]
+    assert texts(line(table, "Exact McNemar p")) == ["0.031"] * 3
+    assert papers(line(table, "Exact McNemar p")) == ["0.002", "0.648", "0.057"]
+
+
+def test_errors_that_order_the_cells_against_success_correlate_at_minus_one() -> None:
+    cells = {
+        table_4.cell(method, path).side: 2 * i
+        for i, (method, path) in enumerate((m, p) for m in table_4.METHODS for p in table_4.PATHS)
+    }
+
+    def value(measurement: Measurement) -> float:
+        path = next(p for p, faults in table_4.PATHS.items() if faults == measurement.faults)
+        return 1 / (1 + cells[table_4.cell(measurement.subject, path).side])
+
+    evidence = measured(page("text-mechanism").measurements, value)
+    results = run(won(lambda cell: cells.get(cell.side, 0)), evidence=evidence)
+    table = tables(page("text-mechanism"), results)["text-correlations"]
+    assert [texts(each) for each in table.lines] == [["−1.00"], ["−1.00"]]
+
+
+def test_the_ceiling_counts_scenes_that_end_alike_everywhere() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        wins = 8 if cell.variant == "dki" else 12
+        return Status.SUCCESS if scene < wins else Status.TIMEOUT
+
+    table = tables(page("text-planning"), run(ends))["text-ceiling"]
+    assert [texts(each)[0] for each in table.lines] == ["40", "40"]
+
+
+def test_detection_sensitivity_gives_the_least_detectable_difference() -> None:
+    table = tables(page("detection-sensitivity"), run(won(lambda cell: 10)))
+    results = run(won(lambda cell: 10))
+    least = results.contrast(table_1.DKI, table_1.WM_A).detectable.value
+    assert least is not None
+    shown = line(table["detection-sensitivity"], "DKI minus WM-A, seed 0")
+    assert texts(shown) == ["0.0", "[0.0, 0.0]", "0:0", "1.000", f"{least:.1f}"]

@@ -1,0 +1,103 @@
+"""Runs of studies made up: every cell flown and every measurement made, with known results."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faultpath.evidence import EvidenceTable, Measured, Measurement
+from faultpath.studies.cells import Cell
+from faultpath.studies.pages import PAGES
+from faultpath.studies.results import Contrast, Results
+from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+
+SCENES = 20
+Ends = Callable[[Cell, int, int], Status]
+"""How the trial of a cell, seed and scene index ends."""
+
+CELLS = tuple(dict.fromkeys(cell for page in PAGES for cell in page.cells))
+MEASUREMENTS = tuple(dict.fromkeys(m for page in PAGES for m in page.measurements))
+
+
+def won(wins: Callable[[Cell], int]) -> Ends:
+    """Let a cell win its first so many scenes and crash in the others, whatever the seed."""
+    return lambda cell, seed, scene: Status.SUCCESS if scene < wins(cell) else Status.CRASH
+
+
+def trials(
+    cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)
+) -> OutcomeTable:
+    """Return a table with each variant, path and seed once."""
+    arms = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
+    indices = tuple(scenes)
+    return OutcomeTable(
+        tuple(
+            TrialRow(variant, path, seed, i, "", _outcome(i, seed, ends(cell, seed, i)))
+            for (variant, path, seed), cell in arms.items()
+            for i in indices
+        )
+    )
+
+
+def measured(
+    measurements: Iterable[Measurement], value: Callable[[Measurement], float], scenes: int = SCENES
+) -> EvidenceTable:
+    """Return a table with eleven windows a scene, spread evenly around the value by 10 %."""
+    spread = np.linspace(0.9, 1.1, 11)
+    return EvidenceTable(
+        {
+            measurement: Measured(
+                tuple(f"s{i:03d}" for i in range(scenes) for _ in spread),
+                np.arange(scenes * len(spread)),
+                np.tile(value(measurement) * spread, scenes),
+            )
+            for measurement in measurements
+        }
+    )
+
+
+def run(
+    ends: Ends,
+    cells: Iterable[Cell] = CELLS,
+    evidence: EvidenceTable | None = None,
+    scenes: Iterable[int] = range(SCENES),
+) -> Results:
+    """Return what a run of some cells leaves."""
+    return Results(trials(cells, ends, scenes), evidence, "toy")
+
+
+EMPTY = Results(OutcomeTable(()), None, "toy")
+
+
+@dataclass(frozen=True)
+class Watched(Results):
+    """Remembers what it is asked for."""
+
+    cells: list[Cell] = field(default_factory=list[Cell])
+    measurements: list[Measurement] = field(default_factory=list[Measurement])
+
+    def contrast(self, first: Cell, second: Cell, **named: object) -> Contrast:
+        self.cells.extend((first, second))
+        return super().contrast(first, second, **named)  # type: ignore[arg-type]
+
+    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
+        self.cells.append(cell)
+        return super().counts(cell, seed)
+
+    def measured(self, measurement: Measurement) -> Measured:
+        self.measurements.append(measurement)
+        return super().measured(measurement)
+
+
+def _outcome(scene: int, seed: int, status: Status) -> Outcome:
+    failed = status is Status.FAILED
+    return Outcome(
+        scene=f"s{scene:03d}",
+        status=status,
+        time_s=0.0 if failed else 3.0 + 0.1 * scene,
+        terminal_distance_m=None if failed else 0.3 if status is Status.SUCCESS else 2.3,
+        min_clearance_m=None if failed else 0.25,
+        initial_hash=f"i{scene}",
+        disturbance_hash=f"d{scene}",
+        planner_noise_hash=f"n{scene}-{seed}",
+    )
