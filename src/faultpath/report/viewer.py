@@ -11,19 +11,38 @@ of every pattern is taken, then the list is filled up in order, never with a sce
 examples, not a sample.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TypedDict
+from typing import Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.record.model import DecisionRecord, Path
-from faultpath.report.inputs import ReportInput
+from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, Trial
 from faultpath.trials.floorplan import FloorPlan
 
 PARTING_M = 0.5
+
+
+class Audited(Protocol):
+    """An audit with its flights."""
+
+    @property
+    def record(self) -> DecisionRecord:
+        """What was asked and decided."""
+        ...
+
+    @property
+    def traces(self) -> Traces:
+        """Flights; trials may be missing."""
+        ...
+
+    @property
+    def plans(self) -> Mapping[str, FloorPlan]:
+        """By scene id; scenes without one are drawn without obstacles."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -86,7 +105,7 @@ class ViewerData(TypedDict):
     scenes: list[SceneShown]
 
 
-def choose(source: ReportInput, pairs: Sequence[Pair], count: int = 6) -> tuple[Showing, ...]:
+def choose(source: Audited, pairs: Sequence[Pair], count: int = 6) -> tuple[Showing, ...]:
     """Return up to `count` showings by the rule at the top of this file."""
     ranked = sorted(_showings(source, pairs), key=_order)
     chosen: list[Showing] = []
@@ -104,7 +123,7 @@ def choose(source: ReportInput, pairs: Sequence[Pair], count: int = 6) -> tuple[
     return tuple(sorted(chosen, key=_order))
 
 
-def viewer_data(source: ReportInput, chosen: Sequence[Showing]) -> ViewerData:
+def viewer_data(source: Audited, chosen: Sequence[Showing]) -> ViewerData:
     """Return the chosen showings as plain data for the page's scripts."""
     asked = source.record.question
     return {
@@ -124,7 +143,7 @@ def parting_step(a: NDArray[np.float32], b: NDArray[np.float32]) -> int | None:
     return int(np.argmax(apart)) if apart.any() else None
 
 
-def _showings(source: ReportInput, pairs: Sequence[Pair]) -> Iterator[Showing]:
+def _showings(source: Audited, pairs: Sequence[Pair]) -> Iterator[Showing]:
     groups: dict[tuple[str, int], dict[str, Pair]] = {}
     for pair in pairs:
         if pair.kind not in (Kind.VOID, Kind.LEFT_OUT) and _flown(source, pair):
@@ -169,7 +188,7 @@ def _distance_gap(pair: Pair) -> float:
     return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
 
 
-def _flown(source: ReportInput, pair: Pair) -> bool:
+def _flown(source: Audited, pair: Pair) -> bool:
     asked = source.record.question
     return all(
         len(source.traces.get((v, pair.path, pair.seed, pair.scene), ())) > 0
@@ -186,7 +205,7 @@ _WHY = (
 )
 
 
-def _scene_shown(source: ReportInput, showing: Showing) -> SceneShown:
+def _scene_shown(source: Audited, showing: Showing) -> SceneShown:
     pair = showing.any_pair
     plan = source.plans.get(pair.scene)
     return {
@@ -199,7 +218,7 @@ def _scene_shown(source: ReportInput, showing: Showing) -> SceneShown:
     }
 
 
-def _pair_shown(source: ReportInput, pair: Pair) -> PairShown:
+def _pair_shown(source: Audited, pair: Pair) -> PairShown:
     asked = source.record.question
     place = (pair.path, pair.seed, pair.scene)
     baseline = source.traces[asked.baseline, *place]

@@ -1,0 +1,110 @@
+"""Lines with their intervals over one quantity that is swept, such as the size of a fault."""
+
+from collections.abc import Sequence
+
+from faultpath.record.table import Point, Series, Sweep
+from faultpath.report import wording
+from faultpath.report.scale import Axis, tick_label
+from faultpath.report.svg import Svg, text_width
+
+LOOKS = 4
+"""Looks that lines take in turn: colour, dashes and mark differ together."""
+_KEY_ROW, _SAMPLE = 20.0, 28.0
+
+
+def sweep_plot(sweep: Sweep, narrow: bool = False) -> str:
+    """Return the lines of a sweep with their bands; `narrow` has the width of a telephone."""
+    width, height = (350.0, 240.0) if narrow else (880.0, 280.0)
+    key = _key_rows(sweep.series, width)
+    top = _KEY_ROW * len(key) + 34
+    told = "; ".join(f"{line.label}: {', '.join(map(_told, line.points))}" for line in sweep.series)
+    svg = Svg(width, top + height + 42, sweep.title, told)
+    _key(svg, key)
+    x = _across(sweep.series).at(34, width - 10)
+    y = _upward(sweep.series).at(top + height, top)
+    svg.text(0, top - 12, sweep.y_title, "small soft")
+    _axes(svg, x, y, about=4 if narrow else 8)
+    svg.text((x.start + x.end) / 2, top + height + 36, sweep.x_title, "small soft", "middle")
+    for i, line in enumerate(sweep.series):
+        _band(svg, line, x, y, f"spread s{i % LOOKS}")
+    for i, line in enumerate(sweep.series):
+        svg.polyline([(x(p.x), y(p.y)) for p in line.points], f"curve s{i % LOOKS}")
+        for point in line.points:
+            _mark(svg, x(point.x), y(point.y), i % LOOKS, f"{line.label}, {_told(point)}")
+    return svg.render()
+
+
+def _told(point: Point) -> str:
+    ends = ""
+    if point.low is not None and point.high is not None:
+        ends = f" [{wording.plain(point.low)}, {wording.plain(point.high)}]"
+    return f"{tick_label(point.x)}: {wording.plain(point.y)}{ends}"
+
+
+def _across(series: Sequence[Series]) -> Axis:
+    values = [p.x for line in series for p in line.points] or [0.0, 1.0]
+    low, high = min(values), max(values)
+    pad = 0.03 * (high - low) or 0.5
+    return Axis(low - pad, high + pad, 0.0, 1.0)
+
+
+def _upward(series: Sequence[Series]) -> Axis:
+    """Return an axis from 0, or from the lowest value below it."""
+    points = [p for line in series for p in line.points]
+    values = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
+    low, high = min(values), max(values)
+    return Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
+
+
+def _axes(svg: Svg, x: Axis, y: Axis, about: int) -> None:
+    for tick in y.ticks(5):
+        svg.line((x.start, y(tick)), (x.end, y(tick)), "axis")
+        svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
+    for tick in x.ticks(about):
+        if tick == 0:
+            svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
+        svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
+        svg.text(x(tick), y.start + 17, tick_label(round(tick, 9)), "small soft", "middle")
+
+
+def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:
+    ends = [(p.x, p.low, p.high) for p in line.points if p.low is not None and p.high is not None]
+    if len(ends) > 1:
+        upper = [(x(at), y(high)) for at, _, high in ends]
+        svg.polygon([*upper, *((x(at), y(low)) for at, low, _ in reversed(ends))], look)
+
+
+def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:
+    cls = f"spot s{look}"
+    match look:
+        case 0:
+            svg.circle((x, y), 3.6, cls, tip)
+        case 1:
+            svg.rect(x - 3.4, y - 3.4, 6.8, 6.8, cls, tip=tip)
+        case 2:
+            svg.polygon([(x - 4.4, y + 3.4), (x + 4.4, y + 3.4), (x, y - 4.6)], cls, tip)
+        case _:
+            svg.polygon([(x - 4.8, y), (x, y - 4.8), (x + 4.8, y), (x, y + 4.8)], cls, tip)
+
+
+def _key_rows(series: Sequence[Series], width: float) -> list[list[tuple[int, str, float]]]:
+    """Return the entries of the key row by row: look, label and where each begins."""
+    rows: list[list[tuple[int, str, float]]] = [[]]
+    left = 0.0
+    for i, line in enumerate(series):
+        room = _SAMPLE + 8 + text_width(line.label, 12) + 22
+        if rows[-1] and left + room > width:
+            rows.append([])
+            left = 0.0
+        rows[-1].append((i % LOOKS, line.label, left))
+        left += room
+    return rows
+
+
+def _key(svg: Svg, rows: Sequence[Sequence[tuple[int, str, float]]]) -> None:
+    for row, entries in enumerate(rows):
+        y = _KEY_ROW * row + 9
+        for look, label, left in entries:
+            svg.line((left, y), (left + _SAMPLE, y), f"curve s{look}")
+            _mark(svg, left + _SAMPLE / 2, y, look, label)
+            svg.text(left + _SAMPLE + 8, y + 4, label)

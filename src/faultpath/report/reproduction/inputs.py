@@ -1,0 +1,27 @@
+"""What the page of a reproduction is made from."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from faultpath.interface import Interface
+from faultpath.record import DecisionRecord, Reproduction
+from faultpath.record.provenance import RunProvenance
+from faultpath.report.inputs import Traces
+from faultpath.trials import FloorPlan, OutcomeTable
+
+
+@dataclass(frozen=True)
+class ReproductionInput:
+    """One finished reproduction: what it concludes, and the audit that it shows in detail."""
+
+    reproduction: Reproduction
+    provenance: RunProvenance | None
+    interface: Interface
+    decision: DecisionRecord | None
+    """The audit behind the reversal; `None` where the run does not hold its arms."""
+    outcomes: OutcomeTable
+    """Trials of that audit, by the paths of its record; others may be among them."""
+    traces: Traces
+    """Its flights; trials may be missing."""
+    plans: Mapping[str, FloorPlan]
+    """By scene id; a scene without one is left out of the gallery."""

@@ -1,0 +1,74 @@
+"""How the figures of claims are written, on the page and in the terminal."""
+
+from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
+from faultpath.report import wording
+
+SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
+ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
+
+_SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
+_ONE_DIGIT = ("pp", "%", "cm")
+_DIFFERENCES = ("pp", "s", "m")
+
+
+def typeset(text: str) -> str:
+    """Return a claim's words with the signs that plain text has no letters for."""
+    for plain, sign in _SIGNS_IN_TEXT:
+        text = text.replace(plain, sign)
+    return wording.typeset(text)
+
+
+def figure(value: float, unit: str) -> str:
+    """Return a value with its unit; differences carry their sign."""
+    digits = 1 if unit in _ONE_DIGIT else 2
+    text = (wording.signed if unit in _DIFFERENCES else wording.plain)(value, digits)
+    return f"{text}{_behind(unit)}"
+
+
+def interval(ends: tuple[float, float] | None, unit: str) -> str:
+    """Return `[48.3, 66.3]`, or nothing without an interval."""
+    if ends is None:
+        return ""
+    digits = 1 if unit in _ONE_DIGIT else 2
+    return f"[{', '.join(wording.plain(end, digits) for end in ends)}]"
+
+
+def estimate(of: ClaimVerdict | Part) -> str:
+    """Return estimate and interval; nothing where there is no estimate."""
+    if of.estimate is None:
+        return ""
+    return f"{figure(of.estimate, of.unit)} {interval(of.interval, of.unit)}".rstrip()
+
+
+def least_detectable(of: ClaimVerdict | Part) -> str:
+    """Return the minimum detectable effect; nothing where there is none."""
+    if of.mde is None:
+        return ""
+    return f"{wording.plain(of.mde, 1 if of.unit in _ONE_DIGIT else 2)}{_behind(of.unit)}"
+
+
+def evidence(part: Part) -> tuple[str, ...]:
+    """Return what stands behind a part, phrase by phrase."""
+    p_value = "" if part.p_value is None else wording.p_value(part.p_value)
+    p_value = p_value and f"p {p_value if p_value.startswith('<') else f'= {p_value}'}"
+    detectable = least_detectable(part)
+    phrases = (
+        f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
+        detectable and f"least detectable {detectable}",
+        part.counts and f"only one succeeds in {part.counts}",
+        part.reason,
+    )
+    return tuple(phrase for phrase in phrases if phrase)
+
+
+def headline(ledger: Ledger) -> str:
+    """Return the outcome of all claims in one sentence."""
+    confirmed, refuted, undecided = map(ledger.count, ANSWERS)
+    return (
+        f"Of the paper’s {wording.counted(len(ledger.claims), 'claim')}, our runs confirm "
+        f"{confirmed}, refute {refuted} and leave {undecided} undecided"
+    )
+
+
+def _behind(unit: str) -> str:
+    return {"x": "×", "×": "×", "": ""}.get(unit, f" {unit}")
