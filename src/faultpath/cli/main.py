@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import typer
 
-from faultpath.cli import audit, interface, report, scenes, train
+from faultpath.cli import audit, interface, probe, report, scenes, train
 from faultpath.cli.options import Stopped
 from faultpath.errors import UserError
 
@@ -23,6 +23,7 @@ app = typer.Typer(
 )
 app.command("audit")(audit.command)
 app.command("interface")(interface.command)
+app.command("probe")(probe.command)
 app.command("report")(report.command)
 app.add_typer(scenes.app, name="scenes")
 app.add_typer(train.app, name="train")

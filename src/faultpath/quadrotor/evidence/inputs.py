@@ -66,6 +66,11 @@ class Subject:
             found[name].load_reconstruction(seed),
         )
 
+    def check(self, faults: Sequence[str]) -> None:
+        """Raise the `UserError` that `tell` would raise about these faults on any windows."""
+        for found in self._parse(faults):
+            self._taps(("any",), found)
+
     def tell(self, windows: Windows, faults: Sequence[str], recording: str) -> Told:
         """Return what the modules get on windows of the recording of that name.
 

@@ -16,7 +16,7 @@ import torch
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measurement, Progress
 from faultpath.quadrotor.evidence.code import digest
-from faultpath.quadrotor.evidence.quantities import measured
+from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import Block, Recorded, blocks, recorded
 from faultpath.store import atomic
 from faultpath.store.evidence import read_evidence, write_evidence
@@ -80,6 +80,8 @@ def measure(
     """Measure the quadrotor on recorded windows; see `faultpath.evidence.Measurer`."""
     tell = progress or (lambda done, total: None)
     asked = tuple(dict.fromkeys(measurements))
+    for measurement in asked:
+        check(measurement)
     recordings = dict.fromkeys(measurement.recording for measurement in asked)
     flown = {recording: blocks(recording, scenes) for recording in recordings}
     # One recording after the other: a worker keeps the windows of the one that it is at.

@@ -17,36 +17,46 @@ from faultpath.quadrotor.training.replay import predict
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
 
+def check(measurement: Measurement) -> None:
+    """Raise `UserError` where the measurement does not fit the system, before anything flies."""
+    subject = _subject(measurement)
+    subject.check(measurement.faults)
+    analytic = measurement.quantity in ("acceleration-error", "wind-term-error")
+    if analytic and not {"dynamics", "wind_map"} <= subject.predictor.reads:
+        raise UserError(
+            f"the predictor of {measurement.subject!r} has no analytic dynamics with a wind input, "
+            f"so {measurement.quantity} does not exist for it: measure a variant with a wind input"
+        )
+
+
 @torch.inference_mode()
 def measured(measurement: Measurement, recorded: Recorded) -> Measured:
-    """Measure on every window; `UserError` where the measurement does not fit the system.
+    """Measure on every window what `check` has let pass.
 
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
     history code exchanges them.
     """
-    system = quadrotor(measurement.recording)
-    subject = Subject.load(system, measurement.subject, measurement.seed)
-    values = _QUANTITIES[measurement.quantity](subject, measurement, recorded.windows)
+    quantity = _QUANTITIES[measurement.quantity]
+    values = quantity(_subject(measurement), measurement, recorded.windows)
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
 
 
 def _position_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    told = subject.tell(windows, asked.faults, asked.recording.name)
+    told = _told(subject, asked, windows)
     return (final_positions(subject.predictor, windows, told) - windows.position[:, -1]).norm(dim=0)
 
 
 def _position_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    correct, struck = (
-        final_positions(
-            subject.predictor, windows, subject.tell(windows, faults, asked.recording.name)
-        )
-        for faults in ((), asked.faults)
+    correct = asked.model_copy(update={"faults": ()})
+    here, there = (
+        final_positions(subject.predictor, windows, _told(subject, each, windows))
+        for each in (correct, asked)
     )
-    return (struck - correct).norm(dim=0)
+    return (there - here).norm(dim=0)
 
 
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    told = _told_wind(subject, asked, windows)
+    told = _told(subject, asked, windows)
     supplied = Calibration(
         told.supplied["mass", "predictor.dynamics"],
         told.supplied["thrust_scale", "predictor.dynamics"],
@@ -58,7 +68,7 @@ def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) 
 
 
 def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(windows, _told_wind(subject, asked, windows)).norm(dim=0)
+    return _wind_term_difference(windows, _told(subject, asked, windows)).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -84,12 +94,11 @@ def final_positions(predictor: Predictor, windows: Windows, told: Told) -> Tenso
     return torch.cat(found, 1)[:, : len(windows)]
 
 
-def _told_wind(subject: Subject, asked: Measurement, windows: Windows) -> Told:
-    if not {"dynamics", "wind_map"} <= subject.predictor.reads:
-        raise UserError(
-            f"the predictor of {asked.subject!r} has no analytic dynamics with a wind input, so "
-            f"{asked.quantity} does not exist for it: measure a variant with a wind input"
-        )
+def _subject(asked: Measurement) -> Subject:
+    return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
+
+
+def _told(subject: Subject, asked: Measurement, windows: Windows) -> Told:
     return subject.tell(windows, asked.faults, asked.recording.name)
 
 

@@ -1,0 +1,122 @@
+"""`faultpath probe`: how far each variant's predictions move when an input is perturbed."""
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from faultpath.cli.options import numbers, settings
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from faultpath.evidence import EvidenceTable, Measurer
+    from faultpath.evidence.probe import Probe, ProbePlan
+
+
+def command(
+    system: Annotated[str, typer.Argument(help="`quadrotor`.")],
+    variants: Annotated[
+        str, typer.Option(help="Variants to compare, the first with each other: wm-a,wm-a+dcc.")
+    ],
+    perturb: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A fault, as in `audit`, once for each perturbation; `history_code:shuffle` "
+            "exchanges histories. Default: calibration by its declared uncertainty."
+        ),
+    ] = None,
+    library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
+    scenes: Annotated[
+        int | None, typer.Option(help="Record only the first so many scenes.")
+    ] = None,
+    recorded_with: Annotated[
+        str, typer.Option(help="Variant whose flights, under correct inputs, give the windows.")
+    ] = "true-parameter",
+    seeds: Annotated[str, typer.Option(help="Seeds of the trained models.")] = "0",
+    set_: Annotated[
+        list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    out: Annotated[
+        Path, typer.Option(help="Folder that keeps recordings and measurements.")
+    ] = Path("runs/probe"),
+    workers: Annotated[
+        int | None, typer.Option(help="Worker processes; default one a core.")
+    ] = None,
+) -> None:
+    """Perturb an input on recorded windows, all else fixed: how far do predictions move?"""
+    from faultpath.evidence import Recording
+    from faultpath.evidence.probe import ProbePlan, expected_perturbations
+    from faultpath.store import write_text
+    from faultpath.store.evidence import write_evidence
+    from faultpath.trials import SystemSpec, load_measurer, load_system
+
+    measure = load_measurer(system)
+    options = settings(set_ or [])
+    built = load_system(SystemSpec(name=system, options=options))
+    plan = ProbePlan(
+        recording=Recording(library=library, variant=recorded_with, options=options),
+        variants=tuple(name for name in variants.split(",") if name),
+        perturbations=tuple(
+            perturb or expected_perturbations(built.interface, built.fault_presets)
+        ),
+        seeds=numbers(seeds, "--seeds"),
+    )
+    count = os.cpu_count() or 1 if workers is None else workers
+    table = _measure(measure, plan, scenes, out, count)
+    probe = plan.conclude(table)
+    write_evidence(out / "evidence.parquet", table)
+    write_text(out / "probe.json", probe.model_dump_json(indent=2) + "\n")
+    if as_json:
+        typer.echo(probe.model_dump_json(indent=2))
+    else:
+        from rich.console import Console
+
+        Console().print(_table(probe))
+
+
+def _measure(
+    measure: "Measurer", plan: "ProbePlan", scenes: int | None, folder: Path, workers: int
+) -> "EvidenceTable":
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("Measuring", total=None)
+        return measure(
+            plan.measurements(),
+            scenes,
+            folder,
+            workers,
+            lambda done, total: bar.update(task, completed=done, total=total),
+        )
+
+
+def _table(probe: "Probe") -> "Table":
+    from math import exp
+
+    from rich.table import Table
+    from rich.text import Text
+
+    from faultpath.report import wording
+
+    first = probe.rows[0].variant
+    title = (
+        f"Median response after the horizon, {wording.counted(probe.windows, 'window')} of "
+        f"{wording.counted(probe.scenes, 'scene')}, {wording.seeds(probe.seeds)}"
+    )
+    table = Table(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    for head in ("perturbation", "variant"):
+        table.add_column(head)
+    for head in ("response, cm", f"of {first}'s"):
+        table.add_column(head, justify="right", no_wrap=True)
+    for row in probe.rows:
+        found, log = row.response_cm, row.log_ratio
+        response = f"{wording.plain(found.value)} {wording.interval(found)}".rstrip()
+        ratio = "–"
+        if log is not None and log.low is not None and log.high is not None:
+            ratio = f"{exp(log.value):.2f} [{exp(log.low):.2f}, {exp(log.high):.2f}]"
+        table.add_row(Text(row.perturbation), Text(row.variant), Text(response), ratio)
+    return table
