@@ -45,9 +45,9 @@ class Worker:
     torch to one thread before either is imported, and the user's script is not imported again.
     """
 
-    def __init__(self, number: int, hello: Hello) -> None:
+    def __init__(self, number: int) -> None:
         self.number = number
-        self.ready = False
+        self._greetings = 0
         self.task: Task | None = None
         ours, theirs = socket.socketpair()
         lifeline, self._lifeline = os.pipe()
@@ -69,8 +69,21 @@ class Worker:
             theirs.close()
             os.close(lifeline)
         self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
+
+    @property
+    def ready(self) -> bool:
+        """Whether it has built what it was last told to."""
+        return self._greetings == 0
+
+    def greet(self, hello: Hello) -> None:
+        """Tell it what to build."""
+        self._greetings += 1
         with suppress(OSError):  # a worker that died already shows when we read
             self.channel.send(hello)
+
+    def answered(self) -> None:
+        """Note that it has built what one greeting told it to."""
+        self._greetings -= 1
 
     def send(self, task: Task) -> None:
         """Hand a task out."""
@@ -106,19 +119,24 @@ class Worker:
 
 
 class Crew:
-    """Several workers; one that dies is replaced."""
+    """Several workers that serve one system after another; one that dies is replaced."""
 
-    def __init__(self, hello: Hello, expected: Ready, count: int) -> None:
-        self._hello = hello
-        self._expected = expected
+    def __init__(self) -> None:
+        self._hello: Hello | None = None
+        self._expected: Ready | None = None
         self._false_starts = 0
         self._workers: dict[int, Worker] = {}
-        try:
-            for number in range(count):
-                self._workers[number] = Worker(number, hello)
-        except BaseException:
-            self.stop()
-            raise
+
+    def begin(self, hello: Hello, expected: Ready, count: int) -> None:
+        """Turn to a system, with at least `count` workers; those that are there already build it.
+
+        Every task of the system before has to be settled.
+        """
+        self._hello, self._expected, self._false_starts = hello, expected, 0
+        for number in range(len(self._workers), count):
+            self._workers[number] = Worker(number)
+        for worker in self._workers.values():
+            worker.greet(hello)
 
     def __enter__(self) -> "Crew":
         return self
@@ -155,16 +173,24 @@ class Crew:
             worker.stop()
 
     def _welcome(self, worker: Worker, message: Ready) -> None:
+        worker.answered()
+        if not worker.ready:
+            return  # it has still to build what it was told since
         if message != self._expected:
             raise WorkerLost(
-                f"system {self._hello.system.name!r} has another fingerprint or library in a "
-                "worker process than here: neither may depend on the process that builds it"
+                f"system {self._name!r} has another fingerprint or library in a worker process "
+                "than here: neither may depend on the process that builds it"
             )
-        worker.ready = True
 
     def _replace(self, worker: Worker) -> None:
         worker.stop()
-        self._workers[worker.number] = Worker(worker.number, self._hello)
+        self._workers[worker.number] = successor = Worker(worker.number)
+        if self._hello is not None:
+            successor.greet(self._hello)
+
+    @property
+    def _name(self) -> str:
+        return "" if self._hello is None else self._hello.system.name
 
     def _false_start(self, message: Done | Raised | Wrong | Died) -> None:
         """Give up when workers cannot build the system."""
@@ -172,8 +198,7 @@ class Crew:
             raise message.error
         if isinstance(message, Raised):
             raise WorkerLost(
-                f"system {self._hello.system.name!r} cannot be built in a worker process:\n"
-                f"{message.traceback}"
+                f"system {self._name!r} cannot be built in a worker process:\n{message.traceback}"
             )
         self._false_starts += 1
         if self._false_starts > 2 * len(self._workers):

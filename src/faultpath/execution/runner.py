@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -68,6 +69,7 @@ def run_study(
     notice: Callable[[str], None] = _log.warning,
     system: System | None = None,
     shared: bool = False,
+    crew: Crew | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -75,7 +77,8 @@ def run_study(
     each block and about twice a second; `notice` with what a user should read, such as a damaged
     file or another process in the folder. `system` saves building it here when the caller has.
     `shared` lets studies with other arms use the folder one after the other: an arm that one of
-    them ran is there for the next; the folder's tables are those of the last.
+    them ran is there for the next; the folder's tables are those of the last. `crew` keeps the
+    worker processes for the next study; without one they end with this.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -106,8 +109,9 @@ def run_study(
             elif missing:
                 hello = Hello(study.system, study.library)
                 expected = Ready(fingerprint, library.content_hash)
-                with Crew(hello, expected, min(workers, len(missing))) as crew:
-                    _run_with(crew, missing, ledger, report)
+                with Crew() if crew is None else nullcontext(crew) as hands:
+                    hands.begin(hello, expected, min(workers, len(missing)))
+                    _run_with(hands, missing, ledger, report)
             table = assemble(study, library, ledger.outcomes)
             digest = run.save_tables(table)
     except KeyboardInterrupt:

@@ -1,4 +1,4 @@
-"""A worker process: builds the system once, then runs what the parent sends."""
+"""A worker process: builds the system that it is told, then runs what the parent sends."""
 
 import faulthandler
 import os
@@ -15,6 +15,7 @@ from faultpath.errors import UserError
 from faultpath.execution.attempt import Raised, Wrong, attempt, limit_threads
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
+from faultpath.trials.system import System
 
 
 @dataclass(frozen=True)
@@ -56,25 +57,30 @@ def main(channel: int, lifeline: int) -> None:
 
 
 def _serve(parent: "Connection[Any, Any]") -> None:
-    hello: Hello = parent.recv()
-    try:
-        system = load_system(hello.system)
-        limit_threads()
-        library = system.library(hello.library)
-        parent.send(Ready(system.fingerprint(), library.content_hash))
-    except UserError as error:
-        parent.send(Wrong(error))
-        return
-    except Exception as error:
-        parent.send(Raised(f"{type(error).__name__}: {error}", traceback.format_exc()))
-        return
+    system: System | None = None
     while True:
-        order: Order = parent.recv()
-        reply = attempt(system, order.arm, order.scenes)
+        message: Hello | Order = parent.recv()
+        if isinstance(message, Hello):
+            system, reply = _build(message)
+        else:
+            assert system is not None  # whoever built none has said so and is sent nothing
+            reply = attempt(system, message.arm, message.scenes)
         try:
             parent.send(reply)
         except (PicklingError, TypeError, AttributeError) as error:
             parent.send(Raised(f"{type(error).__name__}: {error}", traceback.format_exc()))
+
+
+def _build(hello: Hello) -> tuple[System | None, Ready | Wrong | Raised]:
+    try:
+        system = load_system(hello.system)
+        limit_threads()
+        library = system.library(hello.library)
+        return system, Ready(system.fingerprint(), library.content_hash)
+    except UserError as error:
+        return None, Wrong(error)
+    except Exception as error:
+        return None, Raised(f"{type(error).__name__}: {error}", traceback.format_exc())
 
 
 def _end_with(lifeline: int) -> None:

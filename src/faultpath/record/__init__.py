@@ -13,7 +13,7 @@ from faultpath.record.model import (
     Verdict,
 )
 from faultpath.record.provenance import RunProvenance
-from faultpath.record.reproduction import Reproduction, SceneShown
+from faultpath.record.reproduction import Configuration, Reproduction, SceneShown
 from faultpath.record.table import MISSING, Entry, Line, Point, Series, Sweep, Table
 from faultpath.record.words import CORRECT, SHARED
 
@@ -24,6 +24,7 @@ __all__ = [
     "Answer",
     "Cell",
     "ClaimVerdict",
+    "Configuration",
     "DecisionRecord",
     "Effect",
     "Entry",

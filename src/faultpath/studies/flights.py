@@ -1,12 +1,14 @@
 """From cells to trials: one study a setting, flown into one folder and laid out in one table."""
 
+import hashlib
 import re
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 
-from faultpath.execution import Progress, RunResult, run_study
+from faultpath.execution import Crew, Progress, RunResult, run_study
 from faultpath.faults import parse_fault
 from faultpath.studies.cells import Cell, Profile, Setting
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
@@ -37,8 +39,21 @@ class Leg:
 class Flown:
     """What the legs left."""
 
-    outcomes: OutcomeTable
-    results: Mapping[Setting, RunResult]
+    legs: tuple[Leg, ...]
+    results: tuple[RunResult, ...]
+    written: tuple[str, str]
+    """When the first and the last block were written, by this and by earlier invocations."""
+
+    @property
+    def outcomes(self) -> OutcomeTable:
+        """All trials, leg by leg."""
+        return OutcomeTable(tuple(row for result in self.results for row in result.outcomes.rows))
+
+    @property
+    def fingerprint(self) -> str:
+        """Hash of the fingerprints of all legs."""
+        every = "".join(result.system_fingerprint for result in self.results)
+        return hashlib.sha256(every.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -52,18 +67,23 @@ class Pace:
 
 
 def plan_legs(
-    cells: Iterable[Cell], profile: Profile, libraries: Mapping[str, str]
+    cells: Iterable[Cell],
+    profile: Profile,
+    libraries: Mapping[str, str],
+    options: Mapping[str, str],
 ) -> tuple[Leg, ...]:
     """Return what a profile flies of `cells`, setting by setting in the order of the cells.
 
-    `libraries` gives the library that stands for a role, where it is not the one of that name.
-    Raises `UserError` for a library that cannot be read.
+    `libraries` gives the library that stands for a role, where it is not the one of that name;
+    `options` are added to those of every setting. Raises `UserError` for a library that cannot be
+    read or an option that does not exist.
     """
     by_setting: dict[Setting, list[Cell]] = {}
     for cell in profile.cells(cells):
         by_setting.setdefault(cell.setting, []).append(cell)
     return tuple(
-        _leg(setting, members, profile, libraries) for setting, members in by_setting.items()
+        _leg(setting, members, profile, libraries, options)
+        for setting, members in by_setting.items()
     )
 
 
@@ -79,21 +99,18 @@ def fly(
     Raises as `run_study` does.
     """
     clock = _Clock(sum(leg.trials for leg in legs), progress)
-    results: dict[Setting, RunResult] = {}
-    for leg in legs:
-        clock.begin(str(leg.setting))
-        results[leg.setting] = run_study(
-            leg.study,
-            folder / leg.folder,
-            workers,
-            clock.show,
-            notice,
-            leg.system,
-            shared=True,
-        )
-        clock.end(leg.trials)
-    rows = tuple(row for result in results.values() for row in result.outcomes.rows)
-    return Flown(OutcomeTable(rows), results)
+    results: list[RunResult] = []
+    with Crew() as crew:
+        for leg in legs:
+            clock.begin(str(leg.setting))
+            place, system = folder / leg.folder, leg.system
+            results.append(
+                run_study(
+                    leg.study, place, workers, clock.show, notice, system, shared=True, crew=crew
+                )
+            )
+            clock.end(leg.trials)
+    return Flown(tuple(legs), tuple(results), _written(folder, legs))
 
 
 class _Clock:
@@ -126,10 +143,21 @@ class _Clock:
             self._spent += time.monotonic() - self._began
 
 
+def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str]:
+    shards = [path for leg in legs for path in (folder / leg.folder / "shards").glob("*.parquet")]
+    moments = [datetime.fromtimestamp(path.stat().st_mtime, UTC) for path in shards]
+    first, last = min(moments), max(moments)
+    return first.isoformat(timespec="seconds"), last.isoformat(timespec="seconds")
+
+
 def _leg(
-    setting: Setting, cells: Sequence[Cell], profile: Profile, libraries: Mapping[str, str]
+    setting: Setting,
+    cells: Sequence[Cell],
+    profile: Profile,
+    libraries: Mapping[str, str],
+    options: Mapping[str, str],
 ) -> Leg:
-    spec = SystemSpec(name=SYSTEM, options=setting.options)
+    spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
     system = load_system(spec)
     name = libraries.get(setting.library, setting.library)
     library = system.library(name)

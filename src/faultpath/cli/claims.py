@@ -1,0 +1,81 @@
+"""`faultpath claims`: the paper's claims, confirmed or refuted by a run."""
+
+import json
+import sys
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FAILED_TRIALS = 1
+
+
+def command(
+    run: Annotated[
+        Path | None, typer.Option(help="Folder of a reproduction; default the shipped one.")
+    ] = None,
+    library: Annotated[
+        Path | None,
+        typer.Option(help="Fly all studies on this library in place of the held-out one."),
+    ] = None,
+    profile: Annotated[str, typer.Option(help="With --library: quick or paper.")] = "paper",
+    out: Annotated[Path | None, typer.Option(help="With --library: run folder.")] = None,
+    workers: Annotated[int | None, typer.Option(help="With --library: worker processes.")] = None,
+    device: Annotated[str | None, typer.Option(help="With --library: cpu or cuda.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
+) -> int:
+    """Evaluate every claim of the paper from an outcome table, or on a library of your own."""
+    from faultpath.errors import UserError
+
+    if run is not None and library is not None:
+        raise UserError(
+            "--run reads a finished reproduction and --library makes a new one: give one of them."
+        )
+    if library is None:
+        return _show(run, as_json)
+    from faultpath.cli.reproduce import crew
+    from faultpath.studies.cells import HELD_OUT
+    from faultpath.studies.run import plan
+
+    options = {} if device is None else {"device": device}
+    asked = plan((), profile, {HELD_OUT: str(library)}, options)
+    folder = out or Path("runs") / f"claims-{library.stem}-{profile}"
+
+    from faultpath.cli.studies import carry_out, tell
+
+    line = ("faultpath", *sys.argv[1:])
+    done = carry_out(asked, folder, crew(workers, device), line, quiet=as_json)
+    if as_json:
+        _print(done.reproduction.ledger.claims)
+    else:
+        tell(asked, done)
+    return FAILED_TRIALS if done.reproduction.failed_trials else 0
+
+
+def _show(run: Path | None, as_json: bool) -> int:
+    """Evaluate a finished run anew, so that the answers are those of the code that is here."""
+    from faultpath.studies.claims import ledger
+    from faultpath.studies.run import read_results
+
+    with as_file(files("faultpath.studies") / "paper" / "run") as shipped:
+        results, found = read_results(shipped if run is None else run)
+    old = found.ledger
+    answers = ledger(results, old.library, old.library_hash, old.scenes, old.seeds)
+    if as_json:
+        _print(answers.claims)
+        return 0
+    from rich.console import Console
+
+    from faultpath.report.reproduction import ledger_table
+
+    Console().print(ledger_table(answers))
+    return 0
+
+
+def _print(claims: object) -> None:
+    from faultpath.record import ClaimVerdict
+
+    assert isinstance(claims, tuple)
+    content = [claim.model_dump(mode="json") for claim in claims if isinstance(claim, ClaimVerdict)]
+    typer.echo(json.dumps(content, indent=2))

@@ -1,0 +1,44 @@
+"""`faultpath reproduce`: the paper's tables, figures and claims."""
+
+import os
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+FAILED_TRIALS = 1
+
+
+def command(
+    pages: Annotated[
+        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `in-text`, …; default all.")
+    ] = None,
+    profile: Annotated[
+        str, typer.Option(help="quick (few scenes, one seed) or paper (its size).")
+    ] = "quick",
+    out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Worker processes; default one a core, or one a GPU.")
+    ] = None,
+    device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
+) -> int:
+    """Fly every study of the paper, or some of its pages, and set the results beside it."""
+    from faultpath.studies.run import plan
+
+    options = {} if device is None else {"device": device}
+    asked = plan(pages or (), profile, options=options)
+    folder = out or Path("runs") / f"reproduction-{asked.profile.name}"
+
+    from faultpath.cli.studies import carry_out, tell
+
+    done = carry_out(asked, folder, crew(workers, device), ("faultpath", *sys.argv[1:]))
+    tell(asked, done)
+    return FAILED_TRIALS if done.reproduction.failed_trials else 0
+
+
+def crew(workers: int | None, device: str | None) -> int:
+    """Return the number of worker processes: one a core, or one alone to feed a GPU."""
+    if workers is not None:
+        return workers
+    return 1 if device not in (None, "cpu") else os.cpu_count() or 1

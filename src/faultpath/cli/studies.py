@@ -1,0 +1,156 @@
+"""Carrying a reproduction out on the terminal: progress, files, what came out."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from faultpath.cli.options import Stopped
+from faultpath.evidence import EvidenceTable
+from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
+from faultpath.record import Reproduction, RunProvenance
+from faultpath.report import booktabs_document, markdown_tables
+from faultpath.report.reproduction import (
+    ReproductionInput,
+    ledger_markdown,
+    ledger_table,
+    reproduction_page,
+)
+from faultpath.store import write_text
+from faultpath.studies import reversal
+from faultpath.studies.flights import Flown, Pace
+from faultpath.studies.pages import table_4
+from faultpath.studies.results import Results
+from faultpath.studies.run import Plan, conclude, fly_all, measure_all, save
+
+Show = Callable[[float, float, str], None]
+"""Shows how much of what is done, and a remark."""
+
+
+@dataclass(frozen=True)
+class Done:
+    """A reproduction and where its files are."""
+
+    reproduction: Reproduction
+    folder: Path
+
+
+def carry_out(
+    plan: Plan, folder: Path, workers: int, command: Sequence[str], quiet: bool = False
+) -> Done:
+    """Fly, measure, conclude and write the files of a plan.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run. `quiet` leaves the
+    standard output to the caller.
+    """
+    console = Console(stderr=quiet)
+    stopwatch = Stopwatch()
+    try:
+        flown, evidence = _run(console, plan, folder, workers)
+    except (Interrupted, KeyboardInterrupt):
+        raise Stopped(
+            f"interrupted; what is finished is kept in {folder}, and the same command resumes."
+        ) from None
+    results = Results(flown.outcomes, evidence, plan.library().content_hash)
+    place = folder / plan.place
+    found = conclude(plan, flown, results)
+    result = save(place, flown, results, evidence, found)
+    _tell_failures(console, result)
+    backend = flown.legs[0].system.backend if flown.legs else ""
+    provenance = run_provenance(result, stopwatch, command, workers, backend)
+    write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
+    _write_pages(place, found, provenance, flown)
+    return Done(found, place)
+
+
+def tell(plan: Plan, done: Done) -> None:
+    """Print what came out: the ledger of the whole paper, or the tables of its pages."""
+    console = Console()
+    if plan.whole:
+        console.print(ledger_table(done.reproduction.ledger))
+    else:
+        console.print(markdown_tables(done.reproduction.tables), markup=False)
+    page = done.folder / "reproduction.html"
+    console.print(f"Report: {page}", markup=False, soft_wrap=True)
+
+
+def _run(console: Console, plan: Plan, folder: Path, workers: int) -> tuple[Flown, EvidenceTable]:
+    def notice(text: str) -> None:
+        console.print(text, markup=False, soft_wrap=True)
+
+    with _bar(console, "Flying", "trials") as show:
+
+        def flying(now: Pace) -> None:
+            show(now.trials_done, now.trials_total, f"{_left(now.seconds_left)}  {now.leg}")
+
+        flown = fly_all(plan, folder, workers, flying, notice)
+    with _bar(console, "Measuring", "flights") as show:
+        evidence = measure_all(plan, folder, workers, lambda done, total: show(done, total, ""))
+    return flown, evidence
+
+
+@contextmanager
+def _bar(console: Console, what: str, unit: str) -> Iterator[Show]:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[count]}"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[remark]}"),
+    )
+    with Progress(*columns, console=console) as bar:
+        task = bar.add_task(what, total=None, count="", remark="")
+
+        def show(done: float, total: float, remark: str) -> None:
+            count = f"{done:.0f}/{total:.0f} {unit}"
+            bar.update(task, completed=done, total=total, count=count, remark=remark)
+
+        yield show
+
+
+def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, flown: Flown) -> None:
+    leg = next((leg for leg in flown.legs if leg.setting == table_4.WINDY), None)
+    asked = reversal.audited(flown.outcomes)
+    plain = flown.legs[0].system
+    source = ReproductionInput(
+        reproduction=found,
+        provenance=provenance,
+        interface=plain.interface,
+        outcomes=asked,
+        decision=reversal.decision(asked, leg) if leg is not None and asked.rows else None,
+        dt_s=plain.control_dt_s,
+        plans={
+            scene: plan
+            for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}
+            if (plan := plain.floor_plan(scene)) is not None
+        },
+    )
+    write_text(place / "reproduction.html", reproduction_page(source))
+    write_text(place / "tables.tex", booktabs_document(found.tables))
+    write_text(place / "tables.md", markdown_tables(found.tables))
+    write_text(place / "ledger.md", ledger_markdown(found.ledger))
+
+
+def _gallery(found: Reproduction) -> list[str]:
+    return [shown.scene for shown in found.gallery]
+
+
+def _left(seconds: float | None) -> str:
+    if seconds is None:
+        return ""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d} left"
+
+
+def _tell_failures(console: Console, result: RunResult) -> None:
+    if result.failures:
+        console.print(
+            f"{len(result.failures)} trials failed and void their pairs.", style="bold red"
+        )
+    for failure in result.failures:
+        line = f"  {failure.scene}: {failure.error} ({failure.details})"
+        console.print(line, markup=False, soft_wrap=True)

@@ -1,0 +1,63 @@
+"""Table IV's question as an audit: does the repair that wins alone still win with the fault shared?
+
+Its decision record and its flights are what a report shows of the reversal.
+"""
+
+from dataclasses import replace
+
+from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
+from faultpath.studies.flights import SYSTEM, Leg
+from faultpath.studies.pages import table_4
+from faultpath.trials import OutcomeTable, TrialRow
+
+BASELINE, REPAIR = "gru", "gru+dcc"
+NAMES = {"correct": CORRECT, "reconstruction-only": "reconstruction", "shared": SHARED}
+TITLES = {
+    CORRECT: "Correct inputs",
+    "reconstruction": "Reconstruction only",
+    SHARED: "Shared fault",
+}
+_PATHS = {table_4.cell(REPAIR, path).path: name for path, name in NAMES.items()}
+
+
+def concerns(row: TrialRow) -> bool:
+    """Return whether a trial is one of the question's."""
+    return row.variant in (BASELINE, REPAIR) and row.path in _PATHS
+
+
+def audited(outcomes: OutcomeTable) -> OutcomeTable:
+    """Return the question's trials, by the names that an audit gives their paths."""
+    rows = (row for row in outcomes.rows if concerns(row))
+    return OutcomeTable(tuple(replace(row, path=_PATHS[row.path]) for row in rows))
+
+
+def decision(outcomes: OutcomeTable, leg: Leg) -> DecisionRecord:
+    """Return the decision record over trials that `audited` returned, flown in `leg`."""
+    study = leg.study
+    question = Question(
+        system=SYSTEM,
+        options=study.system.options,
+        baseline=BASELINE,
+        repair=REPAIR,
+        fault=table_4.PATHS["shared"][0],
+        library=study.library,
+        library_hash=leg.system.library(study.library).content_hash,
+        n_scenes=len(study.scenes),
+        seeds=outcomes.seeds(BASELINE, CORRECT),
+    )
+    paths = [
+        Path(
+            name=NAMES[path],
+            title=TITLES[NAMES[path]],
+            consumers=_struck(leg, REPAIR, path),
+            baseline_consumers=_struck(leg, BASELINE, path),
+        )
+        for path in table_4.PATHS
+    ]
+    return decide(question, paths, outcomes)
+
+
+def _struck(leg: Leg, variant: str, path: str) -> tuple[str, ...]:
+    at = table_4.cell(variant, path).path
+    row = next(row for row in leg.study.rows if (row.variant, row.path) == (variant, at))
+    return tuple(dict.fromkeys(c for fault in row.arm.faults for c in fault.consumers))
