@@ -1,201 +1,25 @@
-"""Tables of the studies: our figures from a run, the paper's beside them, dashes where none is."""
+"""Tables of the studies: known figures from runs with known results."""
 
-from collections.abc import Iterator
-from typing import Any
-
-import pytest
 from toy_runs import (
-    CELLS,
     EMPTY,
     MEASUREMENTS,
     SCENES,
-    Watched,
+    calibrated,
+    line,
     measured,
+    page,
+    papers,
     run,
-    trials,
+    tables,
+    texts,
     won,
 )
 
 from faultpath.evidence import Measurement
-from faultpath.record import MISSING, Entry, Line, Sweep, Table
+from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
-from faultpath.studies.entries import printed
-from faultpath.studies.page import Page
-from faultpath.studies.pages import (
-    PAGES,
-    figure_1,
-    figure_3,
-    in_text,
-    table_1,
-    table_2,
-    table_4,
-    table_6,
-)
-from faultpath.studies.published import published
-from faultpath.studies.results import Results
+from faultpath.studies.pages import PAGES, figure_3, table_1, table_2, table_4, table_6
 from faultpath.trials import Status
-
-NAMES = tuple(page.name for page in PAGES)
-
-
-def tables(page: Page, results: Results) -> dict[str, Table]:
-    return {part.name: part for part in page.build(results) if isinstance(part, Table)}
-
-
-def page(name: str) -> Page:
-    return next(page for page in PAGES if page.name == name)
-
-
-def line(table: Table, label: str, *, below: str = "") -> Line:
-    """Return the first line of a label, after the heading `below`."""
-    labels = [each.label for each in table.lines]
-    start = labels.index(below) if below else 0
-    return table.lines[labels.index(label, start)]
-
-
-def texts(found: Line) -> list[str]:
-    return [entry.text for entry in found.entries]
-
-
-def papers(found: Line) -> list[str]:
-    return [entry.published for entry in found.entries]
-
-
-def entries(table: Table) -> Iterator[Entry]:
-    return (entry for each in table.lines for entry in each.entries)
-
-
-def calibrated(cell: Cell) -> int:
-    """Let repairs win 15 of 20 scenes, models without faults 14, and with faults 2."""
-    return 15 if "dcc" in cell.variant else 2 if cell.faults else 14
-
-
-# What a page needs
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
-    watched = Watched(trials(CELLS, won(calibrated)), measured(MEASUREMENTS, lambda m: 0.1), "toy")
-    built = page(name).build(watched)
-    flown = {(cell.side, seed) for cell in page(name).cells for seed in cell.seeds}
-    read = {(cell.side, seed) for cell in watched.cells for seed in cell.seeds}
-    assert read <= flown
-    assert set(watched.measurements) == set(page(name).measurements)
-    if built:  # figure 1 is drawn from a decision record
-        assert {side for side, _ in read} == {side for side, _ in flown}
-
-
-def test_every_result_of_the_text_has_a_page() -> None:
-    flown = {(cell.side, seed) for cell in CELLS for seed in cell.seeds}
-    needed = {(cell.side, seed) for cell in in_text.CELLS for seed in cell.seeds}
-    # Configurations without wind count with their first seed; Table I flies the others.
-    assert needed <= flown
-    assert set(in_text.MEASUREMENTS) <= set(MEASUREMENTS)
-
-
-def test_names_of_pages_and_of_their_parts_are_unique() -> None:
-    parts = [part.name for each in PAGES for part in each.build(EMPTY)]
-    assert len(set(parts)) == len(parts)
-    assert len(set(NAMES)) == len(NAMES)
-
-
-def test_figure_1_shows_the_contrast_that_reverses() -> None:
-    assert (figure_1.REPAIR, figure_1.BASELINE) == ("gru+dcc", "gru")
-    assert {cell.path for cell in figure_1.CELLS} == {
-        table_4.cell("gru", path).path for path in table_4.PATHS
-    }
-
-
-# What was not run
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_an_empty_run_leaves_dashes_beside_the_published_figures(name: str) -> None:
-    for part in page(name).build(EMPTY):
-        if isinstance(part, Sweep):
-            assert all(not series.points for series in part.series)
-            assert part.published
-            continue
-        assert {entry.text for entry in entries(part)} <= {MISSING, ""}
-        assert all(entry.text == MISSING for entry in entries(part) if entry.published)
-
-
-@pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("part", [0, 1, 2])
-def test_any_part_of_a_run_makes_whole_tables(name: str, part: int) -> None:
-    cells = [Cell(c.setting, c.variant, c.faults, (part,)) for c in CELLS if part in c.seeds]
-    some = run(won(calibrated), cells[part::3], measured(MEASUREMENTS[part::3], lambda m: 0.1))
-    for built in page(name).build(some):
-        if isinstance(built, Table):
-            widths = {len(each.entries) for each in built.lines}
-            assert widths <= {0, len(built.columns)}
-        assert type(built).model_validate_json(built.model_dump_json()) == built
-
-
-# The paper's figures
-
-
-def _figures(value: Any) -> Iterator[float | str]:
-    if isinstance(value, dict):
-        for each in value.values():
-            yield from _figures(each)
-    elif isinstance(value, list):
-        for each in value:
-            yield from _figures(each)
-    elif value is not None and value != "no crossing":
-        yield value
-
-
-@pytest.mark.parametrize(
-    ("key", "name"),
-    [
-        ("table_1_prediction_accuracy", "table-1"),
-        ("table_2_calibration", "table-2"),
-        ("table_3_wind", "table-3"),
-        ("table_4_shared_calibration", "table-4"),
-        ("table_5_decision_record", "table-5"),
-        ("table_6_compensation", "table-6"),
-    ],
-)
-def test_every_published_figure_of_a_table_stands_in_it(key: str, name: str) -> None:
-    built = tables(page(name), EMPTY).values()
-    shown = " ".join(entry.published for table in built for entry in entries(table))
-    shown = f" {shown} ".replace("−", "-").replace("+", "")
-    for mark in "[](),/–":
-        shown = shown.replace(mark, " ")
-    words = shown.split()
-    numbers = {
-        float(word)
-        for word in words
-        if ":" not in word and word.strip("-.").replace(".", "").isdigit()
-    }
-    for figure in _figures(published(key)):
-        assert (figure in words) if isinstance(figure, str) else (figure in numbers)
-
-
-def test_published_figures_of_the_text_stand_in_its_tables() -> None:
-    built = {k: v for each in PAGES for k, v in tables(each, EMPTY).items()}
-    assert papers(line(built["text-probes"], "Calibration, e = +0.1")) == ["62", "9"]
-    assert papers(line(built["text-probes"], "History shuffled")) == ["2", "15"]
-    assert papers(line(built["text-noise"], "Wins:losses")) == ["", "0:7", ""]
-    freezes = [papers(each)[:2] for each in built["text-freezes"].lines]
-    assert freezes == [["59", "97"], ["67", "67"], ["86", "85"]]
-    withheld = line(built["text-reconstructions"], "GRU without calibration minus GRU, seed 0")
-    assert papers(withheld)[0] == "55"
-    assert [papers(each) for each in built["text-ceiling"].lines] == [["63", ""], ["23", ""]]
-    assert [papers(each) for each in built["text-correlations"].lines] == [["−0.84"], ["−0.72"]]
-
-
-def test_a_published_figure_keeps_the_digits_that_the_paper_prints() -> None:
-    assert [printed(69), printed(67.0), printed(2.5, 2), printed(-1.0)] == [
-        "69",
-        "67.0",
-        "2.50",
-        "−1.0",
-    ]
-
-
-# Our figures
 
 
 def test_table_1_counts_how_trials_end_and_when() -> None:
@@ -343,6 +167,28 @@ def test_table_6_averages_the_medians_of_the_seeds() -> None:
     first = measured([m for m in table_6.MEASUREMENTS if m.seed == 0], value)
     table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
     assert texts(line(table, "GRU")) == ["1.00"] * 4
+
+
+def test_notes_say_what_was_flown_and_measured() -> None:
+    results = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
+    built = {k: v for each in PAGES for k, v in tables(each, results).items()}
+    assert built["table-4"].notes[0] == "20 scenes of the held-out library, seeds 0, 1, 2."
+    assert any(
+        note.endswith("220 windows of 20 scenes, seeds 0, 1, 2.")
+        for note in built["table-6a"].notes
+    )
+    both = "20 scenes of the held-out library, seed 0; 20 scenes of the selection library, seed 0."
+    assert built["text-freezes"].notes[0] == both
+    (nothing,) = {table.notes[0] for table in tables(page("table-4"), EMPTY).values()}
+    assert nothing == "No trial of this table was run."
+
+
+def test_a_freeze_is_compared_with_the_same_seed_alone() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        return Status.CRASH if seed or scene >= 10 else Status.SUCCESS
+
+    table = tables(page("text-wind"), run(ends))["text-freezes"]
+    assert [texts(each)[:3] for each in table.lines] == [["50", "50", "0.0"]] * 3
 
 
 def test_table_6_tests_the_negative_offset() -> None:

@@ -1,7 +1,9 @@
-"""Notes below tables: what was flown for them, and how to read their intervals."""
+"""Notes below tables: what was flown and measured for them, and how to read their intervals."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 
+from faultpath.evidence import Measured, Measurement
 from faultpath.report import wording
 from faultpath.studies.cells import Cell
 from faultpath.studies.results import NotRun, Results
@@ -44,3 +46,17 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
         for library in scenes
     )
     return wording.sentence("; ".join(parts))
+
+
+def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
+    """Return windows, scenes and seeds that a run holds of measurements of one recording."""
+    found: dict[Measurement, Measured] = {}
+    for measurement in measurements:
+        with suppress(NotRun):
+            found[measurement] = results.measured(measurement)
+    if not found:
+        return "No error of this table was measured."
+    windows = next(iter(found.values()))
+    scenes = wording.counted(len(set(windows.scenes)), "scene")
+    seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in found})))
+    return f"{len(windows):,} windows of {scenes}, {seeds}."

@@ -15,7 +15,7 @@ from faultpath.studies.entries import (
     time,
     time_difference,
 )
-from faultpath.studies.notes import INTERVALS, WINDOWS, flown
+from faultpath.studies.notes import INTERVALS, WINDOWS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
@@ -93,6 +93,7 @@ def build(results: Results) -> Built:
             flown(results, map(of_seed, CELLS)),
             f"{WINDOWS} Common: on trajectories flown with the true-parameter model; own: on those "
             "that the row itself flew.",
+            f"Common: {recorded(results, map(common_error, PREDICTORS))}",
             "Time: median over successful trials.",
         ),
     )

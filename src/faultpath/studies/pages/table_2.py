@@ -7,7 +7,7 @@ from faultpath.record import Entry, Line, Table
 from faultpath.studies.cells import SEEDS, Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, contrast_lines, published_contrasts
 from faultpath.studies.entries import centimetres, of_seed, printed, success
-from faultpath.studies.notes import INTERVALS, WINDOWS, WINS, flown
+from faultpath.studies.notes import INTERVALS, WINDOWS, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import COMMON, STILL
 from faultpath.studies.published import published
@@ -57,7 +57,8 @@ def build(results: Results) -> Built:
             "Success in percent, mean over seeds; the paper prints these means without decimals.",
             WINS,
             INTERVALS,
-            f"{WINDOWS} Windows: trajectories flown with the true-parameter model.",
+            f"{WINDOWS} Windows: trajectories flown with the true-parameter model; "
+            f"{recorded(results, MEASUREMENTS)}",
         ),
     )
     return (table,)

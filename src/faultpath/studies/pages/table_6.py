@@ -8,7 +8,7 @@ from faultpath.report import wording
 from faultpath.studies.cells import Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, contrast_entries
 from faultpath.studies.entries import BLANK, guarded, mean_of_medians, printed, success
-from faultpath.studies.notes import flown
+from faultpath.studies.notes import flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
@@ -100,7 +100,7 @@ _HEADS = {
     "predictor-only": "(0, +0.1)",
     "shared": "(+0.1, +0.1)",
 }
-_SEEDS_OF_WINDOWS = (
+_MEANS = (
     "Mean over reconstruction seeds of the median over windows; DOB has nothing to train. Windows: "
     "flights with the GRU of seed 0 under correct inputs, obstacles at L3."
 )
@@ -162,7 +162,8 @@ def _acceleration(results: Results) -> Table:
         ),
         notes=(
             "Columns: calibration error of the reconstruction and of the predictor.",
-            _SEEDS_OF_WINDOWS,
+            f"{_MEANS} {recorded(results, PAGE.measurements)}",
+            "Wind term alone: error of the part that the wind adds to the acceleration.",
         ),
     )
 

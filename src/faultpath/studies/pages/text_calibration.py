@@ -3,7 +3,7 @@
 from faultpath.record import Line, Table
 from faultpath.studies.contrasts import UNPUBLISHED, PublishedContrast, contrast_lines
 from faultpath.studies.entries import centimetres, printed, success
-from faultpath.studies.notes import INTERVALS, WINS, flown
+from faultpath.studies.notes import INTERVALS, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.in_text import ERRORS, PROBES, noisy, response
 from faultpath.studies.pages.table_2 import NAMES
@@ -35,6 +35,7 @@ def _probes(results: Results) -> Table:
             "Median over windows of how far the position predicted 20 control steps ahead moves, "
             "all else fixed; seed 0. Windows: flights with the true-parameter model, obstacles of "
             "the selection library. The shuffle shows dependence; it is no model of noise.",
+            recorded(results, MEASUREMENTS),
         ),
     )
 

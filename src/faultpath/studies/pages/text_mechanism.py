@@ -17,7 +17,7 @@ from faultpath.studies.entries import (
     interval,
     mean_of_medians,
 )
-from faultpath.studies.notes import flown
+from faultpath.studies.notes import flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import table_4
 from faultpath.studies.pages.table_6 import acceleration_error, by_seed, position_error
@@ -96,6 +96,7 @@ def _errors(results: Results) -> Table:
             "seeds of the median over windows. Columns: calibration error of the reconstruction "
             "and of the predictor. The paper says that no reduction from the isolated to the "
             "shared error is detected.",
+            recorded(results, MEASUREMENTS),
             "Interval: 95 % percentile bootstrap of whole scenes.",
         ),
     )

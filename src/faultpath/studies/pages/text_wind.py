@@ -3,7 +3,7 @@
 from faultpath.record import Line, Table
 from faultpath.studies.contrasts import COMPARED, comparison
 from faultpath.studies.entries import centimetres, of_seed, printed
-from faultpath.studies.notes import EVERY_NOISE, INTERVALS, LEAST, WINDOWS, WINS, flown
+from faultpath.studies.notes import EVERY_NOISE, INTERVALS, LEAST, WINDOWS, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.in_text import (
     CALIBRATION_WITHHELD,
@@ -27,11 +27,11 @@ TITLE = "Wind: prediction errors, reconstruction controls and freezing"
 NOISY = (noisy_wind(GRU), noisy_wind(ZERO))
 RECONSTRUCTIONS = (wind_cell("gru", "correct"), wind_cell("gru+dcc", "correct"))
 FREEZES = (
-    ("Trajectory GRU's wind, from step 20", WIND_FROZEN, WIND_UPDATED),
-    ("History code of WM-A+DCC, e = +0.1", CODE_FROZEN, CODE_UPDATED),
+    ("Trajectory GRU's wind, from step 20", WIND_FROZEN, of_seed(WIND_UPDATED)),
+    ("History code of WM-A+DCC, e = +0.1", CODE_FROZEN, of_seed(CODE_UPDATED)),
     ("History code of the wind-withheld model", WITHHELD_FROZEN, WITHHELD_UPDATED),
 )
-"""What is frozen, and the cells with and without that."""
+"""What is frozen, and the cells with and without that, seed 0."""
 CELLS = (
     *NOISY,
     *RECONSTRUCTIONS,
@@ -63,6 +63,7 @@ def _errors(results: Results) -> Table:
         notes=(
             f"{WINDOWS} Trajectories: true-parameter model with the true wind, obstacles at L3; "
             "seed 0. The paper states the order only.",
+            recorded(results, MEASUREMENTS),
         ),
     )
 
