@@ -178,11 +178,6 @@ def at_least(limit: float, *, detected: bool = False) -> Bound:
     return Bound(limit, 1, detected=detected)
 
 
-def at_most(limit: float) -> Bound:
-    """Return the rule of an upper limit."""
-    return Bound(limit, -1)
-
-
 def more_than(limit: float) -> Bound:
     """Return the rule of a lower limit that is not reached by equality."""
     return Bound(limit, 1, strict=True)

@@ -1,0 +1,190 @@
+"""The claims over whole runs: as published, mirrored, in part, and not at all."""
+
+import json
+from typing import Any
+
+import pytest
+from study_toys import SCENES, as_published, mirrored, outcomes, whole, windows, without
+from toy_runs import EMPTY, trials
+
+from faultpath.evidence import EvidenceTable, Measured
+from faultpath.record import ClaimVerdict, Ledger
+from faultpath.studies.cells import Cell
+from faultpath.studies.claims import STATEMENTS, evaluate, ledger
+from faultpath.studies.claims.found import MIN_SCENES
+from faultpath.studies.claims.rules import Detected
+from faultpath.studies.claims.statement import verdict
+from faultpath.studies.pages import table_1, table_4
+from faultpath.studies.published import published_claims
+from faultpath.studies.results import Results
+from faultpath.trials import Status
+
+Answers = dict[str, ClaimVerdict]
+
+
+def by_id(claims: tuple[ClaimVerdict, ...]) -> Answers:
+    return {claim.id: claim for claim in claims}
+
+
+@pytest.fixture(scope="module")
+def published_run() -> Results:
+    return whole()
+
+
+@pytest.fixture(scope="module")
+def answers(published_run: Results) -> Answers:
+    return by_id(evaluate(published_run))
+
+
+@pytest.fixture(scope="module")
+def mirror() -> Answers:
+    return by_id(evaluate(whole(mirrored, power=-1.0, slower_s=-1.4)))
+
+
+def test_every_published_claim_has_statements_and_nothing_else_has() -> None:
+    assert set(STATEMENTS) == {claim.id for claim in published_claims()}
+    assert all(STATEMENTS.values())
+
+
+def test_the_ledger_is_in_the_papers_order(answers: Answers) -> None:
+    assert list(answers) == [claim.id for claim in published_claims()]
+
+
+def test_an_empty_run_leaves_every_claim_undecided() -> None:
+    claims = evaluate(EMPTY)
+    assert len(claims) == 39
+    assert {claim.verdict for claim in claims} == {"undecided"}
+    assert all(part.reason.startswith("not run: ") for c in claims for part in c.parts)
+
+
+def test_where_the_papers_figures_come_true_every_claim_is_confirmed(answers: Answers) -> None:
+    others = {id: answer.parts for id, answer in answers.items() if answer.verdict != "confirmed"}
+    assert not others
+
+
+def test_turning_all_outcomes_round_refutes_what_was_detected(
+    answers: Answers, mirror: Answers
+) -> None:
+    """Success becomes failure and errors their inverse: each detected side is the other one."""
+    detected = [
+        (old, new)
+        for id, statements in STATEMENTS.items()
+        for statement, old, new in zip(statements, answers[id].parts, mirror[id].parts, strict=True)
+        # C04 is of crashes and C30 of sizes, which do not turn round; in C12 both sides do.
+        if isinstance(statement.rule, Detected) and id not in ("C04", "C12", "C30")
+    ]
+    assert len(detected) > 25
+    for old, new in detected:
+        assert old.answer == "confirmed"
+        assert new.answer == "refuted"
+        if old.test:
+            assert new.estimate == pytest.approx(-(old.estimate or 0))
+            assert new.p_value == old.p_value
+
+
+@pytest.mark.parametrize("claim", ["C05", "C06", "C26", "C27", "C32", "C33", "C38"])
+def test_other_rules_fail_in_the_mirror_too(mirror: Answers, claim: str) -> None:
+    assert mirror[claim].verdict == "refuted"
+
+
+def test_a_claim_is_numbered_by_the_first_part_with_its_answer(
+    answers: Answers, mirror: Answers
+) -> None:
+    for claim in (*answers.values(), *mirror.values()):
+        deciding = next(part for part in claim.parts if part.answer == claim.verdict)
+        assert (claim.estimate, claim.interval) == (deciding.estimate, deciding.interval)
+        assert (claim.mde, claim.unit) == (deciding.mde, deciding.unit)
+
+
+def test_every_difference_in_success_says_what_could_have_been_detected(answers: Answers) -> None:
+    tested = [part for claim in answers.values() for part in claim.parts if part.test]
+    assert len(tested) > 40
+    assert all(part.mde is not None and part.counts and part.p_value is not None for part in tested)
+
+
+def test_one_seed_leaves_open_what_the_paper_says_of_three(published_run: Results) -> None:
+    one = without(published_run, lambda variant, path, seed: seed != 0)
+    change, seeds = (statement.part(one) for statement in STATEMENTS["C26"])
+    assert change.answer == "confirmed"
+    assert (seeds.answer, seeds.reason) == ("undecided", "run with 1 of 3 seeds")
+
+
+def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        turned = seed == 2 and cell.variant == "gru+dcc"
+        return mirrored(cell, seed, scene) if turned else as_published(cell, seed, scene)
+
+    run = Results(trials(table_4.CELLS, ends, range(SCENES)), None, "toy")
+    seeds = STATEMENTS["C26"][1].part(run)
+    assert (seeds.answer, seeds.estimate) == ("refuted", 2)
+
+
+def test_seeds_that_only_one_side_has_are_left_out(published_run: Results) -> None:
+    fewer = without(published_run, lambda variant, path, seed: variant == "gru" and seed == 2)
+    (part,) = (statement.part(fewer) for statement in STATEMENTS["C27"])
+    assert part.answer == "confirmed"
+
+
+def test_what_was_not_run_is_named(published_run: Results) -> None:
+    cell = table_1.DKI
+    fewer = without(published_run, lambda variant, path, seed: variant == cell.variant)
+    (part,) = (statement.part(fewer) for statement in STATEMENTS["C03"])
+    assert (part.answer, part.reason) == ("undecided", f"not run: {cell}")
+
+
+def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: Results) -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        lost = cell == table_4.cell("gru", "shared") and seed == 1 and scene in (0, 60)
+        return Status.FAILED if lost else as_published(cell, seed, scene)
+
+    run = Results(trials(table_4.CELLS, ends, range(SCENES)), None, "toy")
+    found = STATEMENTS["C26"][0].quantity(run)
+    assert found.n_scenes == SCENES - 2
+
+
+def test_few_scenes_decide_nothing_but_what_is_reported() -> None:
+    few = Results(outcomes(as_published, scenes=MIN_SCENES - 1), None, "toy")
+    parts = [part for claim in evaluate(few) for part in claim.parts]
+    assert {part.answer for part in parts if not part.words.startswith("reported")} == {"undecided"}
+    assert all(part.interval is None for part in parts)
+
+
+def test_errors_on_other_windows_are_not_compared() -> None:
+    table = windows()
+    odd = table_1.common_error(table_1.DKI)
+    found = table.values(odd)
+    moved = Measured(found.scenes, found.steps + 1, found.values)
+    run = Results(EMPTY.outcomes, EvidenceTable({**table.entries, odd: moved}), "toy")
+    parts = [statement.part(run) for statement in STATEMENTS["C01"]]
+    assert [part.answer for part in parts] == ["undecided"] * 3 + ["confirmed"] * 2
+    assert "on the windows of" in parts[0].reason
+
+
+def test_the_ledger_says_what_it_was_answered_on() -> None:
+    found = ledger(EMPTY, "held-out", "abc", 15, (0,))
+    assert (found.library, found.library_hash, found.scenes, found.seeds) == (
+        "held-out",
+        "abc",
+        15,
+        (0,),
+    )
+    assert found.count("undecided") == len(found.claims)
+    assert Ledger.model_validate_json(found.model_dump_json()) == found
+
+
+def test_a_claim_as_json_carries_what_readers_ask_for(answers: Answers) -> None:
+    paper = {claim.id: claim for claim in published_claims()}
+    for id, answer in answers.items():
+        content: dict[str, Any] = json.loads(answer.model_dump_json())
+        assert content["id"] == id
+        assert content["kind"] == paper[id].kind
+        assert content["paper"] == paper[id].paper
+        assert {"verdict", "estimate", "interval", "mde", "unit", "parts"} <= set(content)
+
+
+def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: Results) -> None:
+    """A claim with other published words gets the same answer."""
+    claim = published_claims()[4]
+    other = claim.model_copy(update={"paper": "69 -> 0"})
+    found = verdict(other, STATEMENTS[claim.id], published_run)
+    assert found.parts == answers[claim.id].parts

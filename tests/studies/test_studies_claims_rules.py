@@ -1,0 +1,223 @@
+"""Each rule of the claims: when it confirms, when it refutes, and when it leaves open."""
+
+import numpy as np
+import pytest
+
+from faultpath.statistics import (
+    DirectionShares,
+    Discordant,
+    Effect,
+    Resamples,
+    TestResult,
+    mean_effect,
+)
+from faultpath.studies.claims.differences import weighted
+from faultpath.studies.claims.found import MULTIPLE, Found, of_effect
+from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
+from faultpath.studies.claims.reversals import Turn, TurnsDown
+from faultpath.studies.claims.rules import (
+    ABOVE,
+    BELOW,
+    NO_GAIN,
+    NO_LOSS,
+    REPORTED,
+    ByPoint,
+    NotDetected,
+    Rule,
+    Within,
+    at_least,
+    less_than,
+    more_than,
+)
+
+UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
+
+
+def found(
+    interval: tuple[float, float] | None, p_value: float | None = None, mde: float | None = 8.0
+) -> Found:
+    """Return a difference at the middle of its interval, with a test that finds its side ahead."""
+    value = 0.0 if interval is None else sum(interval) / 2
+    counts = Discordant(first_only=9 if value > 0 else 1, second_only=1 if value > 0 else 9)
+    test = None if p_value is None else TestResult(name="sign", p_value=p_value, counts=counts)
+    return Found(value, interval, "pp", 40, test, mde, telling_mde=20.0)
+
+
+@pytest.mark.parametrize(
+    ("rule", "shown", "answer"),
+    [
+        (ABOVE, found(UP, 0.01), "confirmed"),
+        (ABOVE, found(DOWN, 0.01), "refuted"),
+        (ABOVE, found(OPEN, 0.3), "undecided"),
+        (ABOVE, found(UP, 0.06), "undecided"),
+        (ABOVE, found(OPEN, 0.01), "undecided"),
+        (ABOVE, found(UP), "confirmed"),
+        (ABOVE, found(None), "undecided"),
+        (BELOW, found(DOWN, 0.01), "confirmed"),
+        (BELOW, found(UP, 0.01), "refuted"),
+        (BELOW, found((-5.0, 0.0), 0.01), "undecided"),
+    ],
+)
+def test_a_difference_is_detected_when_interval_and_test_agree(
+    rule: Rule[Found], shown: Found, answer: str
+) -> None:
+    assert rule.judge(shown).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "shown", "answer"),
+    [
+        (NO_LOSS, found(OPEN, 0.3), "confirmed"),
+        (NO_LOSS, found(DOWN, 0.01), "refuted"),
+        (NO_LOSS, found((-15.0, 1.0), 0.04), "refuted"),
+        (NO_LOSS, found(UP, 0.01), "confirmed"),
+        (NO_GAIN, found(UP, 0.01), "refuted"),
+        (NotDetected(), found(UP, 0.01), "refuted"),
+        (NotDetected(), found(DOWN, 0.01), "refuted"),
+        (NotDetected(), found(DOWN, 0.06), "confirmed"),
+        (NO_LOSS, found(OPEN, 0.3, mde=20.0), "confirmed"),
+        (NO_LOSS, found(OPEN, 0.3, mde=20.1), "undecided"),
+        (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
+        (NO_LOSS, found(DOWN), "refuted"),
+        (NO_LOSS, found(None, 0.3), "undecided"),
+    ],
+)
+def test_not_detecting_counts_only_where_something_would_have_been_seen(
+    rule: Rule[Found], shown: Found, answer: str
+) -> None:
+    assert rule.judge(shown).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "shown", "answer"),
+    [
+        (at_least(10), found(UP), "confirmed"),
+        (at_least(10.1), found(UP), "undecided"),
+        (at_least(15), found(UP), "undecided"),
+        (at_least(15.1), found(UP), "refuted"),
+        (less_than(4.9), found(UP), "refuted"),
+        (more_than(10), found(UP), "undecided"),
+        (more_than(15), found(UP), "refuted"),
+        (less_than(10), found(UP), "undecided"),
+        (less_than(10.1), found(UP), "confirmed"),
+        (at_least(10, detected=True), found(UP, 0.01), "confirmed"),
+        (at_least(10, detected=True), found(UP, 0.2), "undecided"),
+        (at_least(3, detected=True), found(OPEN, 0.2), "undecided"),
+        (at_least(20, detected=True), found(UP, 0.01), "refuted"),
+        (Within(9, 11), found(UP), "confirmed"),
+        (Within(11, 12), found(UP), "undecided"),
+        (Within(16, 20), found(UP), "refuted"),
+        (Within(1, 2), found(UP), "refuted"),
+        (at_least(-1), found(None), "undecided"),
+        (Within(-1, 1), found(None), "undecided"),
+    ],
+)
+def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
+    rule: Rule[Found], shown: Found, answer: str
+) -> None:
+    assert rule.judge(shown).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "value", "answer"),
+    [
+        (ByPoint(1), 0.1, "confirmed"),
+        (ByPoint(1), 0.0, "refuted"),
+        (ByPoint(1, strict=False), 0.0, "confirmed"),
+        (ByPoint(-1), 0.1, "refuted"),
+        (ByPoint(-1, -0.5, strict=False), -0.5, "confirmed"),
+        (ByPoint(-1, -0.5, strict=False), -0.4, "refuted"),
+        (REPORTED, -7.0, "confirmed"),
+    ],
+)
+def test_claims_about_points_are_decided_by_points(
+    rule: Rule[Found], value: float, answer: str
+) -> None:
+    assert rule.judge(Found(value, OPEN, "pp", 40)).answer == answer
+
+
+def test_points_of_too_few_scenes_decide_nothing() -> None:
+    assert ByPoint(1).judge(Found(50.0, None, "pp", 5)).answer == "undecided"
+
+
+def turn(interval: tuple[float, float], before: int, after: int, *, differ: bool) -> Turn:
+    value = sum(interval) / 2
+    turned = differ and interval[1] < 0
+    return Turn(value, interval, "pp", 40, before=before, after=after, turned=turned)
+
+
+@pytest.mark.parametrize(
+    ("shown", "answer"),
+    [
+        (turn(DOWN, 1, -1, differ=True), "confirmed"),
+        (turn(DOWN, 0, 0, differ=True), "confirmed"),
+        (turn(DOWN, 1, 0, differ=False), "undecided"),
+        (turn(OPEN, 0, 0, differ=True), "undecided"),
+        (turn(DOWN, 1, 1, differ=False), "refuted"),
+        (turn(OPEN, -1, -1, differ=False), "refuted"),
+        (turn(UP, 0, 0, differ=False), "refuted"),
+    ],
+)
+def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(shown: Turn, answer: str) -> None:
+    assert TurnsDown().judge(shown).answer == answer
+
+
+def crossing(value: float | None, shares: tuple[float, float, float, float]) -> Crossing:
+    above, below, always, never = shares
+    return Crossing(
+        value=value,
+        interval=None if value is None else (max(0.0, value - 10), value + 10),
+        unit="percent",
+        n_scenes=40,
+        shares=DirectionShares(above=above, below=below, always=always, never=never),
+        never=value is None and never >= below,
+    )
+
+
+@pytest.mark.parametrize(
+    ("rule", "shown", "answer"),
+    [
+        (PaysFrom(less_than(15)), crossing(5, (1, 0, 0, 0)), "confirmed"),
+        (PaysFrom(less_than(15)), crossing(20, (1, 0, 0, 0)), "undecided"),
+        (PaysFrom(less_than(15)), crossing(40, (1, 0, 0, 0)), "refuted"),
+        (PaysFrom(less_than(15)), crossing(0, (0, 0, 1, 0)), "confirmed"),
+        (PaysFrom(more_than(30)), crossing(0, (0, 0, 1, 0)), "refuted"),
+        (PaysFrom(more_than(30)), crossing(None, (0.02, 0, 0, 0.98)), "refuted"),
+        (PaysFrom(more_than(30)), crossing(None, (0.03, 0, 0, 0.97)), "undecided"),
+        (PaysFrom(less_than(15)), crossing(None, (0, 0.9, 0.1, 0)), "undecided"),
+        (NeverPays(), crossing(None, (0.4, 0, 0, 0.6)), "confirmed"),
+        (NeverPays(), crossing(40, (0.6, 0, 0, 0.4)), "undecided"),
+        (NeverPays(), crossing(40, (0.98, 0, 0, 0.02)), "refuted"),
+    ],
+)
+def test_a_break_even_frequency_is_judged_with_the_resamples_that_have_none(
+    rule: PaysFrom | NeverPays, shown: Crossing, answer: str
+) -> None:
+    assert rule.judge(shown).answer == answer
+
+
+@pytest.mark.parametrize("rule", [ABOVE, NO_LOSS, NotDetected(), at_least(3), ByPoint(1), REPORTED])
+def test_a_statement_begins_with_its_subject(rule: Rule[Found]) -> None:
+    assert "success of A minus B" in rule.words("success of A minus B")
+
+
+def effect(values: list[float]) -> Effect:
+    array = np.array(values)
+    return mean_effect(array, np.zeros_like(array), Resamples.draw("toy", len(values)), "m")
+
+
+def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
+    one = effect([float(i) for i in range(10)])
+    assert of_effect(one).mde == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
+    assert pytest.approx(2.80, abs=0.002) == MULTIPLE
+
+
+def test_what_does_not_vary_detects_nothing() -> None:
+    assert of_effect(effect([0.1] * 10)).mde is None
+
+
+def test_effects_that_cancel_leave_exactly_nothing() -> None:
+    one = effect([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6])
+    gone = weighted([0.1, 0.2, -0.3], [one, one, one])
+    assert gone.value == 0
+    assert not gone.draws.any()
