@@ -20,6 +20,7 @@ MAY_LOAD = {
     "no such run": (["report", "nowhere"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
+    "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
     "interface": (["interface", TOY], {"jinja2", "numpy", "pyarrow"}),
     "quadrotor": (["interface", "quadrotor"], {"jinja2", "numpy", "pyarrow", "torch"}),
 }

@@ -49,8 +49,6 @@ def command(
     """Perturb an input on recorded windows, all else fixed: how far do predictions move?"""
     from faultpath.evidence import Recording
     from faultpath.evidence.probe import ProbePlan, expected_perturbations
-    from faultpath.store import write_text
-    from faultpath.store.evidence import write_evidence
     from faultpath.trials import SystemSpec, load_measurer, load_system
 
     measure = load_measurer(system)
@@ -67,6 +65,10 @@ def command(
     count = os.cpu_count() or 1 if workers is None else workers
     table = _measure(measure, plan, scenes, out, count)
     probe = plan.conclude(table)
+
+    from faultpath.store import write_text
+    from faultpath.store.evidence import write_evidence
+
     write_evidence(out / "evidence.parquet", table)
     write_text(out / "probe.json", probe.model_dump_json(indent=2) + "\n")
     if as_json:
@@ -83,7 +85,8 @@ def _measure(
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    console = Console(stderr=True)
+    with Progress(console=console, transient=True, disable=not console.is_interactive) as bar:
         task = bar.add_task("Measuring", total=None)
         return measure(
             plan.measurements(),

@@ -1,0 +1,123 @@
+"""Recording and measuring end to end: stored once, resumed to the same bytes."""
+
+import numpy as np
+import pytest
+import torch
+from flights import hall
+
+from faultpath.errors import UserError
+from faultpath.evidence import Measurement, Recording
+from faultpath.quadrotor.evidence import measure, recording
+from faultpath.quadrotor.scenes.library import Library, as_text
+from faultpath.trials import load_measurer
+
+torch.set_num_threads(1)
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory) -> str:
+    """Two halls to cross: flights of two to three seconds."""
+    scenes = tuple(hall(i, (-4.0, i - 0.5, 1.5), (4.0, 0.0, 1.5)) for i in range(2))
+    path = tmp_path_factory.mktemp("library") / "halls.json"
+    path.write_text(as_text(Library.of("halls", scenes)))
+    return str(path)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def small_blocks():
+    """One scene a block, so that two scenes are two pieces of work."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(recording, "BLOCK", 1)
+        yield
+
+
+def asked(library) -> list[Measurement]:
+    flown = Recording(library=library, variant="dki-drag", options={"clearance": "true"})
+    return [
+        Measurement(recording=flown, quantity="position-error", subject=subject, faults=faults)
+        for subject in ("dki", "wm-a")
+        for faults in ((), ("calibration=+0.1",))
+    ]
+
+
+@pytest.fixture(scope="module")
+def whole(library, tmp_path_factory):
+    """The folder of a run that nothing interrupted, and its table."""
+    folder = tmp_path_factory.mktemp("whole")
+    return folder, load_measurer("quadrotor")(asked(library), None, folder)
+
+
+def contents(folder) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != ".lock"}
+
+
+def test_all_subjects_have_the_same_windows_of_the_recorded_scenes(whole, library):
+    _, table = whole
+    assert list(table) == asked(library)
+    first = table.values(asked(library)[0])
+    assert set(first.scenes) == {"halls/000", "halls/001"}
+    assert first.scenes == tuple(sorted(first.scenes))
+    for measurement in table:
+        assert table.values(measurement).same_windows(first)
+
+
+def test_a_fault_changes_what_is_measured(whole, library):
+    _, table = whole
+    clean, struck = (table.values(m).values for m in asked(library)[2:])
+    assert np.median(struck) > 2 * np.median(clean) > 0
+
+
+@pytest.mark.parametrize("stop", [1, 4])
+def test_a_killed_run_goes_on_to_the_same_bytes(whole, library, stop, tmp_path):
+    folder, _ = whole
+
+    def killing(done: float, total: float) -> None:
+        assert total == 6
+        if done == stop:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        measure(asked(library), None, tmp_path, 1, killing)
+    kept = contents(tmp_path)
+    assert 0 < len(kept) < len(contents(folder))
+    told = []
+    measure(asked(library), None, tmp_path, 1, lambda done, total: told.append((done, total)))
+    assert told[0] == (0, 6 - stop)
+    assert contents(tmp_path) == contents(folder)
+
+
+def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, library, tmp_path):
+    folder, table = whole
+    told = []
+    again = measure(asked(library), 2, folder, 1, lambda done, total: told.append(total))
+    assert told == [0]
+    for measurement in table:
+        assert np.array_equal(again.values(measurement).values, table.values(measurement).values)
+    one = asked(library)[:1]
+    measure(one, 1, tmp_path)
+    flown = {path.name for path in tmp_path.glob("*.rows")}
+    measure(one, 2, tmp_path)
+    assert flown < {path.name for path in tmp_path.glob("*.rows")}
+    few = measure(one, 1, tmp_path).values(one[0])
+    both = table.values(one[0])
+    assert np.array_equal(few.values, both.values[: len(few)])
+
+
+@pytest.mark.parametrize(
+    ("change", "count", "says"),
+    [
+        ({"library": "nowhere"}, None, "nowhere"),
+        ({"variant": "wm-x"}, None, "'wm-x'"),
+        ({"options": {"wind": "L9"}}, None, "L9"),
+        ({}, 3, "1 to 2"),
+        ({}, 0, "1 to 2"),
+    ],
+)
+def test_a_recording_that_cannot_be_flown_is_refused_and_leaves_nothing(
+    library, change, count, says, tmp_path
+):
+    first = asked(library)[0]
+    wrong = first.model_copy(update={"recording": first.recording.model_copy(update=change)})
+    with pytest.raises(UserError, match=says):
+        measure([wrong], count, tmp_path / "new")
+    assert not (tmp_path / "new").exists()

@@ -1,0 +1,184 @@
+"""The quantities on recorded windows: what must hold whatever the models are."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.errors import UserError
+from faultpath.evidence import Measurement, Recording
+from faultpath.quadrotor.evidence import quantities
+from faultpath.quadrotor.evidence.inputs import Subject
+from faultpath.quadrotor.evidence.quantities import check, measured
+from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
+from faultpath.quadrotor.reconstruction import DisturbanceObserver
+from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows
+from faultpath.quadrotor.training.quality_predictors import position_errors
+from faultpath.quadrotor.training.replay import correct
+from faultpath.quadrotor.training.windows import HISTORY, cut, places
+
+torch.set_num_threads(1)
+
+RECORDING = Recording(library="selection", variant="true-parameter", options={"wind": "L3"})
+SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
+    f"calibration=+0.1{where}" for where in ("", "@reconstruction", "@predictor")
+)
+
+
+@pytest.fixture(scope="module")
+def recorded() -> Recorded:
+    """Windows of five windy collection flights in place of closed-loop ones."""
+    flights, episodes = fly("wind", range(5), 0, FlightSettings()), range(5)
+    flown = Flown.decode("test", encode_rows(episodes, flights), encode_episodes(episodes, flights))
+    place = places(flown, STRIDE)
+    scenes = tuple(f"scene/{episode}" for episode in place[:, 0])
+    return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)
+
+
+def ask(recorded, quantity, subject, *faults, seed=0) -> np.ndarray:
+    asked = Measurement(
+        recording=RECORDING, quantity=quantity, subject=subject, seed=seed, faults=faults
+    )
+    check(asked)
+    found = measured(asked, recorded)
+    assert (found.scenes, len(found)) == (recorded.scenes, len(recorded.windows))
+    assert np.isfinite(found.values).all()
+    return found.values
+
+
+def test_windows_stand_close_together_and_steps_are_those_of_their_present(recorded):
+    of_first = [
+        s for s, scene in zip(recorded.steps, recorded.scenes, strict=True) if "/0" in scene
+    ]
+    assert of_first[0] == HISTORY
+    assert min(np.diff(of_first)) >= STRIDE
+    assert len(of_first) > 10
+
+
+def test_an_identity_fault_gives_exactly_no_response_and_changes_no_error(recorded):
+    for fault in ("calibration=0", "history_code:scale=1", "wind:scale=1"):
+        subject = "wm-a" if "wind" not in fault else "wm-a-wind/gru"
+        assert not ask(recorded, "position-response", subject, fault).any()
+    plain = ask(recorded, "acceleration-error", "gru")
+    assert np.array_equal(plain, ask(recorded, "acceleration-error", "gru", "calibration=0"))
+
+
+def test_position_errors_are_those_of_the_one_replay(recorded):
+    subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
+    with torch.inference_mode():
+        every = position_errors(
+            subject.predictor, recorded.windows, correct(subject.predictor, recorded.windows)
+        )
+    found = ask(recorded, "position-error", "wm-a")
+    np.testing.assert_allclose(found, every[-1].double().numpy(), rtol=1e-4, atol=1e-6)
+
+
+def test_the_wind_input_is_the_variant_s(recorded):
+    errors = {
+        name: np.median(ask(recorded, "position-error", f"true-parameter/{name}"))
+        for name in ("true-wind", "gru", "zero-wind")
+    }
+    assert errors["true-wind"] < errors["gru"] < errors["zero-wind"]
+
+
+def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
+    clean, at_reconstruction, at_predictor, shared = (
+        ask(recorded, "position-response", "wm-a-wind/gru", *faults)
+        for faults in ((), (AT_RECONSTRUCTION,), (AT_PREDICTOR,), (SHARED,))
+    )
+    assert not clean.any()
+    assert min(at_reconstruction.min(), at_predictor.min()) > 0
+    assert np.median(shared) < np.median(at_reconstruction)
+    assert not ask(recorded, "position-response", "gru-withheld", "mass:scale=1").any()
+    without = ask(recorded, "position-error", "wm-a-wind/gru-withheld", AT_PREDICTOR)
+    assert np.array_equal(without, ask(recorded, "position-error", "gru-withheld", SHARED))
+
+
+def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypatch):
+    def unfiltered(asked):
+        subject = Subject.load(quantities.quadrotor(RECORDING), asked.subject, 0)
+        return replace(subject, reconstruction=DisturbanceObserver(low_pass=1.0))
+
+    monkeypatch.setattr(quantities, "_subject", unfiltered)
+    nominal, shared, isolated = (
+        ask(recorded, "acceleration-error", "dob", *faults)
+        for faults in ((), (SHARED,), (AT_RECONSTRUCTION,))
+    )
+    np.testing.assert_allclose(shared, nominal, atol=2e-4)
+    assert np.median(isolated) > np.median(nominal) + 0.5
+
+
+def test_with_a_correct_predictor_the_wind_term_is_the_whole_acceleration_error(recorded):
+    for faults in ((), (AT_RECONSTRUCTION,)):
+        whole, wind = (
+            ask(recorded, quantity, "gru", *faults)
+            for quantity in ("acceleration-error", "wind-term-error")
+        )
+        assert np.array_equal(whole, wind)
+    shared = [ask(recorded, q, "gru", SHARED) for q in ("acceleration-error", "wind-term-error")]
+    assert np.median(np.abs(shared[0] - shared[1])) > 0.1
+
+
+def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded):
+    assert not ask(recorded, "acceleration-error", "true-wind").any()
+    wind = recorded.windows.wind_mps[:, HISTORY].double().norm(dim=0).numpy()
+    still = ask(recorded, "wind-term-error", "zero-wind")
+    np.testing.assert_allclose(still, 0.3 * wind / recorded.windows.mass_kg.numpy(), rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "subject", "fault"),
+    [
+        ("position-error", "wm-a-wind/gru", SHARED),
+        ("position-response", "wm-a+dcc", "mass:noise=0.1,relative"),
+        ("acceleration-error", "dob", AT_PREDICTOR),
+    ],
+)
+def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity, subject, fault):
+    order = torch.arange(len(recorded.windows)).flip(0)[:37]
+    some = Recorded(
+        recorded.windows.take(order),
+        tuple(recorded.scenes[i] for i in order),
+        recorded.steps[order.numpy()],
+    )
+    whole = ask(recorded, quantity, subject, fault)
+    assert np.array_equal(ask(some, quantity, subject, fault), whole[order.numpy()])
+
+
+def test_a_shuffle_gives_every_code_to_another_window(recorded):
+    subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
+    with torch.inference_mode():
+        plain, shuffled, again, other = (
+            replace(subject, seed=seed).tell(recorded.windows, faults, "name").code
+            for seed, faults in (
+                (0, ()),
+                (0, ("history_code:shuffle",)),
+                (0, ("history_code:shuffle",)),
+                (1, ("history_code:shuffle",)),
+            )
+        )
+    columns = [{tuple(column) for column in code.T.tolist()} for code in (plain, shuffled)]
+    assert columns[0] == columns[1]
+    assert (plain != shuffled).any(0).float().mean() > 0.9
+    assert torch.equal(shuffled, again)
+    assert not torch.equal(shuffled, other)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "subject", "fault", "says"),
+    [
+        ("position-error", "wm-x", "mass:scale=1", "no variant 'wm-x'"),
+        ("position-error", "wm-a", "velocity:noise=1", "do not deliver"),
+        ("position-error", "wm-a", "mass:delay=2", "acts in time"),
+        ("position-error", "wm-a", "mass:scale=2,onset=3", "acts in time"),
+        ("position-error", "wm-a", AT_RECONSTRUCTION, "strikes nobody"),
+        ("position-response", "dki", "history_code:shuffle", "strikes nobody"),
+        ("acceleration-error", "wm-u", SHARED, "no analytic dynamics"),
+        ("wind-term-error", "wm-a-nowind", SHARED, "no analytic dynamics"),
+    ],
+)
+def test_what_cannot_be_measured_is_refused_before_anything_flies(quantity, subject, fault, says):
+    with pytest.raises(UserError, match=says):
+        check(Measurement(recording=RECORDING, quantity=quantity, subject=subject, faults=(fault,)))
