@@ -4,9 +4,12 @@ import json
 import sys
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from faultpath.record import Ledger
 
 FAILED_TRIALS = 1
 
@@ -47,7 +50,7 @@ def command(
     line = ("faultpath", *sys.argv[1:])
     done = carry_out(asked, folder, crew(workers, device), line, quiet=as_json)
     if as_json:
-        _print(done.reproduction.ledger.claims)
+        _print(done.reproduction.ledger)
     else:
         tell(asked, done)
     return FAILED_TRIALS if done.reproduction.failed_trials else 0
@@ -63,19 +66,16 @@ def _show(run: Path | None, as_json: bool) -> int:
     old = found.ledger
     answers = ledger(results, old.library, old.library_hash, old.scenes, old.seeds)
     if as_json:
-        _print(answers.claims)
+        _print(answers)
         return 0
     from rich.console import Console
 
-    from faultpath.report.reproduction import ledger_table
+    from faultpath.report.reproduction import ledger_view
 
-    Console().print(ledger_table(answers))
+    Console().print(ledger_view(answers))
     return 0
 
 
-def _print(claims: object) -> None:
-    from faultpath.record import ClaimVerdict
-
-    assert isinstance(claims, tuple)
-    content = [claim.model_dump(mode="json") for claim in claims if isinstance(claim, ClaimVerdict)]
+def _print(answers: "Ledger") -> None:
+    content = [claim.model_dump(mode="json") for claim in answers.claims]
     typer.echo(json.dumps(content, indent=2))

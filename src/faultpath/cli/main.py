@@ -9,7 +9,7 @@ from typing import NoReturn
 
 import typer
 
-from faultpath.cli import audit, interface, probe, report, scenes, train
+from faultpath.cli import audit, claims, interface, probe, report, reproduce, scenes, train
 from faultpath.cli.options import Stopped
 from faultpath.errors import UserError
 
@@ -22,9 +22,11 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command("audit")(audit.command)
+app.command("claims")(claims.command)
 app.command("interface")(interface.command)
 app.command("probe")(probe.command)
 app.command("report")(report.command)
+app.command("reproduce")(reproduce.command)
 app.add_typer(scenes.app, name="scenes")
 app.add_typer(train.app, name="train")
 

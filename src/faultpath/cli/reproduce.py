@@ -12,7 +12,7 @@ FAILED_TRIALS = 1
 
 def command(
     pages: Annotated[
-        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `in-text`, …; default all.")
+        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `text-wind`, …; default all.")
     ] = None,
     profile: Annotated[
         str, typer.Option(help="quick (few scenes, one seed) or paper (its size).")

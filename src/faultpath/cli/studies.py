@@ -12,14 +12,16 @@ from faultpath.cli.options import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
-from faultpath.report import booktabs_document, markdown_tables
+from faultpath.report import Traces
+from faultpath.report.booktabs import booktabs_document
+from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import (
     ReproductionInput,
     ledger_markdown,
-    ledger_table,
+    ledger_view,
     reproduction_page,
 )
-from faultpath.store import write_text
+from faultpath.store import traces_of, write_text
 from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Pace
 from faultpath.studies.pages import table_4
@@ -70,9 +72,9 @@ def tell(plan: Plan, done: Done) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
     console = Console()
     if plan.whole:
-        console.print(ledger_table(done.reproduction.ledger))
-    else:
-        console.print(markdown_tables(done.reproduction.tables), markup=False)
+        console.print(ledger_view(done.reproduction.ledger))
+    for table in () if plan.whole else done.reproduction.tables:
+        console.print(markdown(table), markup=False, soft_wrap=True)
     page = done.folder / "reproduction.html"
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
@@ -121,7 +123,7 @@ def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, fl
         interface=plain.interface,
         outcomes=asked,
         decision=reversal.decision(asked, leg) if leg is not None and asked.rows else None,
-        dt_s=plain.control_dt_s,
+        traces=Traces(dict(traces_of(asked)), plain.control_dt_s),
         plans={
             scene: plan
             for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}
@@ -130,7 +132,7 @@ def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, fl
     )
     write_text(place / "reproduction.html", reproduction_page(source))
     write_text(place / "tables.tex", booktabs_document(found.tables))
-    write_text(place / "tables.md", markdown_tables(found.tables))
+    write_text(place / "tables.md", "\n\n".join(map(markdown, found.tables)) + "\n")
     write_text(place / "ledger.md", ledger_markdown(found.ledger))
 
 

@@ -115,7 +115,9 @@ def run_study(
             table = assemble(study, library, ledger.outcomes)
             digest = run.save_tables(table)
     except KeyboardInterrupt:
-        raise Interrupted(ledger.done, len(units)) from None
+        # What is on disk counts: the ledger may have been stopped between storing and noting.
+        done = sum(run.holds_shard(unit.key) for unit in units)
+        raise Interrupted(done, len(units)) from None
     return RunResult(
         outcomes=table,
         traces=traces_of(table),

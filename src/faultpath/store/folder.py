@@ -38,7 +38,8 @@ class RunFolder:
     ) -> Generator[None, None, None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
-        `shared` lets studies with other arms use the folder one after the other. `UserError` when the folder cannot be written, or holds something else.
+        `shared` lets studies with other arms use the folder one after the other. `UserError` when
+        the folder cannot be written, or holds something else.
         """
         self._create()
         with locked(self.path, notice):
@@ -60,6 +61,10 @@ class RunFolder:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(outcomes)
         self._write(self.shards / f"{key}-{_digest(data)}.parquet", data)
+
+    def holds_shard(self, key: str) -> bool:
+        """Return whether a finished block is stored."""
+        return any(self.shards.glob(f"{key}-*.parquet"))
 
     def load_shard(
         self, key: str, scenes: Sequence[str], notice: Notice
