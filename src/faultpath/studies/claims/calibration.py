@@ -120,7 +120,7 @@ CLAIMS: dict[str, Statements] = {
         ),
         *(
             Statement(
-                f"errors around 0 with success of 90 and more, {_name(repair)} minus "
+                f"number of errors around 0 with success of 90 and more, {_name(repair)} minus "
                 f"{_name(baseline)},",
                 range_gained(repair, baseline),
                 ByPoint(1),

@@ -66,11 +66,11 @@ CLAIMS: dict[str, Statements] = {
     ),
     "C04": (
         *(
-            Statement(_clearance(cell, "crashes"), crashes(seen, cell), BELOW)
+            Statement(_clearance(cell, "crash rate"), crashes(seen, cell), BELOW)
             for cell, seen in SEEN.items()
         ),
         *(
-            Statement(_clearance(cell, "timeouts"), timeouts(seen, cell), at_least(0))
+            Statement(_clearance(cell, "timeout rate"), timeouts(seen, cell), at_least(0))
             for cell, seen in SEEN.items()
         ),
     ),

@@ -56,7 +56,8 @@ def ratio(first: Subject, second: Subject) -> Quantity:
         if not (two.value > 0 and bool((two.draws > 0).all())):
             raise Undecidable("the median that is divided by is 0")
         draws = one.draws / two.draws
-        return of_effect(replace(one, value=one.value / two.value, draws=draws, unit="times"))
+        effect = replace(one, value=one.value / two.value, draws=draws, unit="times")
+        return replace(of_effect(effect), mde=None)  # a ratio is not set against 0
 
     return found
 
@@ -68,12 +69,11 @@ def quantiles(results: Results, q: float, *subjects: Subject) -> list[Effect]:
     measured, or on other windows.
     """
     several = [_run(results, subject) for subject in subjects]
-    trained = [run for run, subject in zip(several, subjects, strict=True) if len(subject) > 1]
+    fixed = [len(subject) == 1 for subject in subjects]
+    seeds = [{m.seed for m in run} for run, one in zip(several, fixed, strict=True) if not one]
     kept = [
-        tuple(m for m in run if all(m.seed in [o.seed for o in other] for other in trained))
-        if run in trained
-        else run
-        for run in several
+        tuple(m for m in run if one or all(m.seed in others for others in seeds))
+        for run, one in zip(several, fixed, strict=True)
     ]
     if not all(kept):
         raise NotRun(f"a seed that all measurements beside {subjects[0][0].subject} share")
