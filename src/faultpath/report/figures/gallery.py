@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from faultpath.report.svg import Point, Svg
 from faultpath.trials.floorplan import FloorPlan, Pillar
 
-_WIDTH, _HEIGHT, _MARGIN, _FOOT = 300.0, 196.0, 8.0, 22.0
-_YAW, _PITCH = math.radians(-24), math.radians(38)
+_WIDTH, _HEIGHT, _MARGIN, _FOOT = 300.0, 206.0, 6.0, 20.0
+_YAW, _PITCH = math.radians(-18), math.radians(33)
 _GOAL_RADIUS_M = 0.5
 _SIDES = 20
 

@@ -57,7 +57,7 @@ def _upward(series: Sequence[Series]) -> Axis:
 
 
 def _axes(svg: Svg, x: Axis, y: Axis, about: int) -> None:
-    for tick in y.ticks(5):
+    for tick in y.ticks(6):
         svg.line((x.start, y(tick)), (x.end, y(tick)), "axis")
         svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
     for tick in x.ticks(about):

@@ -7,8 +7,10 @@ SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "
 ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
-_ONE_DIGIT = ("pp", "%", "cm")
+_DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0}
 _DIFFERENCES = ("pp", "s", "m")
+_SHARES = {"times": "×", "percent": " %"}
+"""Units that are not those of a difference, as written behind a number."""
 
 
 def typeset(text: str) -> str:
@@ -20,8 +22,7 @@ def typeset(text: str) -> str:
 
 def figure(value: float, unit: str) -> str:
     """Return a value with its unit; differences carry their sign."""
-    digits = 1 if unit in _ONE_DIGIT else 2
-    text = (wording.signed if unit in _DIFFERENCES else wording.plain)(value, digits)
+    text = (wording.signed if unit in _DIFFERENCES else wording.plain)(value, _digits(unit))
     return f"{text}{_behind(unit)}"
 
 
@@ -29,8 +30,7 @@ def interval(ends: tuple[float, float] | None, unit: str) -> str:
     """Return `[48.3, 66.3]`, or nothing without an interval."""
     if ends is None:
         return ""
-    digits = 1 if unit in _ONE_DIGIT else 2
-    return f"[{', '.join(wording.plain(end, digits) for end in ends)}]"
+    return f"[{', '.join(wording.plain(end, _digits(unit)) for end in ends)}]"
 
 
 def estimate(of: ClaimVerdict | Part) -> str:
@@ -41,10 +41,10 @@ def estimate(of: ClaimVerdict | Part) -> str:
 
 
 def least_detectable(of: ClaimVerdict | Part) -> str:
-    """Return the minimum detectable effect; nothing where there is none."""
-    if of.mde is None:
+    """Return the minimum detectable difference from 0; nothing where there is none."""
+    if of.mde is None or of.unit in _SHARES:
         return ""
-    return f"{wording.plain(of.mde, 1 if of.unit in _ONE_DIGIT else 2)}{_behind(of.unit)}"
+    return f"{wording.plain(of.mde, _digits(of.unit))}{_behind(of.unit)}"
 
 
 def evidence(part: Part) -> tuple[str, ...]:
@@ -70,5 +70,9 @@ def headline(ledger: Ledger) -> str:
     )
 
 
+def _digits(unit: str) -> int:
+    return _DIGITS.get(unit, 2)
+
+
 def _behind(unit: str) -> str:
-    return {"x": "×", "×": "×", "": ""}.get(unit, f" {unit}")
+    return _SHARES.get(unit, f" {unit}" if unit else "")
