@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.cli.options import Stopped
-from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
 from faultpath.report import Traces
@@ -23,10 +22,10 @@ from faultpath.report.reproduction import (
 )
 from faultpath.store import traces_of, write_text
 from faultpath.studies import reversal
-from faultpath.studies.flights import Flown, Pace
+from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.results import Results
-from faultpath.studies.run import Plan, conclude, fly_all, measure_all, save
+from faultpath.studies.run import Plan, conclude, measure_all, save
 
 Show = Callable[[float, float, str], None]
 """Shows how much of what is done, and a remark."""
@@ -50,8 +49,11 @@ def carry_out(
     """
     console = Console(stderr=quiet)
     stopwatch = Stopwatch()
+    legs = plan.legs()
     try:
-        flown, evidence = _run(console, plan, folder, workers)
+        flown = _fly(console, legs, folder, workers)
+        with _bar(console, "Measuring", "flights") as show:
+            evidence = measure_all(plan, folder, workers, lambda done, of: show(done, of, ""))
     except (Interrupted, KeyboardInterrupt):
         raise Stopped(
             f"interrupted; what is finished is kept in {folder}, and the same command resumes."
@@ -79,7 +81,7 @@ def tell(plan: Plan, done: Done) -> None:
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
 
-def _run(console: Console, plan: Plan, folder: Path, workers: int) -> tuple[Flown, EvidenceTable]:
+def _fly(console: Console, legs: Sequence[Leg], folder: Path, workers: int) -> Flown:
     def notice(text: str) -> None:
         console.print(text, markup=False, soft_wrap=True)
 
@@ -88,10 +90,7 @@ def _run(console: Console, plan: Plan, folder: Path, workers: int) -> tuple[Flow
         def flying(now: Pace) -> None:
             show(now.trials_done, now.trials_total, f"{_left(now.seconds_left)}  {now.leg}")
 
-        flown = fly_all(plan, folder, workers, flying, notice)
-    with _bar(console, "Measuring", "flights") as show:
-        evidence = measure_all(plan, folder, workers, lambda done, total: show(done, total, ""))
-    return flown, evidence
+        return fly(legs, folder, workers, flying, notice)
 
 
 @contextmanager

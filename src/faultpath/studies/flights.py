@@ -14,6 +14,8 @@ from faultpath.studies.cells import Cell, Profile, Setting
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
 
 SYSTEM = "quadrotor"
+FLIGHTS = "flights"
+"""Folder, inside that of a run, with one folder a setting."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ def fly(
     progress: Callable[[Pace], None],
     notice: Callable[[str], None],
 ) -> Flown:
-    """Fly the legs one after the other, keeping what `folder` already holds.
+    """Fly the legs one after the other, keeping what the folder of a run already holds.
 
     Raises as `run_study` does.
     """
@@ -103,7 +105,7 @@ def fly(
     with Crew() as crew:
         for leg in legs:
             clock.begin(str(leg.setting))
-            place, system = folder / leg.folder, leg.system
+            place, system = folder / FLIGHTS / leg.folder, leg.system
             results.append(
                 run_study(
                     leg.study, place, workers, clock.show, notice, system, shared=True, crew=crew
@@ -144,7 +146,11 @@ class _Clock:
 
 
 def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str]:
-    shards = [path for leg in legs for path in (folder / leg.folder / "shards").glob("*.parquet")]
+    shards = [
+        path
+        for leg in legs
+        for path in (folder / FLIGHTS / leg.folder / "shards").glob("*.parquet")
+    ]
     moments = [datetime.fromtimestamp(path.stat().st_mtime, UTC) for path in shards]
     first, last = min(moments), max(moments)
     return first.isoformat(timespec="seconds"), last.isoformat(timespec="seconds")

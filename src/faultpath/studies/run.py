@@ -18,7 +18,7 @@ from faultpath.store import (
 from faultpath.studies import reversal
 from faultpath.studies.cells import HELD_OUT, PROFILES, Profile
 from faultpath.studies.claims import ledger
-from faultpath.studies.flights import SYSTEM, Flown, Leg, Pace, fly, plan_legs
+from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
@@ -89,21 +89,10 @@ def plan(
     return Plan(pages, PROFILES[profile], libraries or {}, options or {})
 
 
-def fly_all(
-    plan: Plan,
-    folder: Path,
-    workers: int,
-    progress: Callable[[Pace], None],
-    notice: Callable[[str], None],
-) -> Flown:
-    """Fly what `folder` does not hold yet; raises as `flights.fly` does."""
-    return fly(plan.legs(), folder / "flights", workers, progress, notice)
-
-
 def measure_all(
     plan: Plan, folder: Path, workers: int, progress: Callable[[float, float], None]
 ) -> EvidenceTable:
-    """Measure what `folder` does not hold yet; raises as `evidence.Measurer` does."""
+    """Measure on recorded windows what `folder` does not hold yet; raises as `evidence.Measurer` does."""
     wanted = plan.measurements()
     if not wanted:
         return EvidenceTable({})
