@@ -1,6 +1,6 @@
 """Carrying a reproduction out on the terminal: progress, files, what came out."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -94,7 +94,7 @@ def _fly(console: Console, legs: Sequence[Leg], folder: Path, workers: int) -> F
 
 
 @contextmanager
-def _bar(console: Console, what: str, unit: str) -> Iterator[Show]:
+def _bar(console: Console, what: str, unit: str) -> Generator[Show]:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -115,6 +115,7 @@ def _bar(console: Console, what: str, unit: str) -> Iterator[Show]:
 def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, flown: Flown) -> None:
     leg = next((leg for leg in flown.legs if leg.setting == table_4.WINDY), None)
     asked = reversal.audited(flown.outcomes)
+    flights = {(at.variant, at.path, at.seed, at.scene): t for at, t in traces_of(asked).items()}
     plain = flown.legs[0].system
     source = ReproductionInput(
         reproduction=found,
@@ -122,7 +123,7 @@ def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, fl
         interface=plain.interface,
         outcomes=asked,
         decision=reversal.decision(asked, leg) if leg is not None and asked.rows else None,
-        traces=Traces(dict(traces_of(asked)), plain.control_dt_s),
+        traces=Traces(flights, plain.control_dt_s),
         plans={
             scene: plan
             for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}

@@ -5,6 +5,7 @@ Its decision record and its flights are what a report shows of the reversal.
 
 from dataclasses import replace
 
+from faultpath.faults import Fault
 from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
 from faultpath.studies.flights import SYSTEM, Leg
 from faultpath.studies.pages import table_4
@@ -60,4 +61,5 @@ def decision(outcomes: OutcomeTable, leg: Leg) -> DecisionRecord:
 def _struck(leg: Leg, variant: str, path: str) -> tuple[str, ...]:
     at = table_4.cell(variant, path).path
     row = next(row for row in leg.study.rows if (row.variant, row.path) == (variant, at))
-    return tuple(dict.fromkeys(c for fault in row.arm.faults for c in fault.consumers))
+    struck = (f.consumers for f in row.arm.faults if isinstance(f, Fault))  # arms spell them out
+    return tuple(dict.fromkeys(consumer for consumers in struck for consumer in consumers))

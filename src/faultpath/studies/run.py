@@ -92,7 +92,10 @@ def plan(
 def measure_all(
     plan: Plan, folder: Path, workers: int, progress: Callable[[float, float], None]
 ) -> EvidenceTable:
-    """Measure on recorded windows what `folder` does not hold yet; raises as `evidence.Measurer` does."""
+    """Measure on recorded windows what `folder` does not hold yet.
+
+    Raises as `evidence.Measurer` does.
+    """
     wanted = plan.measurements()
     if not wanted:
         return EvidenceTable({})
