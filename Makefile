@@ -16,7 +16,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit train test bench bench-page lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit reproduce train test bench bench-page lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -28,6 +28,9 @@ setup-runtime: $(STAMPS)/runtime ## Create .venv with what an audit needs
 audit: $(STAMPS)/runtime ## Audit a repair of the quadrotor's wind reconstruction; more in ARGS="..."
 	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc \
 	  --fault calibration=+0.1 --library held-out --wind L3 $(ARGS)
+
+reproduce: $(STAMPS)/runtime ## Reproduce the paper, quickly; all of it with ARGS="--profile paper"
+	$(BIN)/faultpath reproduce $(ARGS)
 
 train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the quadrotor
 	$(BIN)/faultpath train quadrotor $(ARGS)

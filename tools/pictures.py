@@ -4,6 +4,7 @@ import hashlib
 import json
 import shutil
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from blocks import PARTS, REFERENCE, ROOT, Wrong
 
@@ -13,9 +14,14 @@ MADE_FROM = IMAGES / "made-from.json"
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
 
 
+def report(run: str) -> Path:
+    """Return the page of a reference run; that of the whole paper has another name."""
+    return REFERENCE / run / ("reproduction.html" if run == "paper" else "report.html")
+
+
 def digest(run: str) -> str:
     """Return the hash of the report that a picture is made from."""
-    return hashlib.sha256((REFERENCE / run / "report.html").read_bytes()).hexdigest()
+    return hashlib.sha256(report(run).read_bytes()).hexdigest()
 
 
 def made_from() -> dict[str, str]:
@@ -43,8 +49,9 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
                 device_scale_factor=2,
             )
             page = context.new_page()
-            page.goto((REFERENCE / run / "report.html").as_uri())
-            boxes = [each.bounding_box() for each in page.query_selector_all(PARTS[part][1])]
+            page.goto(report(run).as_uri())
+            wanted = PARTS[part][1] if part in PARTS else f"#{part}"
+            boxes = [each.bounding_box() for each in page.query_selector_all(wanted)]
             areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")

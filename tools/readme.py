@@ -3,6 +3,7 @@
     python tools/readme.py                          fill the blocks in
     python tools/readme.py --check                  exit 1 when a block or a picture is stale
     python tools/readme.py --take NAME=RUN_FOLDER   make a run folder the reference run NAME first
+    python tools/readme.py --paper RUN_FOLDER       ship a run of the whole paper first
     python tools/readme.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
@@ -19,6 +20,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from blocks import FILLERS, REFERENCE, ROOT, Wrong, code, load, missing, times
+from paper_blocks import load as load_paper
+from paper_blocks import paper
+from paper_blocks import take as take_paper
 from pictures import IMAGES, digest, made_from, make_images
 
 TAKEN = ("record.json", "provenance.json", "outcomes.parquet", "table.md", "report.html")
@@ -40,6 +44,8 @@ def fill(name: str, document: Path) -> str:
     kind, *arguments = name.split(":")
     if kind == "code":
         text = code(*arguments)
+    elif kind == "paper":
+        text = paper(*arguments)
     elif kind == "times":
         text = times(arguments)
     elif kind in FILLERS:
@@ -48,7 +54,8 @@ def fill(name: str, document: Path) -> str:
         if run is None and kind == "table":  # once is enough
             text = missing(arguments[0])
     else:
-        raise Wrong(f"there is no kind of block '{kind}': use {', '.join(FILLERS)}, times or code")
+        kinds = ", ".join((*FILLERS, "paper", "times"))
+        raise Wrong(f"there is no kind of block '{kind}': use {kinds} or code")
     for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
     return text
@@ -85,9 +92,11 @@ def stale() -> Iterator[str]:
 
 def pictures() -> list[tuple[str, str]]:
     """Return the run and part of every picture that documents show and that a run is there for."""
-    names = (m["name"] for path in documents() for m in BLOCK.finditer(path.read_text("utf-8")))
-    shown = [tuple(name.split(":")[1:]) for name in names if name.startswith("picture:")]
-    return sorted({(run, part) for run, part in shown if load(run) is not None})
+    texts = [path.read_text("utf-8") for path in documents()]
+    names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
+    runs = {(name[1], name[2]) for name in names if name[0] == "picture" and load(name[1])}
+    drawn = {("paper", name[2]) for name in names if name[:2] == ["paper", "picture"]}
+    return sorted(runs | (drawn if load_paper() else set()))
 
 
 def take(what: str) -> None:
@@ -110,6 +119,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
     parser.add_argument("--images", action="store_true", help="make the pictures too")
+    parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
     asked = parser.parse_args()
     try:
@@ -119,6 +129,8 @@ def main() -> int:
             return 1 if found else 0
         for what in asked.take:
             take(what)
+        if asked.paper is not None:
+            take_paper(asked.paper, REFERENCE)
         for document in documents():
             document.write_text(filled(document.read_text("utf-8"), document), "utf-8")
         if asked.images:
