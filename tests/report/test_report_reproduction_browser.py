@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 from reproduction_toys import ledger, source
 
 from faultpath.report import ReportInput
@@ -69,10 +69,11 @@ def page(request: pytest.FixtureRequest, browser: Browser, address: str) -> Iter
 def test_nothing_sticks_out_and_pictures_have_a_size(page: Page) -> None:
     sideways = page.locator("html").evaluate("(e) => e.scrollWidth - e.clientWidth")
     assert sideways <= 0
-    for picture in page.locator("svg.fig:visible").all():
-        box = picture.bounding_box()
-        assert box is not None
-        assert min(box["width"], box["height"]) > 8
+    sizes = page.locator("svg.fig:visible").evaluate_all(
+        "(all) => all.map((e) => e.getBoundingClientRect()).map((r) => [r.width, r.height])"
+    )
+    assert len(sizes) > 8
+    assert all(min(size) > 8 for size in sizes)
 
 
 def test_claims_are_filtered_by_verdict_and_kind(page: Page) -> None:
@@ -103,13 +104,15 @@ def test_the_papers_figures_can_be_put_away(page: Page) -> None:
     assert not theirs.is_visible()
 
 
-def test_a_link_to_a_claim_shows_and_opens_it(page: Page, request: pytest.FixtureRequest) -> None:
-    if "without scripts" in request.node.name:
-        pytest.skip("opening by a link needs the script")
-    page.locator("#only-confirmed").check()
+def test_a_link_leads_to_its_claim_and_a_script_opens_it(
+    page: Page, request: pytest.FixtureRequest
+) -> None:
+    scripts = request.node.callspec.params["page"][2]
+    if scripts:
+        page.locator("#only-confirmed").check()
     page.locator('a.mark[href="#C03"]').click()
-    page.wait_for_function("document.getElementById('C03').open")
-    assert page.locator("#C03 .parts").is_visible()
+    expect(page.locator("#C03 summary")).to_be_in_viewport()
+    expect(page.locator("#C03 .parts")).to_be_visible(visible=scripts)
 
 
 def test_contents_stay_in_sight(page: Page) -> None:
