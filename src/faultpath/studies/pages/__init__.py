@@ -3,6 +3,7 @@
 from faultpath.studies.page import Page
 from faultpath.studies.pages import (
     detection,
+    differences,
     figure_1,
     figure_2,
     figure_3,
@@ -33,4 +34,5 @@ PAGES: tuple[Page, ...] = (
     text_mechanism.PAGE,
     text_planning.PAGE,
     detection.PAGE,
+    differences.PAGE,
 )
