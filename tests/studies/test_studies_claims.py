@@ -17,7 +17,7 @@ from faultpath.studies.claims.statement import verdict
 from faultpath.studies.pages import table_1, table_4
 from faultpath.studies.published import published_claims
 from faultpath.studies.results import Results
-from faultpath.trials import Status
+from faultpath.trials import OutcomeTable, Status
 
 Answers = dict[str, ClaimVerdict]
 
@@ -55,6 +55,16 @@ def test_an_empty_run_leaves_every_claim_undecided() -> None:
     assert len(claims) == 39
     assert {claim.verdict for claim in claims} == {"undecided"}
     assert all(part.reason.startswith("not run: ") for c in claims for part in c.parts)
+
+
+def test_a_run_of_some_pages_answers_what_it_is_about(published_run: Results) -> None:
+    cells = set(table_4.CELLS)
+    rows = [row for row in published_run.outcomes.rows if row.path in {c.path for c in cells}]
+    some = Results(OutcomeTable(tuple(rows)), EvidenceTable({}), "toy")
+    found = ledger(some, "toy", "hash", SCENES, (0, 1, 2), only_run=True)
+    assert {"C23", "C26"} <= {claim.id for claim in found.claims}
+    assert not {"C01", "C05"} & {claim.id for claim in found.claims}
+    assert len(found.claims) + found.left_out == len(published_claims())
 
 
 def test_where_the_papers_figures_come_true_every_claim_is_confirmed(answers: Answers) -> None:

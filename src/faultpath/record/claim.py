@@ -28,6 +28,8 @@ class Part(_Frozen):
     """Discordant scenes, first:second, seed by seed."""
     reason: str = ""
     """Why it is undecided, where the numbers do not say it."""
+    not_run: bool = False
+    """Whether that is because the run lacks what it is about."""
 
 
 class ClaimVerdict(_Frozen):
@@ -48,13 +50,15 @@ class ClaimVerdict(_Frozen):
 
 
 class Ledger(_Frozen):
-    """All claims over one run."""
+    """Claims over one run."""
 
     library: str
     library_hash: str
     scenes: int
     seeds: tuple[int, ...]
     claims: tuple[ClaimVerdict, ...]
+    left_out: int = 0
+    """Claims that the run is not about."""
 
     def count(self, answer: Answer) -> int:
         """Return how many claims got this answer."""

@@ -90,12 +90,16 @@ class WindowQuantiles:
 
     def _column(self, values: Floats, q: float) -> Floats:
         order = np.argsort(values, kind="stable")
-        ordered, scene = values[order], self._scene[order]
+        ordered = values[order]
+        # Windows of each scene among the least so many: whole numbers, exact in any order of sums.
+        reached = np.zeros((self.resamples.n_scenes, len(values)))
+        reached[self._scene[order], np.arange(len(values))] = 1.0
+        np.cumsum(reached, axis=1, out=reached)
         whole = np.ones((1, self.resamples.n_scenes))
         blocks = (whole, *self.resamples.blocks())
         # A block is cut further: there are many more windows than scenes.
         parts = [part for block in blocks for part in _cut(block, len(values))]
-        return np.concatenate([_quantile(ordered, part[:, scene], q) for part in parts])
+        return np.concatenate([_quantile(ordered, part @ reached, q) for part in parts])
 
     def _effect(self, quantiles: Floats, unit: str, what: str) -> Effect:
         means = quantiles.mean(axis=1)
@@ -190,13 +194,14 @@ def quantile_ratio(
     )
 
 
-def _quantile(ordered: Floats, counts: Floats, q: float) -> Floats:
-    """Return the quantile of ascending values [n] that occur ``counts`` [resamples, n] times.
+def _quantile(ordered: Floats, reached: Floats, q: float) -> Floats:
+    """Return the quantile of ascending values [n] in every resample.
+
+    ``reached`` [resamples, n] counts what a resample has of the values up to and with each.
 
     Where q of the count is a whole number it is the mean of the two values beside it, so that the
     quantile 0.5 is the median.
     """
-    reached = np.cumsum(counts, axis=1)
     rank = q * reached[:, -1:]
     lower = (reached < rank - _SLACK).sum(axis=1)
     upper = (reached <= rank + _SLACK).sum(axis=1)

@@ -113,7 +113,14 @@ def conclude(plan: Plan, flown: Flown, results: Results) -> Reproduction:
     rows = results.outcomes.rows
     return Reproduction(
         profile=plan.profile.name,
-        ledger=ledger(results, library.name, library.content_hash, len(scenes), plan.profile.seeds),
+        ledger=ledger(
+            results,
+            library.name,
+            library.content_hash,
+            len(scenes),
+            plan.profile.seeds,
+            only_run=not plan.whole,
+        ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),
         gallery=_gallery(library),

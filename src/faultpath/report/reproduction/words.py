@@ -64,8 +64,10 @@ def evidence(part: Part) -> tuple[str, ...]:
 def headline(ledger: Ledger) -> str:
     """Return the outcome of all claims in one sentence."""
     confirmed, refuted, undecided = map(ledger.count, ANSWERS)
+    claims = wording.counted(len(ledger.claims), "claim")
+    about = f"{claims} that this run is about" if ledger.left_out else f"the paper’s {claims}"
     return (
-        f"Of the paper’s {wording.counted(len(ledger.claims), 'claim')}, our runs confirm "
+        f"Of {about}, our runs confirm "
         f"{confirmed}, refute {refuted} and leave {undecided} undecided"
     )
 

@@ -31,13 +31,25 @@ def evaluate(results: Results) -> tuple[ClaimVerdict, ...]:
 
 
 def ledger(
-    results: Results, library: str, library_hash: str, scenes: int, seeds: Sequence[int]
+    results: Results,
+    library: str,
+    library_hash: str,
+    scenes: int,
+    seeds: Sequence[int],
+    *,
+    only_run: bool = False,
 ) -> Ledger:
-    """Return all answers with what they were answered on."""
+    """Return all answers with what they were answered on.
+
+    `only_run` leaves claims out of which a part was not run: a run of some pages is not about them.
+    """
+    every = evaluate(results)
+    kept = [c for c in every if not (only_run and any(part.not_run for part in c.parts))]
     return Ledger(
         library=library,
         library_hash=library_hash,
         scenes=scenes,
         seeds=tuple(seeds),
-        claims=evaluate(results),
+        claims=tuple(kept),
+        left_out=len(every) - len(kept),
     )

@@ -27,13 +27,14 @@ class Statement(Generic[F]):
         try:
             found = self.quantity(results)
         except NotRun as missing:
-            return self._open(f"not run: {missing}")
+            return self._open(f"not run: {missing}", not_run=True)
         except Undecidable as why:
             return self._open(str(why))
         return _part(self.rule.words(self.subject), self.rule.judge(found), found)
 
-    def _open(self, reason: str) -> Part:
-        return Part(words=self.rule.words(self.subject), answer="undecided", reason=reason)
+    def _open(self, reason: str, not_run: bool = False) -> Part:
+        words = self.rule.words(self.subject)
+        return Part(words=words, answer="undecided", reason=reason, not_run=not_run)
 
 
 Statements: TypeAlias = tuple[Statement[Any], ...]
