@@ -50,6 +50,8 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
             )
             page = context.new_page()
             page.goto(report(run).as_uri())
+            # What stays at the window's edge would lie across the picture.
+            page.add_style_tag(content=".contents { position: static }")
             wanted = PARTS[part][1] if part in PARTS else f"#{part}"
             boxes = [each.bounding_box() for each in page.query_selector_all(wanted)]
             areas = [box for box in boxes if box is not None and box["height"] > 0]

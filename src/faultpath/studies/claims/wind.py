@@ -1,7 +1,7 @@
 """C16 to C22: wind that no sensor measures (paper, Table III and text)."""
 
 from faultpath.studies.claims.differences import seed_zero, success
-from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NO_LOSS
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NotDetected
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.windows import difference_of_quantiles
 from faultpath.studies.pages import in_text
@@ -57,7 +57,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "success of GRU minus ground-truth wind at L3",
             success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
-            NO_LOSS,
+            NotDetected(),
         ),
         Statement(
             "success of GRU minus zero wind at L3",
