@@ -3,7 +3,8 @@
 from faultpath.studies.page import Page
 from faultpath.studies.pages import (
     detection,
-    differences,
+    differences_still,
+    differences_wind,
     figure_1,
     figure_2,
     figure_3,
@@ -34,5 +35,6 @@ PAGES: tuple[Page, ...] = (
     text_mechanism.PAGE,
     text_planning.PAGE,
     detection.PAGE,
-    differences.PAGE,
+    differences_still.PAGE,
+    differences_wind.PAGE,
 )

@@ -1,4 +1,4 @@
-"""Why some results differ from the paper's: experiments on the selection library.
+"""Why results in wind differ from the paper's: experiments on the selection library.
 
 None of this is in the paper. Each table changes one assumption in which our system may differ.
 """
@@ -8,19 +8,14 @@ from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.studies.cells import SELECTION, Cell, Setting, calibration
 from faultpath.studies.contrasts import COMPARED, comparison
-from faultpath.studies.entries import centimetres, ended, guarded, quantile, success
+from faultpath.studies.entries import centimetres, guarded, quantile, success
 from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
-from faultpath.studies.pages import figure_3, table_1
-from faultpath.studies.pages.in_text import PROBED
-from faultpath.studies.pages.table_2 import NAMES
+from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.results import Results
-from faultpath.trials import Status
 
-TITLE = "Experiments on what differs from the paper"
+TITLE = "Experiments on what differs from the paper, in wind"
 
-STILL = Setting(library=SELECTION)
-SEEN_THROUGH = Setting(library=SELECTION, others=(("clearance", "true"),))
 WINDY = Setting(library=SELECTION, wind="L3")
 STIFF = Setting(library=SELECTION, wind="L3", others=(("planner", "running"),))
 """A planner whose cost counts the distance to the goal all along the horizon."""
@@ -30,24 +25,6 @@ def _cell(setting: Setting, variant: str, *faults: str) -> Cell:
     return Cell(setting, variant, faults, quick=False)
 
 
-# The history code: what it holds when it is frozen.
-MIS_CALIBRATED = calibration(0.1)
-UPDATED = _cell(STILL, "wm-a+dcc", MIS_CALIBRATED)
-FROZEN = {
-    "first replan": _cell(STILL, "wm-a+dcc", MIS_CALIBRATED, "history_code:freeze,onset=0"),
-    "step 12: first whole history": _cell(
-        STILL, "wm-a+dcc", MIS_CALIBRATED, "history_code:freeze,onset=12"
-    ),
-}
-
-# Dependence on calibration, by sign of its error.
-MODELS = ("wm-a", "wm-a+dcc", "wm-u", "wm-u+dcc")
-SIGNS = (-0.1, 0.1)
-
-# Predictors with and without the depth model between them and the obstacles.
-PREDICTORS = {"DKI": "dki", "WM-A": "wm-a", "True-parameter": "true-parameter"}
-VIEWS = {"depth model": STILL, "ground-truth clearance": SEEN_THROUGH}
-
 # How much an error of the reconstruction costs, by its size and by the planner.
 DOSES = (0.0, 0.025, 0.05, 0.1)
 PATHS: dict[str, tuple[str, ...]] = {
@@ -56,7 +33,6 @@ PATHS: dict[str, tuple[str, ...]] = {
     "shared": (calibration(0.1),),
 }
 
-
 # What the wind input holds: the true wind, or what makes the predictor right.
 WIND_INPUTS = {
     "Ground-truth wind": "true-wind",
@@ -64,23 +40,8 @@ WIND_INPUTS = {
     "GRU": "gru",
     "GRU+DCC": "gru+dcc",
 }
-RECORDED = table_1.recording(_cell(WINDY, "gru"))
+RECORDED = recording(_cell(WINDY, "gru"))
 """Windows of flights with the reference reconstruction, seed 0."""
-
-
-def response(model: str, error: float) -> Measurement:
-    """Return how far a calibration error moves a model's 20-step prediction, seed 0."""
-    return Measurement(
-        recording=PROBED,
-        quantity="position-response",
-        subject=model,
-        faults=(calibration(error),),
-    )
-
-
-def viewed(view: str, predictor: str) -> Cell:
-    """Return a predictor with one source of clearance."""
-    return _cell(VIEWS[view], predictor)
 
 
 def dose(error: float) -> Cell:
@@ -109,100 +70,16 @@ def stiff(method: str, path: str) -> Cell:
 
 
 CELLS = (
-    UPDATED,
-    *FROZEN.values(),
-    *(figure_3.cell(model, error) for model in MODELS for error in SIGNS),
-    *(viewed(view, name) for view in VIEWS for name in PREDICTORS.values()),
     *map(dose, DOSES),
     *(_cell(WINDY, variant) for variant in WIND_INPUTS.values()),
     *(stiff(method, path) for method in ("gru", "gru+dcc") for path in PATHS),
 )
-MEASUREMENTS = (
-    *(response(model, error) for model in MODELS for error in SIGNS),
-    *map(dose_error, DOSES),
-    *map(wind_error, WIND_INPUTS.values()),
-)
+MEASUREMENTS = (*map(dose_error, DOSES), *map(wind_error, WIND_INPUTS.values()))
 
 
 def build(results: Results) -> Built:
     """Return one table for each experiment."""
-    return (
-        _freezing(results),
-        _signs(results),
-        _views(results),
-        _doses(results),
-        _stiff(results),
-        _winds(results),
-    )
-
-
-def _freezing(results: Results) -> Table:
-    return Table(
-        name="differs-freezing",
-        title="WM-A+DCC at e = +0.1 with the history code frozen, minus updated",
-        columns=COMPARED,
-        lines=tuple(
-            comparison(results, f"Frozen at the {when}", cell, UPDATED)
-            for when, cell in FROZEN.items()
-        ),
-        notes=(
-            "Our flights start with an empty history: at the first replan nothing has been "
-            "commanded yet, so the code cannot know what thrust hovers.",
-            flown(results, (UPDATED, *FROZEN.values())),
-            WINS,
-            LEAST,
-            INTERVALS,
-        ),
-    )
-
-
-def _signs(results: Results) -> Table:
-    return Table(
-        name="differs-signs",
-        title="Dependence on calibration by sign of the error",
-        columns=(
-            "Response, e = −0.1 (cm)",
-            "e = +0.1 (cm)",
-            "Success, e = −0.1 (%)",
-            "e = +0.1 (%)",
-        ),
-        lines=tuple(
-            Line(
-                label=NAMES[model],
-                entries=(
-                    *(centimetres("", results, response(model, error)) for error in SIGNS),
-                    *(success("", results, figure_3.cell(model, error)) for error in SIGNS),
-                ),
-            )
-            for model in MODELS
-        ),
-        notes=(
-            "Response: median over windows of how far the position predicted 20 control steps "
-            "ahead moves. Success in free space without wind. Seed 0.",
-            recorded(results, (response(m, e) for m in MODELS for e in SIGNS)),
-        ),
-    )
-
-
-def _views(results: Results) -> Table:
-    statuses = (Status.SUCCESS, Status.CRASH, Status.TIMEOUT)
-    rows: list[Line] = []
-    for view in VIEWS:
-        rows.append(Line(label=f"With the {view}"))
-        rows += [
-            Line(
-                label=label,
-                entries=tuple(ended("", results, viewed(view, name), end) for end in statuses),
-            )
-            for label, name in PREDICTORS.items()
-        ]
-    return Table(
-        name="differs-views",
-        title="Predictors on the selection library, by source of clearance",
-        columns=("Success (%)", "Crash (%)", "Timeout (%)"),
-        lines=tuple(rows),
-        notes=(flown(results, (viewed(v, p) for v in VIEWS for p in PREDICTORS.values())),),
-    )
+    return _doses(results), _stiff(results), _winds(results)
 
 
 def _doses(results: Results) -> Table:
@@ -277,4 +154,4 @@ def _winds(results: Results) -> Table:
     )
 
 
-PAGE = Page("differences", TITLE, CELLS, MEASUREMENTS, build)
+PAGE = Page("differences-wind", TITLE, CELLS, MEASUREMENTS, build)
