@@ -1,0 +1,66 @@
+"""The quick profile of the paper's central table, as the command carries it out.
+
+On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from faultpath.cli.studies import Done, carry_out, tell
+from faultpath.record import MISSING
+from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
+from faultpath.studies.pages import table_4
+from faultpath.studies.run import Plan
+
+ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
+    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), 0, ("faultpath", "reproduce"))
+
+
+def test_every_file_is_there(done: Done) -> None:
+    assert done.folder.name == "table-4"
+    assert {path.name for path in done.folder.iterdir()} == {
+        "evidence.parquet",
+        "ledger.md",
+        "outcomes.parquet",
+        "provenance.json",
+        "reproduction.html",
+        "reproduction.json",
+        "tables.md",
+        "tables.tex",
+        "traces.parquet",
+    }
+
+
+def test_no_figure_of_ours_is_missing(done: Done) -> None:
+    (table,) = done.reproduction.tables
+    assert MISSING not in {entry.text for line in table.lines for entry in line.entries}
+
+
+def test_the_ledger_holds_the_claims_that_the_table_is_about(done: Done) -> None:
+    claims = {claim.id for claim in done.reproduction.ledger.claims}
+    assert {"C23", "C24", "C26", "C28", "C29"} <= claims
+    assert "C05" not in claims
+
+
+def test_the_fault_at_the_reconstruction_hurts_what_trusts_calibration(done: Done) -> None:
+    """The effect is so large that few scenes show it."""
+    claims = {claim.id: claim for claim in done.reproduction.ledger.claims}
+    assert claims["C23"].verdict == "confirmed"
+    assert claims["C28"].parts[0].answer == "confirmed"
+
+
+def test_the_same_command_again_flies_nothing(done: Done) -> None:
+    again = carry_out(ASKED, done.folder.parent, 0, ("faultpath", "reproduce"))
+    provenance = (again.folder / "provenance.json").read_text("utf-8")
+    assert '"blocks_computed": 0' in provenance
+    assert again.reproduction.tables == done.reproduction.tables
+
+
+def test_the_tables_are_printed(done: Done, capsys: pytest.CaptureFixture[str]) -> None:
+    tell(ASKED, done)
+    assert "Wins:losses" in capsys.readouterr().out
