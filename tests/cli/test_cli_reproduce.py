@@ -3,7 +3,6 @@
 On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
 """
 
-from pathlib import Path
 
 import pytest
 
