@@ -3,7 +3,6 @@
 On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
 """
 
-
 import pytest
 
 from faultpath.cli.studies import Done, carry_out, tell
