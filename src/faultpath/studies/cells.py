@@ -81,7 +81,7 @@ class Profile:
         return tuple(wanted.values())
 
 
-QUICK = Profile("quick", scenes=15, seeds=(0,))
+QUICK = Profile("quick", scenes=10, seeds=(0,))
 PAPER = Profile("paper", scenes=None, seeds=SEEDS)
 PROFILES = {profile.name: profile for profile in (QUICK, PAPER)}
 
