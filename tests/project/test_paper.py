@@ -1,0 +1,77 @@
+"""The shipped reproduction of the paper: its conclusions follow from its tables, file by file."""
+
+import hashlib
+from pathlib import Path
+
+import pytest
+
+from faultpath.record import Reproduction, RunProvenance
+from faultpath.studies.cells import PAPER
+from faultpath.studies.claims import ledger
+from faultpath.studies.pages import PAGES
+from faultpath.studies.published import published_claims
+from faultpath.studies.results import Results
+from faultpath.studies.run import read_results
+
+ROOT = Path(__file__).resolve().parents[2]
+SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
+REFERENCE = ROOT / "docs" / "reference" / "paper"
+
+
+@pytest.fixture(scope="module")
+def shipped() -> tuple[Results, Reproduction]:
+    return read_results(SHIPPED)
+
+
+def test_the_claims_follow_from_the_tables(shipped: tuple[Results, Reproduction]) -> None:
+    results, found = shipped
+    old = found.ledger
+    again = ledger(results, old.library, old.library_hash, old.scenes, old.seeds)
+    assert [rounded(claim.model_dump()) for claim in again.claims] == [
+        rounded(claim.model_dump()) for claim in old.claims
+    ]
+
+
+def test_tables_and_figures_follow_from_the_outcomes(
+    shipped: tuple[Results, Reproduction],
+) -> None:
+    results, found = shipped
+    built = [part for page in PAGES for part in page.build(results)]
+    assert {part.name: part for part in built} == {
+        part.name: part for part in (*found.tables, *found.figures)
+    }
+
+
+def test_every_arm_of_the_paper_was_flown(shipped: tuple[Results, Reproduction]) -> None:
+    results, found = shipped
+    wanted = PAPER.cells(cell for page in PAGES for cell in page.cells)
+    for cell in wanted:
+        assert results.seeds(cell) == cell.seeds, cell
+    assert found.trials == sum(len(cell.seeds) for cell in wanted) * found.ledger.scenes
+    assert found.failed_trials == 0
+    assert [claim.id for claim in found.ledger.claims] == [c.id for c in published_claims()]
+
+
+def test_the_outcomes_are_those_that_the_provenance_names() -> None:
+    named = RunProvenance.model_validate_json((SHIPPED / "provenance.json").read_bytes())
+    digest = hashlib.sha256((SHIPPED / "outcomes.parquet").read_bytes()).hexdigest()
+    assert named.outcomes_sha256 == digest
+
+
+def test_the_report_shows_every_claim_of_the_ledger(
+    shipped: tuple[Results, Reproduction],
+) -> None:
+    page = (REFERENCE / "reproduction.html").read_text("utf-8")
+    text = (REFERENCE / "ledger.md").read_text("utf-8")
+    for claim in shipped[1].ledger.claims:
+        assert claim.id in page
+        assert f"| {claim.id} |" in text
+
+
+def rounded(value: object) -> object:
+    """Leave the last digits of one processor out."""
+    if isinstance(value, dict):
+        return {key: rounded(part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [rounded(part) for part in value]
+    return float(f"{value:.6g}") + 0.0 if isinstance(value, float) else value
