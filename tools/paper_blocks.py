@@ -1,10 +1,11 @@
 """What the marked blocks of the documents show of the shipped reproduction of the paper."""
 
+import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-from blocks import ROOT, Wrong
+from blocks import REFERENCE, ROOT, Wrong
 from pydantic import ValidationError
 
 from faultpath.record import ClaimVerdict, Reproduction, RunProvenance
@@ -74,6 +75,27 @@ def _table(found: Reproduction, origin: RunProvenance, name: str) -> str:
     return markdown(tables[name])
 
 
+def _motors(found: Reproduction, origin: RunProvenance) -> str:
+    """Return what `tools/motor_state.py` measured."""
+    try:
+        measured = json.loads((REFERENCE / "motor-state.json").read_text("utf-8"))
+    except FileNotFoundError:
+        return "*Not measured yet: run tools/motor_state.py.*"
+    rows = [f"| true-parameter predictor | {measured['predictor_cm']:.1f} |"]
+    for intervals, error in measured["plant_cm"].items():
+        rows.append(f"| plant, motors followed for {intervals} intervals | {error:.1f} |")
+    return "\n".join(
+        [
+            "| Predicted by | Median 20-step position error (cm) |",
+            "| :-- | --: |",
+            *rows,
+            "",
+            f"{measured['windows']:,} windows of the selection library, flown with the "
+            "true-parameter model. Made by `python tools/motor_state.py RUN_FOLDER`.",
+        ]
+    )
+
+
 def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
     """Return the picture of a part of the report, by its place in the page."""
     titles = {each.name: each.title for each in (*found.tables, *found.figures)}
@@ -115,5 +137,6 @@ _PARTS: dict[str, Callable[..., str]] = {
     "claim": _claim,
     "table": _table,
     "origin": _origin,
+    "motors": _motors,
     "picture": _picture,
 }

@@ -57,7 +57,7 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
             areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
-            clip = _around(areas)
+            clip = _around(areas, 0.0 if run == "paper" else MARGIN)
             name = f"{run}-{part}.png"
             page.screenshot(path=IMAGES / name, full_page=True, clip=clip)
             made[name] = digest(run)
@@ -69,10 +69,10 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
     MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
 
 
-def _around(areas: Sequence[Mapping[str, float]]) -> dict[str, float]:
+def _around(areas: Sequence[Mapping[str, float]], margin: float) -> dict[str, float]:
     """Return the rectangle around all areas, with a margin."""
-    left = max(0.0, min(area["x"] for area in areas) - MARGIN)
-    top = max(0.0, min(area["y"] for area in areas) - MARGIN)
-    right = max(area["x"] + area["width"] for area in areas) + MARGIN
-    bottom = max(area["y"] + area["height"] for area in areas) + MARGIN
+    left = max(0.0, min(area["x"] for area in areas) - margin)
+    top = max(0.0, min(area["y"] for area in areas) - margin)
+    right = max(area["x"] + area["width"] for area in areas) + margin
+    bottom = max(area["y"] + area["height"] for area in areas) + margin
     return {"x": left, "y": top, "width": right - left, "height": bottom - top}
