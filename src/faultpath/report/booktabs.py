@@ -3,6 +3,7 @@ r"""Tables of a study as LaTeX with booktabs: our figures, and the paper's in a 
 from collections.abc import Iterable
 
 from faultpath.record import Entry, Line, Table
+from faultpath.report.escapes import latex
 
 LEGEND = "In parentheses: the paper's figures. Bold: a detected difference."
 PREAMBLE = r"""\documentclass{article}
@@ -15,46 +16,22 @@ PREAMBLE = r"""\documentclass{article}
 WIDE = 3
 """More columns than this span both columns of a two-column page."""
 
-_ESCAPES = str.maketrans(
-    {
-        "\\": r"\textbackslash{}",
-        "&": r"\&",
-        "%": r"\%",
-        "$": r"\$",
-        "#": r"\#",
-        "_": r"\_",
-        "{": r"\{",
-        "}": r"\}",
-        "~": r"\textasciitilde{}",
-        "^": r"\textasciicircum{}",
-        "<": r"\textless{}",
-        ">": r"\textgreater{}",
-        "*": r"$^\star$",
-        "−": "$-$",
-        "–": "--",
-        "Δ": r"$\Delta$",
-        "²": "$^2$",
-        "\n": " ",
-        "\r": " ",
-    }
-)
-
 
 def booktabs(table: Table) -> str:
     r"""Return a `table` environment, labelled `tab:NAME`, that needs booktabs and nothing else."""
     environment = "table*" if len(table.columns) > WIDE else "table"
     body = [row for line in table.lines for row in _rows(line, len(table.columns))]
-    notes = "\n\n".join(escaped(note) for note in (LEGEND, *table.notes))
+    notes = "\n\n".join(latex(note) for note in (LEGEND, *table.notes))
     return "\n".join(
         [
             rf"\begin{{{environment}}}[t]",
-            rf"\caption{{{escaped(table.title)}.}}",
+            rf"\caption{{{latex(table.title)}.}}",
             rf"\label{{tab:{table.name}}}",
             r"\centering\footnotesize",
             r"\setlength{\tabcolsep}{4pt}",
             rf"\begin{{tabular}}{{@{{}}l{'c' * len(table.columns)}@{{}}}}",
             r"\toprule",
-            " & ".join(["", *map(escaped, table.columns)]) + r" \\",
+            " & ".join(["", *map(latex, table.columns)]) + r" \\",
             r"\midrule",
             *body,
             r"\bottomrule",
@@ -73,14 +50,8 @@ def booktabs_document(tables: Iterable[Table]) -> str:
     return PREAMBLE + "\n".join(pages) + "\\end{document}\n"
 
 
-def escaped(text: str) -> str:
-    """Return text that LaTeX prints as it is; what an old pdflatex has no glyph for, by number."""
-    latin = text.translate(_ESCAPES)
-    return "".join(c if ord(c) < 0x250 else f"[U+{ord(c):04X}]" for c in latin)
-
-
 def _rows(line: Line, width: int) -> list[str]:
-    label = escaped(line.label)
+    label = latex(line.label)
     if not line.entries:
         heading = rf"\multicolumn{{{width + 1}}}{{@{{}}l}}{{\emph{{{label}}}}} \\"
         return [r"\addlinespace", heading]
@@ -92,9 +63,9 @@ def _rows(line: Line, width: int) -> list[str]:
 
 
 def _ours(entry: Entry) -> str:
-    text = escaped(entry.text)
+    text = latex(entry.text)
     return rf"\textbf{{{text}}}" if entry.detected else text
 
 
 def _published(entry: Entry) -> str:
-    return f"({escaped(entry.published)})" if entry.published else ""
+    return f"({latex(entry.published)})" if entry.published else ""

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report import wording
+from faultpath.report.escapes import latex as tex
+from faultpath.report.escapes import markdown as md
 from faultpath.statistics import Estimate
 
 
@@ -66,19 +68,19 @@ def markdown_table(record: DecisionRecord) -> str:
     heads, lines = table_lines(record)
     asked = record.question
     rows = [
-        f"| Success/100 | {' | '.join(map(_md, heads))} |",
+        f"| Success/100 | {' | '.join(map(md, heads))} |",
         f"| :-- | {' | '.join('--:' for _ in heads)} |",
     ]
     for line in lines:
         cells = line.values if line.values is not None else ("",) * len(heads)
-        label = _md(line.label) if line.values is not None else f"*{_md(line.label)}*"
-        rows.append(f"| {label} | {' | '.join(map(_md, cells))} |")
+        label = md(line.label) if line.values is not None else f"*{md(line.label)}*"
+        rows.append(f"| {label} | {' | '.join(map(md, cells))} |")
     about = (
-        f"{_md(asked.repair)} against {_md(asked.baseline)} on {_md(asked.system)}, "
-        f"fault {_md(asked.fault)}; {asked.n_scenes} scenes of {_md(asked.library)}, "
+        f"{md(asked.repair)} against {md(asked.baseline)} on {md(asked.system)}, "
+        f"fault {md(asked.fault)}; {asked.n_scenes} scenes of {md(asked.library)}, "
         f"{wording.seeds(asked.seeds)}."
     )
-    return "\n".join([about, "", *rows, "", _md(record.verdict.headline), ""])
+    return "\n".join([about, "", *rows, "", md(record.verdict.headline), ""])
 
 
 def latex_table(record: DecisionRecord) -> str:
@@ -91,19 +93,19 @@ def latex_table(record: DecisionRecord) -> str:
         if line.values is None:
             body += [
                 r"\addlinespace",
-                rf"\multicolumn{{{columns + 1}}}{{@{{}}l}}{{\emph{{{_tex(line.label)}:}}}} \\",
+                rf"\multicolumn{{{columns + 1}}}{{@{{}}l}}{{\emph{{{tex(line.label)}:}}}} \\",
             ]
         else:
             body.append(
                 f"{_tex_value(line.label)} & {' & '.join(map(_tex_value, line.values))} \\\\"
             )
     caption = (
-        f"{_tex(asked.repair)} against {_tex(asked.baseline)} on {_tex(asked.system)}, fault "
-        f"{_tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {_tex(asked.library)}, "
-        f"{wording.seeds(asked.seeds)}. Wins:losses are {_tex(asked.repair)}-only:"
-        f"{_tex(asked.baseline)}-only successes. Void pairs count for neither side."
+        f"{tex(asked.repair)} against {tex(asked.baseline)} on {tex(asked.system)}, fault "
+        f"{tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {tex(asked.library)}, "
+        f"{wording.seeds(asked.seeds)}. Wins:losses are {tex(asked.repair)}-only:"
+        f"{tex(asked.baseline)}-only successes. Void pairs count for neither side."
     )
-    head = " & ".join(["Method", *map(_tex, heads)])
+    head = " & ".join(["Method", *map(tex, heads)])
     return "\n".join(
         [
             "% Needs \\usepackage{booktabs}",
@@ -142,43 +144,7 @@ def _range(estimate: Estimate | None) -> str:
     return (wording.interval(estimate, 2) if estimate is not None else "") or "–"
 
 
-_MARKDOWN = str.maketrans(
-    {c: f"\\{c}" for c in r"\`*_[]|#"} | {"<": "&lt;", ">": "&gt;", "\n": " ", "\r": " "}
-)
-
-_LATEX = str.maketrans(
-    {
-        "\\": r"\textbackslash{}",
-        "&": r"\&",
-        "%": r"\%",
-        "$": r"\$",
-        "#": r"\#",
-        "_": r"\_",
-        "{": r"\{",
-        "}": r"\}",
-        "~": r"\textasciitilde{}",
-        "^": r"\textasciicircum{}",
-        "<": r"\textless{}",
-        ">": r"\textgreater{}",
-        "−": "$-$",
-        "–": "--",
-        "\n": " ",
-        "\r": " ",
-    }
-)
-
-
-def _md(text: str) -> str:
-    return text.translate(_MARKDOWN)
-
-
-def _tex(text: str) -> str:
-    # An old pdflatex stops at characters that it has no font for; these have names users give.
-    escaped = text.replace("p*", "\0").translate(_LATEX).replace("\0", r"$p^\star$")
-    return "".join(c if ord(c) < 0x250 else f"[U+{ord(c):04X}]" for c in escaped)
-
-
 def _tex_value(text: str) -> str:
     # Braces keep a leading bracket or star from being read as an argument of the row end before it.
-    escaped = _tex(text)
+    escaped = tex(text)
     return "{" + escaped + "}" if escaped.startswith(("[", "*")) else escaped

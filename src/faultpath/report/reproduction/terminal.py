@@ -5,13 +5,10 @@ from rich.table import Table
 from rich.text import Text
 
 from faultpath.record.claim import Answer, Ledger
-from faultpath.report import wording
+from faultpath.report import escapes, wording
 from faultpath.report.reproduction import words
 
 _STYLE: dict[Answer, str] = {"confirmed": "green", "refuted": "bold red", "undecided": "dim"}
-_ESCAPED = str.maketrans(
-    {c: f"\\{c}" for c in r"\`*_[]|#"} | {"<": "&lt;", ">": "&gt;", "\n": " ", "\r": " "}
-)
 
 
 def ledger_counts(ledger: Ledger) -> Text:
@@ -68,9 +65,9 @@ def ledger_markdown(ledger: Ledger) -> str:
             words.typeset(claim.paper),
             words.typeset(claim.claim),
         )
-        rows.append(f"| {' | '.join(cell.translate(_ESCAPED) for cell in cells)} |")
+        rows.append(f"| {' | '.join(escapes.markdown(cell) for cell in cells)} |")
     about = (
         f"{ledger.library}, {wording.counted(ledger.scenes, 'scene')}, "
         f"{wording.seeds(ledger.seeds)}."
     )
-    return "\n".join([f"{words.headline(ledger)}.", "", about.translate(_ESCAPED), "", *rows, ""])
+    return "\n".join([f"{words.headline(ledger)}.", "", escapes.markdown(about), "", *rows, ""])

@@ -17,8 +17,9 @@ from faultpath.statistics import (
     success_test,
 )
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.found import MIN_SCENES, Found, Quantity, of_effect
+from faultpath.studies.claims.found import Found, Quantity, of_effect
 from faultpath.studies.contrasts import joint
+from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.results import Contrast, NotRun, Results
 from faultpath.trials.pairing import Trials
 

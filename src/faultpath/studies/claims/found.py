@@ -5,10 +5,9 @@ from dataclasses import dataclass
 
 from faultpath.statistics import Effect, TestResult
 from faultpath.statistics.distributions import normal_quantile
+from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.results import Results
 
-MIN_SCENES = 6
-"""Fewer scenes than this decide nothing: they cannot reject at 0.05 even when all agree."""
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
 MULTIPLE = normal_quantile(0.975) + normal_quantile(0.8)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from faultpath.statistics import DirectionShares, break_even
 from faultpath.studies.claims.differences import together
-from faultpath.studies.claims.found import MIN_SCENES, Found
+from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     CONFIRMED,
     FEW_SCENES,
@@ -16,6 +16,7 @@ from faultpath.studies.claims.rules import (
     more_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.pages import table_5
 from faultpath.studies.results import Results
 
