@@ -98,7 +98,7 @@ def test_latex_puts_the_papers_figures_in_a_row_of_their_own() -> None:
         r" & (+49.7) &  \\",
         r"{Another} & -- & 4 \\",
         r" & (no crossing) &  \\",
-        r"{Ours alone} & [$-$1.0, 2.0] & p$^\star$ 3 \% \\",
+        r"{Ours alone} & [$-$1.0, 2.0] & $p^\star$ 3 \% \\",
     ]
 
 
