@@ -103,7 +103,7 @@ def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
 
 
 def _origin(found: Reproduction, origin: RunProvenance) -> str:
-    first, last = found.flown
+    first, last = found.flown or ("", "")
     commit = origin.commit[:12] if origin.commit else "unknown"
     return (
         f"Flown between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "

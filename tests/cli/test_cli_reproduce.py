@@ -3,12 +3,14 @@
 On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
 """
 
+from pathlib import Path
+
 import pytest
 
 from faultpath.cli.studies import Done, carry_out, tell
 from faultpath.record import MISSING
 from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
-from faultpath.studies.pages import table_4
+from faultpath.studies.pages import figure_2, table_4
 from faultpath.studies.run import Plan
 
 ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
@@ -62,3 +64,11 @@ def test_the_same_command_again_flies_nothing(done: Done) -> None:
 def test_the_tables_are_printed(done: Done, capsys: pytest.CaptureFixture[str]) -> None:
     tell(ASKED, done)
     assert "Wins:losses" in capsys.readouterr().out
+
+
+def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
+    drawn = Plan((figure_2.PAGE,), QUICK, {HELD_OUT: SELECTION})
+    done = carry_out(drawn, tmp_path, 0, ("faultpath", "reproduce"))
+    page = (done.folder / "reproduction.html").read_text("utf-8")
+    assert (done.reproduction.trials, done.reproduction.flown) == (0, None)
+    assert all(shown.topology in page for shown in done.reproduction.gallery)

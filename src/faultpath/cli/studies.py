@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.cli.options import Stopped
+from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
 from faultpath.report import Traces
@@ -16,6 +17,7 @@ from faultpath.report.booktabs import booktabs_document
 from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import (
     ReproductionInput,
+    figures_view,
     ledger_markdown,
     ledger_view,
     reproduction_page,
@@ -52,8 +54,7 @@ def carry_out(
     legs = plan.legs()
     try:
         flown = _fly(console, legs, folder, workers)
-        with _bar(console, "Measuring", "flights") as show:
-            evidence = measure_all(plan, folder, workers, lambda done, of: show(done, of, ""))
+        evidence = _measure(console, plan, folder, workers)
     except (Interrupted, KeyboardInterrupt):
         raise Stopped(
             f"interrupted; what is finished is kept in {folder}, and the same command resumes."
@@ -63,10 +64,10 @@ def carry_out(
     found = conclude(plan, flown, results)
     result = save(place, flown, results, evidence, found)
     _tell_failures(console, result)
-    backend = flown.legs[0].system.backend if flown.legs else ""
+    backend = plan.system.backend
     provenance = run_provenance(result, stopwatch, command, workers, backend)
     write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
-    _write_pages(place, found, provenance, flown)
+    _write_pages(place, plan, found, provenance, flown)
     return Done(found, place)
 
 
@@ -76,7 +77,7 @@ def tell(plan: Plan, done: Done) -> None:
     if plan.whole:
         console.print(ledger_view(done.reproduction.ledger))
     for table in () if plan.whole else done.reproduction.tables:
-        console.print(markdown(table), markup=False, soft_wrap=True)
+        console.print(figures_view(table))
     page = done.folder / "reproduction.html"
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
@@ -91,6 +92,13 @@ def _fly(console: Console, legs: Sequence[Leg], folder: Path, workers: int) -> F
             show(now.trials_done, now.trials_total, f"{_left(now.seconds_left)}  {now.leg}")
 
         return fly(legs, folder, workers, flying, notice)
+
+
+def _measure(console: Console, plan: Plan, folder: Path, workers: int) -> EvidenceTable:
+    if not plan.measurements():
+        return EvidenceTable({})
+    with _bar(console, "Measuring", "flights") as show:
+        return measure_all(plan, folder, workers, lambda done, of: show(done, of, ""))
 
 
 @contextmanager
@@ -112,22 +120,24 @@ def _bar(console: Console, what: str, unit: str) -> Generator[Show]:
         yield show
 
 
-def _write_pages(place: Path, found: Reproduction, provenance: RunProvenance, flown: Flown) -> None:
+def _write_pages(
+    place: Path, plan: Plan, found: Reproduction, provenance: RunProvenance, flown: Flown
+) -> None:
     leg = next((leg for leg in flown.legs if leg.setting == table_4.WINDY), None)
     asked = reversal.audited(flown.outcomes)
     flights = {(at.variant, at.path, at.seed, at.scene): t for at, t in traces_of(asked).items()}
-    plain = flown.legs[0].system
+    system = plan.system
     source = ReproductionInput(
         reproduction=found,
         provenance=provenance,
-        interface=plain.interface,
+        interface=system.interface,
         outcomes=asked,
-        decision=reversal.decision(asked, leg) if leg is not None and asked.rows else None,
-        traces=Traces(flights, plain.control_dt_s),
+        decision=reversal.decision(asked, leg) if leg and reversal.whole(asked) else None,
+        traces=Traces(flights, system.control_dt_s),
         plans={
-            scene: plan
+            scene: drawn
             for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}
-            if (plan := plain.floor_plan(scene)) is not None
+            if (drawn := system.floor_plan(scene)) is not None
         },
     )
     write_text(place / "reproduction.html", reproduction_page(source))

@@ -40,5 +40,6 @@ class Reproduction(_Frozen):
     configurations: tuple[Configuration, ...]
     trials: int
     failed_trials: int
-    flown: tuple[str, str]
-    """When the first and the last block of trials were written, over all invocations."""
+    flown: tuple[str, str] | None
+    """When the first and the last block of trials were written, over all invocations; `None` where
+    nothing had to be flown."""

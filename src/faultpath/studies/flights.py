@@ -43,7 +43,7 @@ class Flown:
 
     legs: tuple[Leg, ...]
     results: tuple[RunResult, ...]
-    written: tuple[str, str]
+    written: tuple[str, str] | None
     """When the first and the last block were written, by this and by earlier invocations."""
 
     @property
@@ -145,13 +145,15 @@ class _Clock:
             self._spent += time.monotonic() - self._began
 
 
-def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str]:
+def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str] | None:
     shards = [
         path
         for leg in legs
         for path in (folder / FLIGHTS / leg.folder / "shards").glob("*.parquet")
     ]
     moments = [datetime.fromtimestamp(path.stat().st_mtime, UTC) for path in shards]
+    if not moments:
+        return None
     first, last = min(moments), max(moments)
     return first.isoformat(timespec="seconds"), last.isoformat(timespec="seconds")
 

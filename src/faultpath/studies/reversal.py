@@ -32,6 +32,11 @@ def audited(outcomes: OutcomeTable) -> OutcomeTable:
     return OutcomeTable(tuple(replace(row, path=_PATHS[row.path]) for row in rows))
 
 
+def whole(audited: OutcomeTable) -> bool:
+    """Return whether both variants were flown on every path."""
+    return all(audited.seeds(v, p) for v in (BASELINE, REPAIR) for p in NAMES.values())
+
+
 def decision(outcomes: OutcomeTable, leg: Leg) -> DecisionRecord:
     """Return the decision record over trials that `audited` returned, flown in `leg`."""
     study = leg.study

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 from faultpath.errors import UserError
@@ -22,7 +23,14 @@ from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
-from faultpath.trials import Library, OutcomeTable, SystemSpec, load_measurer, load_system
+from faultpath.trials import (
+    Library,
+    OutcomeTable,
+    System,
+    SystemSpec,
+    load_measurer,
+    load_system,
+)
 
 EVIDENCE = "evidence.parquet"
 CONCLUSIONS = "reproduction.json"
@@ -59,9 +67,14 @@ class Plan:
         asked = (m for page in self.pages for m in page.measurements)
         return {m: self._stands_in(m) for m in asked if m.seed in self.profile.seeds}
 
+    @cached_property
+    def system(self) -> System:
+        """The system in its first setting, for what does not depend on the setting."""
+        return load_system(SystemSpec(name=SYSTEM, options=dict(self.options)))
+
     def library(self) -> Library:
         """Return the library that stands for the held-out one."""
-        return load_system(SystemSpec(name=SYSTEM)).library(self.libraries.get(HELD_OUT, HELD_OUT))
+        return self.system.library(self.libraries.get(HELD_OUT, HELD_OUT))
 
     def _stands_in(self, measurement: Measurement) -> Measurement:
         recording = measurement.recording
@@ -97,8 +110,6 @@ def measure_all(
     Raises as `evidence.Measurer` does.
     """
     wanted = plan.measurements()
-    if not wanted:
-        return EvidenceTable({})
     measure = load_measurer(SYSTEM)
     made = tuple(dict.fromkeys(wanted.values()))
     found = measure(made, plan.profile.scenes, folder / "windows", workers, progress)

@@ -5,6 +5,8 @@ from rich.table import Table
 from rich.text import Text
 
 from faultpath.record.claim import Answer, Ledger
+from faultpath.record.table import Entry
+from faultpath.record.table import Table as Figures
 from faultpath.report import escapes, wording
 from faultpath.report.reproduction import words
 
@@ -71,3 +73,22 @@ def ledger_markdown(ledger: Ledger) -> str:
         f"{wording.seeds(ledger.seeds)}."
     )
     return "\n".join([f"{words.headline(ledger)}.", "", escapes.markdown(about), "", *rows, ""])
+
+
+def figures_view(table: Figures) -> RenderableType:
+    """Return a table of figures for the terminal: ours, and below it the paper's in parentheses."""
+    shown = Table(title=Text(table.title), title_justify="left", box=None, pad_edge=False)
+    shown.add_column("")
+    for column in table.columns:
+        shown.add_column(Text(column), justify="right")
+    for line in table.lines:
+        if not line.entries:
+            shown.add_row(Text(line.label, "italic"))
+            continue
+        shown.add_row(Text(line.label), *map(_figure, line.entries))
+    return shown
+
+
+def _figure(entry: Entry) -> Text:
+    text = Text(entry.text, "bold" if entry.detected else "")
+    return text.append(f"\n({entry.published})", "dim") if entry.published else text
