@@ -80,6 +80,7 @@ class Watched(Results):
 
     def contrast(self, first: Cell, second: Cell, **named: object) -> Contrast:
         self.cells.extend((first, second))
+        # Keywords are passed on as they come, so their types are those of the method itself.
         return super().contrast(first, second, **named)  # type: ignore[arg-type]
 
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:

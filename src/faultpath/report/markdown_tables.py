@@ -2,8 +2,7 @@
 
 from faultpath.record import Entry, Line, Table
 from faultpath.report import escapes
-
-LEGEND = "In parentheses: the paper's figures. Bold: a detected difference."
+from faultpath.report.booktabs import LEGEND
 
 
 def markdown(table: Table) -> str:
