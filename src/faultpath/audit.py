@@ -7,8 +7,19 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import Interface, module_of
 from faultpath.interface.words import unknown
-from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
-from faultpath.trials import Arm, Library, OutcomeTable, Row, Study, System, SystemSpec, Variant
+from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, StruckTap, decide
+from faultpath.taps import TapCount
+from faultpath.trials import (
+    Arm,
+    Deliveries,
+    Library,
+    OutcomeTable,
+    Row,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
 
 
 @dataclass(frozen=True)
@@ -19,9 +30,36 @@ class Audit:
     paths: tuple[Path, ...]
     study: Study
 
-    def conclude(self, table: OutcomeTable) -> DecisionRecord:
-        """Return the decision record; see `faultpath.record.decide`."""
-        return decide(self.question, self.paths, table)
+    def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
+        """Return the decision record of a run, or of what its folder holds.
+
+        `read_outcomes` and `read_deliveries` of `faultpath.store` read a folder. Raises as
+        `faultpath.record.decide`.
+        """
+        asked = self.question
+        paths = [
+            path.model_copy(
+                update={
+                    "struck": _struck_taps(deliveries.at(asked.repair, path.name)),
+                    "baseline_struck": _struck_taps(deliveries.at(asked.baseline, path.name)),
+                }
+            )
+            for path in self.paths
+        ]
+        return decide(asked, paths, table)
+
+
+def _struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
+    return tuple(
+        StruckTap(
+            channel=tap.channel,
+            consumer=tap.consumer,
+            struck_steps=tap.struck_steps,
+            altered_steps=tap.altered_steps,
+        )
+        for tap in counts
+        if tap.struck_steps
+    )
 
 
 def plan_audit(

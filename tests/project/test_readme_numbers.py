@@ -68,7 +68,7 @@ def test_the_examples_still_give_their_reference(name: str, tmp_path: Path) -> N
     record = record_of(name)
     audit = plan(record)
     done = run_study(audit.study, tmp_path, workers=0)
-    assert numbers(audit.conclude(done.outcomes)) == numbers(record)
+    assert numbers(audit.conclude(done.outcomes, done.deliveries)) == numbers(record)
 
 
 def plan(record: DecisionRecord) -> Audit:

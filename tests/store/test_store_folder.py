@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from faultpath.errors import UserError
-from faultpath.store import FORMAT, Manifest, RunFolder, read_outcomes, read_traces
+from faultpath.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
 from faultpath.store.tables import encode_shard
+from faultpath.taps import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.outcome import Outcome, Status
 
@@ -34,7 +35,7 @@ def _outcomes() -> tuple[Outcome, ...]:
 def folder(tmp_path: Path) -> RunFolder:
     folder = RunFolder(tmp_path / "run")
     with folder.open(_manifest(), _unexpected):
-        folder.save_shard("k", _outcomes())
+        folder.save_shard("k", Shard(_outcomes(), TAPS))
     return folder
 
 
@@ -43,16 +44,18 @@ def _unexpected(text: str) -> None:
 
 
 SCENES = ("s0", "s1", "s2")
+TAPS = (TapCount("mass", "planner.thrust", 36, 9, 8), TapCount("mass", "observer.model", 36, 0, 0))
 
 
 def test_a_shard_reads_back(folder):
     found = folder.load_shard("k", SCENES, _unexpected)
     assert found is not None
-    for one, two in zip(found, _outcomes(), strict=True):
+    assert found.taps == TAPS
+    for one, two in zip(found.outcomes, _outcomes(), strict=True):
         for name in Outcome.__dataclass_fields__:
             np.testing.assert_equal(getattr(one, name), getattr(two, name))
-    assert found[0].trace is not None
-    assert found[0].trace.dtype == np.float32
+    assert found.outcomes[0].trace is not None
+    assert found.outcomes[0].trace.dtype == np.float32
     assert folder.load_shard("another", SCENES, _unexpected) is None
 
 
@@ -68,7 +71,7 @@ def _flip(data: bytes, at: int) -> bytes:
         lambda data: _flip(data, 40),
         lambda data: _flip(data, len(data) - 9),
         lambda data: data + b"\0",
-        lambda data: encode_shard([replace(o, time_s=9.0) for o in _outcomes()]),
+        lambda data: encode_shard(Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)),
     ],
     ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer", "edited"],
 )

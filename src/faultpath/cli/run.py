@@ -32,7 +32,7 @@ def run_audit(
         console.print(f"Computing with {system.backend}.", markup=False, soft_wrap=True)
     result = _run(console, system, audit, folder, workers)
     _tell_failures(console, result)
-    record = audit.conclude(result.outcomes)
+    record = audit.conclude(result.outcomes, result.deliveries)
     provenance = run_provenance(result, stopwatch, command, workers, system.backend)
     write_text(folder / "record.json", _json(record))
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n")

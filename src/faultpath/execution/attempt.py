@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.errors import UserError
-from faultpath.taps import TapError, Taps
+from faultpath.taps import TapCount, TapError, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome
 from faultpath.trials.system import System
@@ -26,6 +26,7 @@ class Done:
     """Every scene has an outcome."""
 
     outcomes: tuple[Outcome, ...]
+    taps: tuple[TapCount, ...]
     seconds: float
 
 
@@ -60,12 +61,12 @@ def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | 
     """Run an arm over some scenes; an error comes back as a value."""
     started = time.perf_counter()
     try:
-        outcomes = _run(system, arm, scenes)
+        outcomes, taps = _run(system, arm, scenes)
     except _WRONG as error:
         return Wrong(error)
     except Exception as error:
         return Raised(f"{type(error).__name__}: {error}", traceback.format_exc())
-    return Done(outcomes, time.perf_counter() - started)
+    return Done(outcomes, taps, time.perf_counter() - started)
 
 
 def limit_threads() -> None:
@@ -79,7 +80,9 @@ def limit_threads() -> None:
         torch.set_num_threads(1)
 
 
-def _run(system: System, arm: Arm, scenes: Sequence[str]) -> tuple[Outcome, ...]:
+def _run(
+    system: System, arm: Arm, scenes: Sequence[str]
+) -> tuple[tuple[Outcome, ...], tuple[TapCount, ...]]:
     variant = system.variants[arm.variant]
     taps = Taps(
         system.interface,
@@ -99,7 +102,7 @@ def _run(system: System, arm: Arm, scenes: Sequence[str]) -> tuple[Outcome, ...]
         )
     taps.verify(_last_steps(outcomes, system.control_dt_s))
     receipts = taps.receipts()
-    return tuple(
+    noted = tuple(
         replace(
             outcome,
             struck_steps=int(receipts.steps_struck[i]),
@@ -107,6 +110,7 @@ def _run(system: System, arm: Arm, scenes: Sequence[str]) -> tuple[Outcome, ...]
         )
         for i, outcome in enumerate(outcomes)
     )
+    return noted, receipts.counts()
 
 
 def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:

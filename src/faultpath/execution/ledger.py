@@ -8,6 +8,8 @@ from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.execution.schedule import Task
 from faultpath.execution.units import Unit
 from faultpath.store.folder import RunFolder
+from faultpath.store.tables import Shard
+from faultpath.taps import TapCount, added
 from faultpath.trials.outcome import Outcome, Status
 
 
@@ -36,11 +38,13 @@ class Ledger:
     def __init__(self, units: Iterable[Unit], folder: RunFolder, workers: int) -> None:
         self.units = tuple(units)
         self.outcomes: dict[tuple[str, str], Outcome] = {}
+        self.taps: dict[str, tuple[TapCount, ...]] = {}
         self.kept = 0
         self.computed = 0
         self._folder = folder
         self._workers = workers
         self._partial: dict[str, dict[str, Outcome]] = {}
+        self._partial_taps: dict[str, tuple[TapCount, ...]] = {}
         self._tracebacks: dict[str, list[str]] = {}
         self._running: dict[tuple[str, tuple[str, ...]], float] = {}
         self._seconds, self._timed_trials = 0.0, 0
@@ -50,10 +54,10 @@ class Ledger:
         """Units done."""
         return self.kept + self.computed
 
-    def keep(self, unit: Unit, outcomes: Iterable[Outcome]) -> None:
+    def keep(self, unit: Unit, shard: Shard) -> None:
         """Take over a unit that was done before."""
         self.kept += 1
-        self._enter(unit, outcomes)
+        self._enter(unit, shard)
 
     def start(self, task: Task) -> None:
         """Note that a task runs now."""
@@ -73,7 +77,7 @@ class Ledger:
             case Done():
                 self._seconds += reply.seconds
                 self._timed_trials += len(task.scenes)
-                return self._record(task.unit, reply.outcomes)
+                return self._record(task.unit, reply.outcomes, reply.taps)
             case Died() if not task.retried:
                 return (replace(task, retried=True),)
             case Died() | Raised() if len(task.scenes) > 1:
@@ -111,21 +115,27 @@ class Ledger:
             planner_noise_hash="",
             error=error,
         )
-        return self._record(task.unit, (outcome,))
+        return self._record(task.unit, (outcome,), ())
 
-    def _record(self, unit: Unit, outcomes: Iterable[Outcome]) -> tuple[Task, ...]:
+    def _record(
+        self, unit: Unit, outcomes: Iterable[Outcome], taps: tuple[TapCount, ...]
+    ) -> tuple[Task, ...]:
         partial = self._partial.setdefault(unit.key, {})
         partial.update((outcome.scene, outcome) for outcome in outcomes)
+        counted = self._partial_taps[unit.key] = added(
+            (*self._partial_taps.get(unit.key, ()), *taps)
+        )
         if len(partial) == len(unit.scenes):
-            ordered = [partial[scene] for scene in unit.scenes]
+            shard = Shard(tuple(partial[scene] for scene in unit.scenes), counted)
             if details := self._tracebacks.pop(unit.key, None):
                 self._folder.save_failure(unit.key, "\n".join(sorted(details)))
-            self._folder.save_shard(unit.key, ordered)
-            del self._partial[unit.key]
+            self._folder.save_shard(unit.key, shard)
+            del self._partial[unit.key], self._partial_taps[unit.key]
             self.computed += 1
-            self._enter(unit, ordered)
+            self._enter(unit, shard)
         return ()
 
-    def _enter(self, unit: Unit, outcomes: Iterable[Outcome]) -> None:
+    def _enter(self, unit: Unit, shard: Shard) -> None:
         key = unit.arm.key()
-        self.outcomes.update(((key, outcome.scene), outcome) for outcome in outcomes)
+        self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
+        self.taps[key] = added((*self.taps.get(key, ()), *shard.taps))

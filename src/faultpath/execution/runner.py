@@ -18,6 +18,7 @@ from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
 from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.registry import load_system
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
@@ -51,6 +52,8 @@ class RunResult:
     """A finished run."""
 
     outcomes: OutcomeTable
+    deliveries: Deliveries
+    """What the taps did, row by row."""
     traces: Mapping[TrialAddress, Trace]
     """Position at each control step, `[T, 3]`, metres, world frame."""
     blocks_computed: int
@@ -113,13 +116,15 @@ def run_study(
                     hands.begin(hello, expected, min(workers, len(missing)))
                     _run_with(hands, missing, ledger, report)
             table = assemble(study, library, ledger.outcomes)
-            digest = run.save_tables(table)
+            deliveries = Deliveries.of(study, ledger.taps)
+            digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the ledger may have been stopped between storing and noting.
         done = sum(run.holds_shard(unit.key) for unit in units)
         raise Interrupted(done, len(units)) from None
     return RunResult(
         outcomes=table,
+        deliveries=deliveries,
         traces=traces_of(table),
         blocks_computed=ledger.computed,
         blocks_kept=ledger.kept,
@@ -135,11 +140,11 @@ def _keep_finished(
 ) -> tuple[Unit, ...]:
     missing: list[Unit] = []
     for unit in ledger.units:
-        outcomes = run.load_shard(unit.key, unit.scenes, notice)
-        if outcomes is None:
+        shard = run.load_shard(unit.key, unit.scenes, notice)
+        if shard is None:
             missing.append(unit)
         else:
-            ledger.keep(unit, outcomes)
+            ledger.keep(unit, shard)
     return tuple(missing)
 
 

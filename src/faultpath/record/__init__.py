@@ -10,6 +10,7 @@ from faultpath.record.model import (
     PathBreakEven,
     Question,
     Reversal,
+    StruckTap,
     Verdict,
 )
 from faultpath.record.provenance import RunProvenance
@@ -40,6 +41,7 @@ __all__ = [
     "RunProvenance",
     "SceneShown",
     "Series",
+    "StruckTap",
     "Sweep",
     "Table",
     "Verdict",

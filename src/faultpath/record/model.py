@@ -24,6 +24,17 @@ class Question(_Frozen):
     seeds: tuple[int, ...]
 
 
+class StruckTap(_Frozen):
+    """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
+
+    channel: str
+    consumer: str
+    struck_steps: int
+    """Control steps with a fault in force while the scene ran."""
+    altered_steps: int
+    """Those in which what the consumer got differed from the reading."""
+
+
 class Path(_Frozen):
     """One way in which the fault reaches the system."""
 
@@ -35,6 +46,10 @@ class Path(_Frozen):
     baseline_consumers: tuple[str, ...]
     """Taps struck in the baseline. Where the baseline has no such consumer the fault cannot reach
     it, and its trials under correct inputs stand in."""
+    struck: tuple[StruckTap, ...] = ()
+    """What was struck in the repaired system: from receipts, where `consumers` is the plan."""
+    baseline_struck: tuple[StruckTap, ...] = ()
+    """What was struck in the baseline."""
 
 
 class Cell(_Frozen):

@@ -1,17 +1,20 @@
 """What a run leaves behind: a folder of shards, and the tables assembled from them."""
 
 from faultpath.store.atomic import write_text
+from faultpath.store.deliveries import read_deliveries
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import FORMAT, Manifest
 from faultpath.store.parquet import read_table
-from faultpath.store.tables import TrialAddress, read_outcomes, read_traces, traces_of
+from faultpath.store.tables import Shard, TrialAddress, read_outcomes, read_traces, traces_of
 
 __all__ = [
     "FORMAT",
     "Manifest",
     "RunFolder",
+    "Shard",
     "TrialAddress",
+    "read_deliveries",
     "read_evidence",
     "read_outcomes",
     "read_table",

@@ -11,8 +11,14 @@ from faultpath.store import atomic
 from faultpath.store.lock import Notice, locked
 from faultpath.store.manifest import Manifest, check_same, read_manifest
 from faultpath.store.parquet import Unreadable
-from faultpath.store.tables import decode_shard, encode_outcomes, encode_shard, encode_traces
-from faultpath.trials.outcome import Outcome
+from faultpath.store.tables import (
+    Shard,
+    decode_shard,
+    encode_outcomes,
+    encode_shard,
+    encode_traces,
+)
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.table import OutcomeTable
 
 
@@ -21,7 +27,8 @@ class RunFolder:
 
     `manifest.json` says which study it is, `shards/` holds one Parquet file a finished block,
     `failures/` the tracebacks of trials that failed, and `outcomes.parquet` and `traces.parquet`
-    are assembled at the end. Everything is written atomically.
+    are assembled at the end, with what the taps did in `deliveries.json`. Everything is written
+    atomically.
     """
 
     def __init__(self, path: Path) -> None:
@@ -31,6 +38,7 @@ class RunFolder:
         self.manifest = path / "manifest.json"
         self.outcomes = path / "outcomes.parquet"
         self.traces = path / "traces.parquet"
+        self.deliveries = path / "deliveries.json"
 
     @contextmanager
     def open(
@@ -57,32 +65,30 @@ class RunFolder:
                 raise self._unwritable(error) from error
             yield
 
-    def save_shard(self, key: str, outcomes: Sequence[Outcome]) -> None:
+    def save_shard(self, key: str, shard: Shard) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
-        data = encode_shard(outcomes)
+        data = encode_shard(shard)
         self._write(self.shards / f"{key}-{_digest(data)}.parquet", data)
 
     def holds_shard(self, key: str) -> bool:
         """Return whether a finished block is stored."""
         return any(self.shards.glob(f"{key}-*.parquet"))
 
-    def load_shard(
-        self, key: str, scenes: Sequence[str], notice: Notice
-    ) -> tuple[Outcome, ...] | None:
+    def load_shard(self, key: str, scenes: Sequence[str], notice: Notice) -> Shard | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
         for path in sorted(self.shards.glob(f"{key}-*.parquet")):
             try:
                 data = path.read_bytes()
                 if path.stem != f"{key}-{_digest(data)}":
                     raise Unreadable("its contents are not those that were written")
-                outcomes = decode_shard(data)
-                if [outcome.scene for outcome in outcomes] != list(scenes):
+                shard = decode_shard(data)
+                if [outcome.scene for outcome in shard.outcomes] != list(scenes):
                     raise Unreadable("it holds other scenes")
             except Unreadable as error:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
             else:
-                return outcomes
+                return shard
         return None
 
     def save_failure(self, key: str, text: str) -> Path:
@@ -91,9 +97,10 @@ class RunFolder:
         self._write(path, text.encode(errors="backslashreplace"))
         return path
 
-    def save_tables(self, table: OutcomeTable) -> str:
-        """Write the assembled tables and return the SHA-256 of the outcomes."""
+    def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
+        """Write what was assembled and return the SHA-256 of the outcomes."""
         data = encode_outcomes(table)
+        self._write(self.deliveries, f"{deliveries.model_dump_json(indent=1)}\n".encode())
         self._write(self.traces, encode_traces(table))
         self._write(self.outcomes, data)
         return hashlib.sha256(data).hexdigest()

@@ -38,10 +38,14 @@ class Unreadable(Exception):
     """The bytes are no Parquet file, or not one with the columns asked for."""
 
 
-def encode(columns: Sequence[Column], values: Mapping[str, Values]) -> bytes:
-    """Return a Parquet file with these columns, in this order."""
+def encode(
+    columns: Sequence[Column], values: Mapping[str, Values], notes: Mapping[str, str] | None = None
+) -> bytes:
+    """Return a Parquet file with these columns, in this order, and `notes` in its metadata."""
     arrays = [pa.array(values[column.name], type=column.kind.value) for column in columns]
     table = pa.table(arrays, names=[column.name for column in columns])
+    if notes:
+        table = table.replace_schema_metadata(dict(notes))
     sink = pa.BufferOutputStream()
     pq.write_table(table, sink, compression="zstd")
     return sink.getvalue().to_pybytes()
@@ -58,6 +62,13 @@ def read_table(data: bytes) -> pa.Table:
 
 def decode(data: bytes, columns: Sequence[Column]) -> dict[str, list[Any]]:
     """Return these columns of a Parquet file; `Unreadable` when it has not got them."""
+    return decode_noted(data, columns)[0]
+
+
+def decode_noted(
+    data: bytes, columns: Sequence[Column]
+) -> tuple[dict[str, list[Any]], dict[str, str]]:
+    """Return these columns of a Parquet file and its notes; `Unreadable` as `decode`."""
     try:
         table = read_table(data)
     except (pa.ArrowException, OSError) as error:
@@ -67,7 +78,8 @@ def decode(data: bytes, columns: Sequence[Column]) -> dict[str, list[Any]]:
         if column.name not in table.column_names:
             raise Unreadable(f"there is no column {column.name!r}")
         out[column.name] = _values(table.column(column.name), column.kind)
-    return out
+    notes = table.schema.metadata or {}
+    return out, {key.decode(): text.decode() for key, text in notes.items()}
 
 
 def _values(column: Any, kind: Kind) -> list[Any]:

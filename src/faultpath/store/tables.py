@@ -1,14 +1,17 @@
 """Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import TypeAdapter, ValidationError
 
 from faultpath.errors import UserError
-from faultpath.store.parquet import Column, Kind, Unreadable, Values, decode, encode
+from faultpath.store.parquet import Column, Kind, Unreadable, Values, decode, decode_noted, encode
+from faultpath.taps import TapCount
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -37,6 +40,9 @@ _TRACE = tuple(Column(name, Kind.NUMBERS) for name in ("x_m", "y_m", "z_m"))
 _SHARD = (Column("scene", Kind.TEXT), *_RESULT, *_TRACE)
 _OUTCOMES = (*_ADDRESS, *_PLACE, *_RESULT)
 _TRACES = (*_ADDRESS, *_TRACE)
+_TAPS = "faultpath.taps"
+"""Under which name a shard's metadata keeps what the taps did."""
+_COUNTS = TypeAdapter(tuple[TapCount, ...])
 
 
 class TrialAddress(NamedTuple):
@@ -48,17 +54,34 @@ class TrialAddress(NamedTuple):
     scene: str
 
 
-def encode_shard(outcomes: Sequence[Outcome]) -> bytes:
-    """Return the outcomes of one block, traces included."""
-    return encode(_SHARD, {**_results(outcomes), **_traces(outcomes)})
+@dataclass(frozen=True)
+class Shard:
+    """One finished block."""
+
+    outcomes: tuple[Outcome, ...]
+    taps: tuple[TapCount, ...]
+    """What the taps did in the trials that did not fail."""
 
 
-def decode_shard(data: bytes) -> tuple[Outcome, ...]:
-    """Return the outcomes of one block; `Unreadable` when the bytes are not a shard."""
-    values = decode(data, _SHARD)
-    return tuple(
+def encode_shard(shard: Shard) -> bytes:
+    """Return one block, traces included."""
+    notes = {_TAPS: _COUNTS.dump_json(shard.taps).decode()}
+    return encode(_SHARD, {**_results(shard.outcomes), **_traces(shard.outcomes)}, notes)
+
+
+def decode_shard(data: bytes) -> Shard:
+    """Return one block; `Unreadable` when the bytes are not a shard, or one without receipts."""
+    values, notes = decode_noted(data, _SHARD)
+    if _TAPS not in notes:
+        raise Unreadable("it is of an earlier version, which kept no receipts of the taps")
+    try:
+        taps = _COUNTS.validate_json(notes[_TAPS])
+    except ValidationError as error:
+        raise Unreadable("its receipts of the taps cannot be read") from error
+    outcomes = (
         _outcome(row, _trace([row[column.name] for column in _TRACE])) for row in _rows(values)
     )
+    return Shard(tuple(outcomes), taps)
 
 
 def encode_outcomes(table: OutcomeTable) -> bytes:

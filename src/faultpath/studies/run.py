@@ -24,6 +24,7 @@ from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
 from faultpath.trials import (
+    Deliveries,
     Library,
     OutcomeTable,
     System,
@@ -154,11 +155,15 @@ def save(
         row if reversal.concerns(row) else replace(row, outcome=replace(row.outcome, trace=None))
         for row in results.outcomes.rows
     )
-    digest = RunFolder(folder).save_tables(OutcomeTable(slim))
+    deliveries = Deliveries(
+        rows=tuple(row for result in flown.results for row in result.deliveries.rows)
+    )
+    digest = RunFolder(folder).save_tables(OutcomeTable(slim), deliveries)
     write_evidence(folder / EVIDENCE, evidence)
     write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n")
     return RunResult(
         outcomes=results.outcomes,
+        deliveries=deliveries,
         traces={},
         blocks_computed=sum(result.blocks_computed for result in flown.results),
         blocks_kept=sum(result.blocks_kept for result in flown.results),

@@ -1,5 +1,6 @@
 """Where a source's reading becomes what a consumer gets."""
 
+from faultpath.taps.counts import TapCount, added
 from faultpath.taps.errors import (
     IllegalRead,
     MalformedReading,
@@ -25,8 +26,10 @@ __all__ = [
     "StrikeReceipt",
     "StrikeState",
     "StruckElsewhere",
+    "TapCount",
     "TapError",
     "Taps",
     "UndeclaredReader",
+    "added",
     "check_delivered",
 ]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.taps.counts import TapCount
 from faultpath.taps.errors import NotDelivered, StruckElsewhere, UndeclaredReader
 
 
@@ -63,6 +64,19 @@ class Receipts:
     """`[B]`: control steps with a fault in force at some tap that delivered."""
     steps_altered: NDArray[np.int64]
     """`[B]`: control steps at which some consumer got something else than the reading."""
+
+    def counts(self) -> tuple[TapCount, ...]:
+        """Return what every tap did, summed over the scenes."""
+        return tuple(
+            TapCount(
+                tap.channel,
+                tap.consumer,
+                tap.deliveries * len(self.scenes),
+                int(tap.steps_struck.sum()),
+                int(tap.steps_altered.sum()),
+            )
+            for tap in self.taps
+        )
 
     def at(self, channel: str, consumer: str) -> Receipt:
         """Return the receipt of one tap; raises `UndeclaredReader` where there is no such tap."""

@@ -1,6 +1,7 @@
 """Arms over identical scenes: systems, studies, outcomes and their pairing."""
 
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
@@ -10,6 +11,7 @@ from faultpath.trials.table import OutcomeTable, TrialRow
 
 __all__ = [
     "Arm",
+    "Deliveries",
     "FloorPlan",
     "Library",
     "Outcome",
@@ -19,6 +21,7 @@ __all__ = [
     "Pillar",
     "Prism",
     "Row",
+    "RowDeliveries",
     "SceneRef",
     "Side",
     "Status",
