@@ -71,7 +71,9 @@ def _flip(data: bytes, at: int) -> bytes:
         lambda data: _flip(data, 40),
         lambda data: _flip(data, len(data) - 9),
         lambda data: data + b"\0",
-        lambda data: encode_shard(Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)),
+        lambda data: encode_shard(
+            "k", Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
+        ),
     ],
     ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer", "edited"],
 )
@@ -89,6 +91,17 @@ def test_a_shard_of_other_scenes_is_not_taken(folder):
     notices: list[str] = []
     assert folder.load_shard("k", SCENES[:2], notices.append) is None
     assert "other scenes" in notices[0]
+
+
+def test_a_shard_under_the_name_of_another_unit_is_not_taken(folder):
+    (shard,) = folder.shards.iterdir()
+    digest = shard.stem.partition("-")[2]
+    false = shard.with_name(f"other-{digest}.parquet")
+    false.write_bytes(shard.read_bytes())
+    notices: list[str] = []
+    assert folder.load_shard("other", SCENES, notices.append) is None
+    assert "another key" in notices[0]
+    assert folder.load_shard("k", SCENES, _unexpected) is not None
 
 
 @pytest.mark.parametrize(
@@ -124,7 +137,7 @@ def test_another_format_is_refused(folder):
         pass
 
 
-@pytest.mark.parametrize("text", ["", "{", "[]", "{}", '{"format": 1}'])
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps({"format": FORMAT})])
 def test_a_damaged_manifest_is_refused(folder, text):
     folder.manifest.write_text(text)
     with pytest.raises(UserError, match=r"manifest\.json"), folder.open(_manifest(), _unexpected):

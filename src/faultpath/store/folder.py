@@ -67,7 +67,7 @@ class RunFolder:
 
     def save_shard(self, key: str, shard: Shard) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
-        data = encode_shard(shard)
+        data = encode_shard(key, shard)
         self._write(self.shards / f"{key}-{_digest(data)}.parquet", data)
 
     def holds_shard(self, key: str) -> bool:
@@ -81,7 +81,7 @@ class RunFolder:
                 data = path.read_bytes()
                 if path.stem != f"{key}-{_digest(data)}":
                     raise Unreadable("its contents are not those that were written")
-                shard = decode_shard(data)
+                shard = decode_shard(data, key)
                 if [outcome.scene for outcome in shard.outcomes] != list(scenes):
                     raise Unreadable("it holds other scenes")
             except Unreadable as error:

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from faultpath.errors import UserError
 from faultpath.trials.arm import Study
 
-FORMAT = 1
+FORMAT = 2
 """Version of the folder's layout and of its columns."""
 
 

@@ -40,6 +40,8 @@ _TRACE = tuple(Column(name, Kind.NUMBERS) for name in ("x_m", "y_m", "z_m"))
 _SHARD = (Column("scene", Kind.TEXT), *_RESULT, *_TRACE)
 _OUTCOMES = (*_ADDRESS, *_PLACE, *_RESULT)
 _TRACES = (*_ADDRESS, *_TRACE)
+_KEY = "faultpath.key"
+"""Under which name a shard's metadata keeps the key of its unit."""
 _TAPS = "faultpath.taps"
 """Under which name a shard's metadata keeps what the taps did."""
 _COUNTS = TypeAdapter(tuple[TapCount, ...])
@@ -63,15 +65,17 @@ class Shard:
     """What the taps did in the trials that did not fail."""
 
 
-def encode_shard(shard: Shard) -> bytes:
-    """Return one block, traces included."""
-    notes = {_TAPS: _COUNTS.dump_json(shard.taps).decode()}
+def encode_shard(key: str, shard: Shard) -> bytes:
+    """Return one block, traces included, with the key of its unit inside."""
+    notes = {_KEY: key, _TAPS: _COUNTS.dump_json(shard.taps).decode()}
     return encode(_SHARD, {**_results(shard.outcomes), **_traces(shard.outcomes)}, notes)
 
 
-def decode_shard(data: bytes) -> Shard:
-    """Return one block; `Unreadable` when the bytes are not a shard, or one without receipts."""
+def decode_shard(data: bytes, key: str) -> Shard:
+    """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     values, notes = decode_noted(data, _SHARD)
+    if notes.get(_KEY) != key:
+        raise Unreadable("it was written under another key")
     if _TAPS not in notes:
         raise Unreadable("it is of an earlier version, which kept no receipts of the taps")
     try:
