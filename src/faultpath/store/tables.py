@@ -74,10 +74,10 @@ def encode_shard(key: str, shard: Shard) -> bytes:
 def decode_shard(data: bytes, key: str) -> Shard:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     values, notes = decode_noted(data, _SHARD)
-    if notes.get(_KEY) != key:
-        raise Unreadable("it was written under another key")
     if _TAPS not in notes:
         raise Unreadable("it is of an earlier version, which kept no receipts of the taps")
+    if notes.get(_KEY) != key:
+        raise Unreadable("it was written under another key")
     try:
         taps = _COUNTS.validate_json(notes[_TAPS])
     except ValidationError as error:
