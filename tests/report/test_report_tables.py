@@ -157,5 +157,5 @@ def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
 
 def test_a_folder_that_is_a_file_is_a_users_mistake(one_seed: ReportInput, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
-    with pytest.raises(UserError, match=r"cannot write report\.html"):
+    with pytest.raises(UserError, match="cannot make the folder"):
         write_report(one_seed, tmp_path / "taken")

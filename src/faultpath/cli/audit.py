@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import numbers, settings
+from faultpath.cli.options import numbers, path, settings
 
 FAILED_TRIALS = 1
 
@@ -45,7 +45,9 @@ def command(
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>.")
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option(

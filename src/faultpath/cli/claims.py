@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from faultpath.cli.options import path
+
 if TYPE_CHECKING:
     from faultpath.record import Ledger
 
@@ -16,14 +18,19 @@ FAILED_TRIALS = 1
 
 def command(
     run: Annotated[
-        Path | None, typer.Option(help="Folder of a reproduction; default the shipped one.")
+        Path | None,
+        typer.Option(parser=path, help="Folder of a reproduction; default the shipped one."),
     ] = None,
     library: Annotated[
         Path | None,
-        typer.Option(help="Fly all studies on this library in place of the held-out one."),
+        typer.Option(
+            parser=path, help="Fly all studies on this library in place of the held-out one."
+        ),
     ] = None,
     profile: Annotated[str, typer.Option(help="With --library: quick or paper.")] = "paper",
-    out: Annotated[Path | None, typer.Option(help="With --library: run folder.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="With --library: run folder.")
+    ] = None,
     workers: Annotated[int | None, typer.Option(help="With --library: worker processes.")] = None,
     device: Annotated[str | None, typer.Option(help="With --library: cpu or cuda.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,

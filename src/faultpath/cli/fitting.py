@@ -16,6 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from faultpath.cli.options import Stopped
+from faultpath.store import make_folder
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.training.card import ModelCard
@@ -59,7 +60,11 @@ def train(wishes: Wishes) -> int:
 
     console = Console()
     failed = 0
-    for jobs in stages(choose(wishes.names, wishes.seeds)):
+    chosen = choose(wishes.names, wishes.seeds)
+    for place in (wishes.data, wishes.out, wishes.tensorboard):
+        if place is not None:
+            make_folder(place)  # before the flights: what cannot be kept need not be collected
+    for jobs in stages(chosen):
         _collect(console, jobs, wishes)
         report = _fit(console, jobs, wishes)
         _tell(console, report, wishes.out)

@@ -6,15 +6,19 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import settings
+from faultpath.cli.options import path, settings
 
 
 def command(
     system: Annotated[str, typer.Argument(help="`quadrotor`, or `file.py:attribute`.")],
-    svg: Annotated[Path | None, typer.Option(help="Draw it into this SVG file.")] = None,
-    yaml: Annotated[Path | None, typer.Option(help="Write it into this YAML file.")] = None,
+    svg: Annotated[
+        Path | None, typer.Option(parser=path, help="Draw it into this SVG file.")
+    ] = None,
+    yaml: Annotated[
+        Path | None, typer.Option(parser=path, help="Write it into this YAML file.")
+    ] = None,
     schema: Annotated[
-        Path | None, typer.Option(help="Write the JSON Schema of interface files.")
+        Path | None, typer.Option(parser=path, help="Write the JSON Schema of interface files.")
     ] = None,
     set_: Annotated[
         list[str] | None, typer.Option("--set", help="Option of the system, key=value.")
@@ -23,20 +27,25 @@ def command(
     """Print a system's information interface, and draw it."""
     from rich.console import Console
 
+    from faultpath.errors import UserError
     from faultpath.interface import interface_yaml, json_schema
     from faultpath.report import draw_interface, interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
 
+    places = [place.resolve() for place in (svg, yaml, schema) if place is not None]
+    if len(set(places)) < len(places):
+        raise UserError(
+            "--svg, --yaml and --schema write three files: give each a path of its own."
+        )
     built = load_system(SystemSpec(name=system, options=settings(set_ or [])))
     console = Console()
     console.print(interface_table(built.interface))
-    writes = {
-        svg: lambda: draw_interface(built.interface),
-        yaml: lambda: interface_yaml(built.interface),
-        schema: lambda: json.dumps(json_schema(), indent=2) + "\n",
-    }
-    for path, text in writes.items():
-        if path is not None:
-            write_text(path, text())
-            console.print(f"Written: {path}", markup=False, soft_wrap=True)
+    for place, text in (
+        (svg, lambda: draw_interface(built.interface)),
+        (yaml, lambda: interface_yaml(built.interface)),
+        (schema, lambda: json.dumps(json_schema(), indent=2) + "\n"),
+    ):
+        if place is not None:
+            write_text(place, text())
+            console.print(f"Written: {place}", markup=False, soft_wrap=True)

@@ -1,6 +1,9 @@
 """Reading what several verbs take."""
 
 from collections.abc import Sequence
+from pathlib import Path
+
+import typer
 
 from faultpath.errors import UserError
 
@@ -30,3 +33,16 @@ def numbers(text: str, what: str) -> tuple[int, ...]:
         raise UserError(
             f"{what} {text!r} is not a list of whole numbers, for example 0,1,2."
         ) from None
+
+
+def path(text: str | Path) -> Path:
+    """Read the path of a file or folder.
+
+    Given as `parser=` to every option and argument that is one: an empty path would mean the
+    working directory, which nobody has asked to be written into.
+    """
+    if not str(text):
+        raise typer.BadParameter("an empty path names nothing, give one that is not empty")
+    if "\0" in str(text):
+        raise typer.BadParameter("a path cannot have a null character in it")
+    return Path(text)

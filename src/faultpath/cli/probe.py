@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import numbers, settings
+from faultpath.cli.options import numbers, path, settings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -40,7 +40,7 @@ def command(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     out: Annotated[
-        Path, typer.Option(help="Folder that keeps recordings and measurements.")
+        Path, typer.Option(parser=path, help="Folder that keeps recordings and measurements.")
     ] = Path("runs/probe"),
     workers: Annotated[
         int | None, typer.Option(help="Worker processes; default one a core.")
@@ -70,7 +70,7 @@ def command(
     from faultpath.store.evidence import write_evidence
 
     write_evidence(out / "evidence.parquet", table)
-    write_text(out / "probe.json", probe.model_dump_json(indent=2) + "\n")
+    write_text(out / "probe.json", probe.model_dump_json(indent=2) + "\n", out)
     if as_json:
         typer.echo(probe.model_dump_json(indent=2))
     else:

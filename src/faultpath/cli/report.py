@@ -5,9 +5,11 @@ from typing import Annotated
 
 import typer
 
+from faultpath.cli.options import path
+
 
 def command(
-    folder: Annotated[Path, typer.Argument(help="Folder of a finished audit.")],
+    folder: Annotated[Path, typer.Argument(parser=path, help="Folder of a finished audit.")],
 ) -> None:
     """Write report and tables of a run again from its stored outcomes."""
     from faultpath.cli.records import read_record
@@ -18,5 +20,5 @@ def command(
 
     from faultpath.cli.pages import save_pages  # loads what draws; no mistake so far waits for it
 
-    for path in save_pages(system, folder):
-        typer.echo(path)
+    for written in save_pages(system, folder):
+        typer.echo(written)

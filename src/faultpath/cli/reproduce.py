@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from faultpath.cli.options import path
+
 FAILED_TRIALS = 1
 
 
@@ -17,7 +19,9 @@ def command(
     profile: Annotated[
         str, typer.Option(help="quick (few scenes, one seed) or paper (its size).")
     ] = "quick",
-    out: Annotated[Path | None, typer.Option(help="Run folder; default runs/<name>.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>.")
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Worker processes; default one a core, or one a GPU.")
     ] = None,

@@ -5,12 +5,14 @@ from typing import Annotated
 
 import typer
 
+from faultpath.cli.options import path
+
 app = typer.Typer(help="Libraries of scenes for the quadrotor.", no_args_is_help=True)
 
 
 @app.command("generate")
 def generate(
-    out: Annotated[Path, typer.Argument(help="File to write, for example mine.json.")],
+    out: Annotated[Path, typer.Argument(parser=path, help="File to write, for example mine.json.")],
     seed: Annotated[int, typer.Option(help="Seed of the library.")],
     count: Annotated[int, typer.Option(help="Number of scenes.")] = 100,
 ) -> None:

@@ -66,7 +66,7 @@ def carry_out(
     _tell_failures(console, result)
     backend = plan.system.backend
     provenance = run_provenance(result, stopwatch, command, workers, backend)
-    write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n")
+    write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
     _write_pages(place, plan, found, provenance, flown)
     return Done(found, place)
 
@@ -140,10 +140,10 @@ def _write_pages(
             if (drawn := system.floor_plan(scene)) is not None
         },
     )
-    write_text(place / "reproduction.html", reproduction_page(source))
-    write_text(place / "tables.tex", booktabs_document(found.tables))
-    write_text(place / "tables.md", "\n\n".join(map(markdown, found.tables)) + "\n")
-    write_text(place / "ledger.md", ledger_markdown(found.ledger))
+    write_text(place / "reproduction.html", reproduction_page(source), place)
+    write_text(place / "tables.tex", booktabs_document(found.tables), place)
+    write_text(place / "tables.md", "\n\n".join(map(markdown, found.tables)) + "\n", place)
+    write_text(place / "ledger.md", ledger_markdown(found.ledger), place)
 
 
 def _gallery(found: Reproduction) -> list[str]:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from faultpath.cli.options import path
+
 FAILED_MODELS = 1
 
 app = typer.Typer(help="Fit the learned models of the quadrotor.", no_args_is_help=True)
@@ -24,14 +26,18 @@ def command(
         list[int] | None,
         typer.Option("--seed", help="Seed, repeatable; default those of the paper."),
     ] = None,
-    data: Annotated[Path, typer.Option(help="Folder of the collected flights.")] = Path("data"),
-    out: Annotated[Path, typer.Option(help="Folder for the checkpoints.")] = Path("runs/train"),
+    data: Annotated[
+        Path, typer.Option(parser=path, help="Folder of the collected flights.")
+    ] = Path("data"),
+    out: Annotated[Path, typer.Option(parser=path, help="Folder for the checkpoints.")] = Path(
+        "runs/train"
+    ),
     workers: Annotated[
         int | None,
         typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
     ] = None,
     tensorboard: Annotated[
-        Path | None, typer.Option(help="Folder for the curves of TensorBoard.")
+        Path | None, typer.Option(parser=path, help="Folder for the curves of TensorBoard.")
     ] = None,
     ship: Annotated[
         bool, typer.Option("--ship", help="Copy finished checkpoints into the package.")

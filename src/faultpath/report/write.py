@@ -3,11 +3,10 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from faultpath.errors import UserError
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import latex_table, markdown_table
-from faultpath.store import write_text
+from faultpath.store import make_folder, write_text
 
 
 def write_report(input: ReportInput, folder: Path) -> list[Path]:
@@ -20,13 +19,7 @@ def write_report(input: ReportInput, folder: Path) -> list[Path]:
         "table.tex": lambda: latex_table(input.record),
         "table.md": lambda: markdown_table(input.record),
     }
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(
-            f"cannot write {', '.join(makers)} into {folder} ({error.strerror}); "
-            "choose a folder that you may write to."
-        ) from error
+    make_folder(folder)
     for name, make in makers.items():
-        write_text(folder / name, make())
+        write_text(folder / name, make(), folder)
     return [folder / name for name in makers]

@@ -26,7 +26,7 @@ _COLUMNS = (
 def write_evidence(path: Path, table: EvidenceTable) -> None:
     """Write a table; the bytes depend on the table alone. `UserError` when it cannot be written."""
     try:
-        atomic.write(path, encode_evidence(table))
+        atomic.write(path, encode_evidence(table), path.parent)
     except OSError as error:
         raise UserError(
             f"cannot write {path} ({error.strerror}): choose a place that you may write to"

@@ -60,7 +60,7 @@ class RunFolder:
                 for folder in (self.path, self.shards, self.failures):
                     atomic.sweep(folder)
                 if found != manifest:
-                    atomic.write(self.manifest, manifest.encode())
+                    atomic.write(self.manifest, manifest.encode(), self.path)
             except OSError as error:
                 raise self._unwritable(error) from error
             yield
@@ -119,7 +119,7 @@ class RunFolder:
 
     def _write(self, path: Path, data: bytes) -> None:
         try:
-            atomic.write(path, data)
+            atomic.write(path, data, self.path)
         except OSError as error:
             raise self._unwritable(error) from error
 

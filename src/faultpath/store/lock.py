@@ -20,7 +20,7 @@ def locked(folder: Path, notice: Notice) -> Generator[None, None, None]:
     """
     path = folder / ".lock"
     try:
-        descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
     except OSError as error:
         raise UserError(
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to"

@@ -160,7 +160,7 @@ def save(
     )
     digest = RunFolder(folder).save_tables(OutcomeTable(slim), deliveries)
     write_evidence(folder / EVIDENCE, evidence)
-    write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n")
+    write_text(folder / CONCLUSIONS, found.model_dump_json(indent=1) + "\n", folder)
     return RunResult(
         outcomes=results.outcomes,
         deliveries=deliveries,

@@ -13,12 +13,11 @@ from pathlib import Path
 
 import torch
 
-from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measurement, Progress
 from faultpath.quadrotor.evidence.code import digest
 from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import Block, Recorded, blocks, recorded
-from faultpath.store import atomic
+from faultpath.store import atomic, make_folder
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.lock import locked
 
@@ -91,7 +90,7 @@ def measure(
         for measurement in asked
         if measurement.recording == recording
     ]
-    _create(folder)
+    make_folder(folder)
     with locked(folder, lambda text: None):
         atomic.sweep(folder)
         waiting = [job for job in jobs if not job.path.exists()]
@@ -114,15 +113,6 @@ def measure(
 @lru_cache(maxsize=1)
 def _recorded(blocks: tuple[Block, ...], folder: Path) -> Recorded:
     return recorded(blocks, folder)
-
-
-def _create(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(
-            f"cannot make the folder {folder} ({error.strerror}): choose another path"
-        ) from error
 
 
 def _run_all(jobs: Sequence[Flying | Measuring], workers: int) -> Iterator[Flying | Measuring]:

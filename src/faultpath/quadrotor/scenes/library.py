@@ -139,7 +139,9 @@ def write_library(path: str | Path, seed: int, count: int, name: str) -> Library
     path = Path(path)
     if path.exists():
         raise UserError(f"The file {str(path)!r} exists already: remove it or name another.")
+    from faultpath.store import write_text  # it brings pyarrow, which reading does not need
+
     library = generate_library(name, seed, count)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(as_text(library), encoding="utf-8", newline="\n")
+    write_text(path, as_text(library))
     return library

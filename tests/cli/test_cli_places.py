@@ -1,0 +1,146 @@
+"""Where commands write: nothing but files is replaced, and no path is empty."""
+
+import os
+import stat
+from pathlib import Path
+from typing import get_args, get_type_hints
+
+import pytest
+import typer
+from cli_runs import TOY, audit, faultpath
+from typer.models import OptionInfo
+
+from faultpath.cli.main import app
+from faultpath.cli.options import path
+from faultpath.interface import read_interface
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def _paths(verbs: typer.Typer = app, before: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
+    """Return verbs and name of every option and argument that is annotated as a path."""
+    found: list[tuple[str, ...]] = []
+    for group in verbs.registered_groups:
+        found += _paths(group.typer_instance, (*before, group.name))
+    for verb in verbs.registered_commands:
+        for name, hint in get_type_hints(verb.callback, include_extras=True).items():
+            kind, *how = get_args(hint) or (hint,)
+            if Path in (kind, *get_args(kind)):
+                assert how[0].parser is path, f"{verb.name}: {name} needs parser=path"
+                option = f"--{name}" if isinstance(how[0], OptionInfo) else name
+                found.append((*before, verb.name, option))
+    return found
+
+
+@pytest.mark.parametrize("text", ["", "a\0b"], ids=["empty", "null"])
+@pytest.mark.parametrize("option", _paths(), ids=" ".join)
+def test_a_path_that_names_nothing_is_refused(option: tuple[str, ...], text: str, tmp_path: Path):
+    *verbs, option = option
+    place = [option, text] if option.startswith("-") else [text]
+    sentence = faultpath(*verbs, *place).refused()
+    assert option.strip("-").upper() in sentence.upper()
+    assert "path" in sentence
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_empty_out_is_refused_with_everything_else_given(tmp_path: Path):
+    assert "--out" in audit(out="").refused()
+    assert list(tmp_path.iterdir()) == []
+
+
+def _device(place: Path) -> None:
+    try:
+        os.mknod(place, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
+    except PermissionError:
+        pytest.skip("only root makes devices")
+
+
+THINGS = {"a device": _device, "a pipe": os.mkfifo, "a folder": Path.mkdir}
+
+
+@pytest.mark.parametrize("what", THINGS)
+@pytest.mark.parametrize("option", ["--svg", "--yaml", "--schema"])
+def test_a_drawing_replaces_nothing_but_a_file(what: str, option: str, tmp_path: Path):
+    place = tmp_path / "place"
+    THINGS[what](place)
+    before = place.lstat().st_mode
+    assert f"it is {what}" in faultpath("interface", TOY, option, place).refused()
+    assert place.lstat().st_mode == before
+    assert os.listdir(tmp_path) == ["place"]
+
+
+@pytest.mark.parametrize("what", THINGS)
+def test_a_library_replaces_nothing(what: str, tmp_path: Path):
+    place = tmp_path / "mine.json"
+    THINGS[what](place)
+    before = place.lstat().st_mode
+    faultpath("scenes", "generate", place, "--seed", 1, "--count", 1).refused()
+    assert place.lstat().st_mode == before
+
+
+def test_a_drawing_goes_where_a_link_leads(tmp_path: Path):
+    (tmp_path / "deep").mkdir()
+    (tmp_path / "link").symlink_to("deep/interface.yaml")
+    ended = faultpath("interface", TOY, "--yaml", "link")
+    assert (ended.status, ended.err) == (0, "")
+    assert (tmp_path / "link").is_symlink()
+    assert read_interface(tmp_path / "deep" / "interface.yaml").name == "toy"
+
+
+def test_one_file_is_not_written_twice(tmp_path: Path):
+    sentence = faultpath("interface", TOY, "--svg", "a", "--yaml", "./a").refused()
+    assert "--svg" in sentence
+    assert list(tmp_path.iterdir()) == []
+
+
+AUDIT = "--baseline calibrated --repair blind --fault gain:scale=0.6 --library carts --scenes 2"
+COMMANDS = {
+    "audit": ["audit", TOY, *AUDIT.split(), "--workers", 0],
+    "reproduce": ["reproduce", "table-1", "--workers", 0],
+    "probe": ["probe", "quadrotor", "--variants", "wm-a,wm-a+dcc", "--scenes", 1],
+    "train": ["train", "quadrotor", "wm-a"],
+}
+
+
+@pytest.mark.parametrize("what", ["a device", "a pipe", "a file"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_run_goes_into_a_folder_and_replaces_nothing_else(
+    command: str, what: str, tmp_path: Path
+):
+    place = tmp_path / "place"
+    THINGS.get(what, Path.touch)(place)
+    before = place.lstat().st_mode
+    assert str(place) in faultpath(*COMMANDS[command], "--out", place).refused()
+    assert place.lstat().st_mode == before
+
+
+def test_pages_do_not_follow_a_link_out_of_the_run_folder(tmp_path: Path):
+    assert audit(out="run", scenes=2).status == 0
+    mine = tmp_path / "mine"
+    mine.write_text("mine")
+    for name in ("report.html", "record.json", "outcomes.parquet"):
+        (tmp_path / "run" / name).unlink()
+        (tmp_path / "run" / name).symlink_to(mine)
+        sentence = audit(out="run", scenes=2).refused()
+        assert name in sentence or "run" in sentence
+        assert "link out of" in sentence
+        assert mine.read_text() == "mine"
+        (tmp_path / "run" / name).unlink()
+
+
+def test_the_lock_of_a_run_folder_is_no_link(tmp_path: Path):
+    """Taking the lock empties the file: through a link that would be somebody else's."""
+    mine = tmp_path / "mine"
+    mine.write_text("mine")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / ".lock").symlink_to(mine)
+    assert "run" in audit(out="run", scenes=2).refused()
+    assert mine.read_text() == "mine"
+
+
+def test_a_path_is_taken_as_it_stands():
+    assert path("~/a b") == Path("~/a b")
+    assert path(Path("runs")) == Path("runs")
