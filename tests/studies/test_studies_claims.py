@@ -198,3 +198,25 @@ def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: R
     other = claim.model_copy(update={"paper": "69 -> 0"})
     found = verdict(other, STATEMENTS[claim.id], published_run)
     assert found.parts == answers[claim.id].parts
+
+
+def test_ten_scenes_that_all_end_alike_answer_nothing() -> None:
+    """No arm is ahead of another anywhere, and ten scenes could have missed much."""
+    for status in (Status.SUCCESS, Status.CRASH):
+        alike = Results(outcomes(lambda *_, s=status: s, scenes=10, slower_s=0.0), None, "toy")
+        parts = [part for claim in evaluate(alike) for part in claim.parts if not part.not_run]
+        answered = [
+            part.words
+            for part in parts
+            if part.answer != "undecided" and not part.words.startswith("reported")
+        ]
+        assert len(parts) > 50
+        assert not answered
+
+
+def test_ten_scenes_refute_no_claim_about_point_estimates() -> None:
+    few = Results(outcomes(mirrored, scenes=10), None, "toy")
+    about_points = {"C08", "C13", "C32"}
+    found = {claim.id: claim for claim in evaluate(few) if claim.id in about_points}
+    assert {claim.verdict for claim in found.values()} == {"undecided"}
+    assert not any(part.not_run for claim in found.values() for part in claim.parts)

@@ -12,7 +12,7 @@ from faultpath.statistics import (
     mean_effect,
 )
 from faultpath.studies.claims.differences import weighted
-from faultpath.studies.claims.found import MULTIPLE, Found, of_effect
+from faultpath.studies.claims.found import MULTIPLE, POINT_SCENES, Found, of_effect
 from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
 from faultpath.studies.claims.reversals import Turn, TurnsDown
 from faultpath.studies.claims.rules import (
@@ -40,7 +40,7 @@ def found(
     value = 0.0 if interval is None else sum(interval) / 2
     counts = Discordant(first_only=9 if value > 0 else 1, second_only=1 if value > 0 else 9)
     test = None if p_value is None else TestResult(name="sign", p_value=p_value, counts=counts)
-    return Found(value, interval, "pp", 40, test, mde, telling_mde=20.0)
+    return Found(value, interval, "pp", 100, test, mde, telling_mde=20.0)
 
 
 @pytest.mark.parametrize(
@@ -97,7 +97,8 @@ def test_not_detecting_counts_only_where_something_would_have_been_seen(
         (at_least(15.1), found(UP), "refuted"),
         (less_than(4.9), found(UP), "refuted"),
         (more_than(10), found(UP), "undecided"),
-        (more_than(15), found(UP), "refuted"),
+        (more_than(15), found(UP), "undecided"),
+        (more_than(15.1), found(UP), "refuted"),
         (less_than(10), found(UP), "undecided"),
         (less_than(10.1), found(UP), "confirmed"),
         (at_least(10, detected=True), found(UP, 0.01), "confirmed"),
@@ -122,7 +123,7 @@ def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
     ("rule", "value", "answer"),
     [
         (ByPoint(1), 0.1, "confirmed"),
-        (ByPoint(1), 0.0, "refuted"),
+        (ByPoint(1), 0.0, "undecided"),
         (ByPoint(1, strict=False), 0.0, "confirmed"),
         (ByPoint(-1), 0.1, "refuted"),
         (ByPoint(-1, -0.5, strict=False), -0.5, "confirmed"),
@@ -133,11 +134,65 @@ def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
 def test_claims_about_points_are_decided_by_points(
     rule: Rule[Found], value: float, answer: str
 ) -> None:
-    assert rule.judge(Found(value, OPEN, "pp", 40)).answer == answer
+    assert rule.judge(Found(value, OPEN, "pp", 100)).answer == answer
 
 
-def test_points_of_too_few_scenes_decide_nothing() -> None:
-    assert ByPoint(1).judge(Found(50.0, None, "pp", 5)).answer == "undecided"
+@pytest.mark.parametrize("n_scenes", [1, 5, 10, POINT_SCENES - 1])
+@pytest.mark.parametrize("rule", [ByPoint(1), ByPoint(-1), ByPoint(1, 60), ByPoint(-1, 0.0)])
+def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule[Found], n_scenes: int) -> None:
+    for value in (-50.0, 0.0, 50.0):
+        judged = rule.judge(Found(value, (value - 5, value + 5), "pp", n_scenes))
+        assert judged.answer == "undecided"
+        assert "scenes" in judged.reason
+
+
+TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
+
+
+@pytest.mark.parametrize("rule", [ABOVE, BELOW, more_than(0), less_than(0), at_least(0)])
+@pytest.mark.parametrize("interval", TOUCHING)
+@pytest.mark.parametrize("n_scenes", [10, 100])
+def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
+    rule: Rule[Found], interval: tuple[float, float], n_scenes: int
+) -> None:
+    shown = Found(sum(interval) / 2, interval, "pp", n_scenes)
+    assert rule.judge(shown).answer == "undecided"
+
+
+@pytest.mark.parametrize(
+    ("rule", "n_scenes", "answer"),
+    [
+        (at_least(8), 10, "undecided"),
+        (at_least(8), 100, "confirmed"),
+        (at_least(4), 10, "confirmed"),
+        (at_least(16), 10, "refuted"),
+        (Within(8, 12), 10, "undecided"),
+        (Within(8, 12), 100, "confirmed"),
+        (Within(4, 16), 10, "confirmed"),
+        (Within(16, 20), 10, "refuted"),
+    ],
+)
+def test_few_scenes_meet_a_threshold_by_their_whole_interval(
+    rule: Rule[Found], n_scenes: int, answer: str
+) -> None:
+    assert rule.judge(Found(10.0, UP, "pp", n_scenes)).answer == answer
+
+
+@pytest.mark.parametrize(
+    "rule", [at_least(30), at_least(-60), less_than(30), Within(1, 2), Within(49, 51)]
+)
+@pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
+def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
+    rule: Rule[Found], value: float
+) -> None:
+    shown = Found(value, (value, value), "pp", 10, mde=1.0, telling_mde=20.0)
+    assert rule.judge(shown).answer == "undecided"
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_a_tie_shows_neither_side_ahead(sign: int) -> None:
+    judged = ByPoint(sign).judge(Found(0.0, (0.0, 0.0), "pp", 100))
+    assert (judged.answer, judged.reason) == ("undecided", "the estimate is a tie")
 
 
 def turn(interval: tuple[float, float], before: int, after: int, *, differ: bool) -> Turn:
@@ -168,7 +223,7 @@ def crossing(value: float | None, shares: tuple[float, float, float, float]) -> 
         value=value,
         interval=None if value is None else (max(0.0, value - 10), value + 10),
         unit="percent",
-        n_scenes=40,
+        n_scenes=100,
         shares=DirectionShares(above=above, below=below, always=always, never=never),
         never=value is None and never >= below,
     )

@@ -4,7 +4,7 @@ from itertools import combinations
 
 from faultpath.studies.cells import Cell
 from faultpath.studies.claims.differences import crashes, seed_zero, success, time, timeouts
-from faultpath.studies.claims.rules import ABOVE, BELOW, NotDetected, at_least
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, NotDetected, at_least
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.windows import Subject, difference_of_quantiles, ratio
 from faultpath.studies.pages import table_1
@@ -70,7 +70,7 @@ CLAIMS: dict[str, Statements] = {
             for cell, seen in SEEN.items()
         ),
         *(
-            Statement(_clearance(cell, "timeout rate"), timeouts(seen, cell), at_least(0))
+            Statement(_clearance(cell, "timeout rate"), timeouts(seen, cell), NO_LOSS)
             for cell, seen in SEEN.items()
         ),
     ),

@@ -8,6 +8,7 @@ from faultpath.studies.claims.differences import together
 from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     CONFIRMED,
+    FEW_FOR_POINTS,
     FEW_SCENES,
     REFUTED,
     Bound,
@@ -63,11 +64,11 @@ class NeverPays:
         return f"{subject} does not exist: the repair pays at none"
 
     def judge(self, found: Crossing) -> Judged:
-        """Confirm by the estimate; refute when the resamples rarely agree."""
+        """Confirm by the estimate of a run that is large enough; refute when resamples disagree."""
         if not found.enough:
             return FEW_SCENES
         if found.never:
-            return CONFIRMED
+            return CONFIRMED if found.speaks_by_estimate else FEW_FOR_POINTS
         return REFUTED if found.shares.never <= RARE else Judged("undecided")
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol, TypeVar
 
 from faultpath.record import Answer
-from faultpath.studies.claims.found import Found
+from faultpath.studies.claims.found import POINT_SCENES, Found
 
 
 class Judged(NamedTuple):
@@ -19,7 +19,8 @@ class Judged(NamedTuple):
 
 CONFIRMED, REFUTED = Judged("confirmed"), Judged("refuted")
 FEW_SCENES = Judged("undecided", "too few scenes")
-
+FEW_FOR_POINTS = Judged("undecided", f"an estimate alone decides from {POINT_SCENES} scenes on")
+TIED = Judged("undecided", "the estimate is a tie")
 
 F = TypeVar("F", bound=Found, contravariant=True)
 
@@ -99,18 +100,33 @@ class Bound:
         return f"{subject} is {text} {self.limit:g}{' and detected' if self.detected else ''}"
 
     def judge(self, found: Found) -> Judged:
-        """Confirm by the estimate, refute when the whole interval misses."""
-        if found.value is None or found.interval is None:
+        """Refute when the whole interval misses; confirm when it meets, or the estimate may do so.
+
+        The estimate may in a run that is large enough, unless the limit is 0: on which side of 0 a
+        difference lies only an interval that leaves 0 out can say.
+        """
+        if found.value is None or found.range is None:
             return FEW_SCENES
-        low, high = found.interval
-        if self._meets(found.value):
-            unseen = self.detected and found.detected != self.sign
-            return Judged("undecided", "met, but not detected") if unseen else CONFIRMED
-        return Judged("undecided") if self._meets(high if self.sign > 0 else low) else REFUTED
+        low, high = found.range
+        near, far = (low, high) if self.sign > 0 else (high, low)
+        if self._ahead(far) < 0:
+            return REFUTED
+        if not self._meets(found.value):
+            return Judged("undecided")
+        if self._ahead(near) <= 0:
+            if self.limit == 0:
+                return Judged("undecided", "met by the estimate, but the interval reaches 0")
+            if not found.speaks_by_estimate:
+                return FEW_FOR_POINTS
+        unseen = self.detected and found.detected != self.sign
+        return Judged("undecided", "met, but not detected") if unseen else CONFIRMED
 
     def _meets(self, value: float) -> bool:
-        ahead = self.sign * (value - self.limit)
+        ahead = self._ahead(value)
         return ahead > 0 if self.strict else ahead >= 0
+
+    def _ahead(self, value: float) -> float:
+        return self.sign * (value - self.limit)
 
 
 @dataclass(frozen=True)
@@ -125,13 +141,19 @@ class Within:
         return f"{subject} lies between {self.low:g} and {self.high:g}"
 
     def judge(self, found: Found) -> Judged:
-        """Confirm by the estimate, refute when the whole interval misses."""
-        if found.value is None or found.interval is None:
+        """Refute when the whole interval misses; confirm when all of it lies inside.
+
+        In a run that is large enough the estimate may lie there alone.
+        """
+        if found.value is None or found.range is None:
             return FEW_SCENES
-        if self.low <= found.value <= self.high:
-            return CONFIRMED
-        low, high = found.interval
-        return REFUTED if high < self.low or low > self.high else Judged("undecided")
+        low, high = found.range
+        if high < self.low or low > self.high:
+            return REFUTED
+        if not self.low <= found.value <= self.high:
+            return Judged("undecided")
+        inside = self.low < low and high < self.high
+        return CONFIRMED if inside or found.speaks_by_estimate else FEW_FOR_POINTS
 
 
 @dataclass(frozen=True)
@@ -148,11 +170,15 @@ class ByPoint:
         return f"{subject} is {text} {self.limit:g}, by the point estimate"
 
     def judge(self, found: Found) -> Judged:
-        """Decide by the value alone."""
+        """Decide by the value alone, in a run that is large enough; a tie confirms no advantage."""
         if found.value is None or not found.enough:
             return FEW_SCENES
+        if not found.speaks_by_estimate:
+            return FEW_FOR_POINTS
         ahead = self.sign * (found.value - self.limit)
-        return CONFIRMED if ahead > 0 or (ahead == 0 and not self.strict) else REFUTED
+        if ahead == 0:
+            return TIED if self.strict else CONFIRMED
+        return CONFIRMED if ahead > 0 else REFUTED
 
 
 @dataclass(frozen=True)
