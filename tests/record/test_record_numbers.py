@@ -1,5 +1,6 @@
 """From tables with known counts to exactly their numbers."""
 
+import re
 import sys
 from dataclasses import replace
 
@@ -20,7 +21,7 @@ from outcome_tables import (
 
 from faultpath.errors import UserError
 from faultpath.record import CORRECT, SHARED, decide
-from faultpath.trials import OutcomeTable, PairingRefused, Status
+from faultpath.trials import OutcomeTable, Status
 
 
 @pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
@@ -181,12 +182,16 @@ def test_when_every_pair_is_void_there_is_nothing_to_decide():
         decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
 
 
-def test_trials_that_met_other_conditions_are_not_compared():
+def test_trials_that_met_other_conditions_are_no_pair_and_the_record_says_so():
     good = table({CORRECT: (50, 16, 4)})
     odd = replace(good.rows[7], outcome=replace(good.rows[7].outcome, disturbance_hash="storm"))
     mixed = OutcomeTable((*good.rows[:7], odd, *good.rows[8:]))
-    with pytest.raises(PairingRefused, match=r"s007.*disturbances differ"):
-        decide(question(), paths(CORRECT), mixed)
+    record = decide(question(), paths(CORRECT), mixed, findings=("Something else.",))
+    (effect,) = record.effects
+    assert (effect.void_pairs, effect.success.n_scenes) == (1, 99)
+    found, other = record.findings
+    assert re.search(r"s007.*disturbances differ \(disturbance_hash .*'storm'", found)
+    assert other == "Something else."
 
 
 def test_several_seeds_are_averaged_within_each_scene():

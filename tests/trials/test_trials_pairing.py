@@ -1,4 +1,4 @@
-"""A contrast is of trials that met the same conditions, or it is refused."""
+"""A contrast is of trials that met the same conditions; other pairs are void."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -83,10 +83,21 @@ def test_swapping_the_sides_swaps_the_arrays():
         ("planner_noise_hash", "planner noise"),
     ],
 )
-def test_other_conditions_are_refused_by_name(name, what):
+def test_other_conditions_void_the_pair_and_name_both_hashes(name, what):
     table = _altering("repair", "b", 5, **{name: "other"})
-    with pytest.raises(PairingRefused, match=rf"scene 'b' \(seed 5\): their {what} differ"):
-        pair(table, ONE, TWO)
+    pairs = pair(table, ONE, TWO)
+    assert (pairs.void, pairs.void_scenes, pairs.scenes) == (1, ("b",), ("a", "c"))
+    (mismatch,) = pairs.mismatches
+    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(mismatch)
+    assert repr(getattr(_outcome("b", 5, success=True), name)) in str(mismatch)
+    np.testing.assert_array_equal(pairs.second.success, [[0, 0], [0, 1]])
+
+
+def test_planners_that_draw_differently_are_pairs_all_the_same():
+    table = _altering("repair", "b", 5, planner_noise_hash="other")
+    assert pair(table, ONE, TWO, other_noise=True).mismatches == ()
+    table = _altering("repair", "b", 5, initial_hash="other")
+    assert len(pair(table, ONE, TWO, other_noise=True).mismatches) == 1
 
 
 def test_a_failed_trial_voids_its_pair_and_leaves_its_scene_out():

@@ -4,8 +4,9 @@ import math
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from faultpath.errors import UserError
 from faultpath.taps import TapCount, TapError, Taps
 from faultpath.trials.arm import Arm
-from faultpath.trials.outcome import Outcome
+from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
 
 
@@ -94,12 +95,7 @@ def _run(
         consumers=variant.consumers,
         privileged=variant.privileged,
     )
-    outcomes = tuple(system.run(arm.variant, scenes, taps, arm.seed))
-    if [outcome.scene for outcome in outcomes] != list(scenes):
-        raise WrongOutcomes(
-            f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
-            f"{[outcome.scene for outcome in outcomes]}: run() returns one for each, in order"
-        )
+    outcomes = _outcomes(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
     taps.verify(_last_steps(outcomes, system.control_dt_s))
     receipts = taps.receipts()
     noted = tuple(
@@ -111,6 +107,28 @@ def _run(
         for i, outcome in enumerate(outcomes)
     )
     return noted, receipts.counts()
+
+
+def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[Outcome, ...]:
+    if not isinstance(returned, Iterable):
+        raise WrongOutcomes(
+            f"run() of system {system.name!r} returned a {type(returned).__name__}: it returns a "
+            "list with one Outcome for each scene, in order"
+        )
+    outcomes: list[Outcome] = []
+    for each in cast("Iterable[object]", returned):
+        if not isinstance(each, Outcome):
+            raise WrongOutcomes(
+                f"run() of system {system.name!r} returned a {type(each).__name__} in place of an "
+                "Outcome: it returns a list with one Outcome for each scene, in order"
+            )
+        outcomes.append(each)
+    if [outcome.scene for outcome in outcomes] != list(scenes):
+        raise WrongOutcomes(
+            f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
+            f"{[outcome.scene for outcome in outcomes]}: run() returns one for each, in order"
+        )
+    return tuple(checked(outcome) for outcome in outcomes)
 
 
 def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:

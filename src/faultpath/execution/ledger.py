@@ -10,7 +10,7 @@ from faultpath.execution.units import Unit
 from faultpath.store.folder import RunFolder
 from faultpath.store.tables import Shard
 from faultpath.taps import TapCount, added
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Outcome, failed_outcome
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,9 @@ class Ledger:
             case Done():
                 self._seconds += reply.seconds
                 self._timed_trials += len(task.scenes)
+                for outcome in reply.outcomes:
+                    if outcome.failed:
+                        self._note(task.unit, outcome.scene, outcome.error or "")
                 return self._record(task.unit, reply.outcomes, reply.taps)
             case Died() if not task.retried:
                 return (replace(task, retried=True),)
@@ -102,20 +105,12 @@ class Ledger:
 
     def _fail(self, task: Task, error: str, details: str) -> tuple[Task, ...]:
         (scene,) = task.scenes
-        arm = task.unit.arm.model_dump_json()
-        self._tracebacks.setdefault(task.unit.key, []).append(f"{scene}: {arm}\n{details}\n")
-        outcome = Outcome(
-            scene=scene,
-            status=Status.FAILED,
-            time_s=0.0,
-            terminal_distance_m=None,
-            min_clearance_m=None,
-            initial_hash="",
-            disturbance_hash="",
-            planner_noise_hash="",
-            error=error,
-        )
-        return self._record(task.unit, (outcome,), ())
+        self._note(task.unit, scene, details)
+        return self._record(task.unit, (failed_outcome(scene, error),), ())
+
+    def _note(self, unit: Unit, scene: str, details: str) -> None:
+        text = f"{scene}: {unit.arm.model_dump_json()}\n{details}\n"
+        self._tracebacks.setdefault(unit.key, []).append(text)
 
     def _record(
         self, unit: Unit, outcomes: Iterable[Outcome], taps: tuple[TapCount, ...]

@@ -31,7 +31,7 @@ from faultpath.statistics import (
     success_test,
 )
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Floats, Pairs, Side, pair
+from faultpath.trials.pairing import Bools, Floats, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
 CURVE_POINTS = 41
@@ -40,15 +40,20 @@ MIN_JOINT_SCENES = 6
 
 
 def decide(
-    question: Question, paths: Sequence[Path], table: OutcomeTable, resamples_seed: int = 0
+    question: Question,
+    paths: Sequence[Path],
+    table: OutcomeTable,
+    resamples_seed: int = 0,
+    findings: Sequence[str] = (),
 ) -> DecisionRecord:
     """Return the decision record of an audit.
 
     Scenes in which a pair is void on any path are left out of all of them, so that every effect
-    speaks of the same scenes and shares one set of bootstrap resamples. `PairingRefused` when arms
-    did not meet the same conditions; `UserError` when no scene is left.
+    speaks of the same scenes and shares one set of bootstrap resamples. The record carries
+    `findings`, and what was found about its pairs. `UserError` when no scene is left.
     """
     pairs = _common({path.name: _pair(question, path.name, table) for path in paths})
+    mismatches = [each for path in pairs.values() for each in path.mismatches]
     n_scenes = len(next(iter(pairs.values())).scenes)
     if n_scenes == 0:
         raise UserError(
@@ -82,6 +87,7 @@ def decide(
         break_even=tuple(breaks),
         reversals=tuple(turns),
         verdict=verdict(question, ordered, breaks, turns),
+        findings=(*mismatch_words(mismatches), *findings),
     )
 
 

@@ -135,3 +135,6 @@ class DecisionRecord(_Frozen):
     break_even: tuple[PathBreakEven, ...]
     reversals: tuple[Reversal, ...]
     verdict: Verdict
+    findings: tuple[str, ...] = ()
+    """What the run found that a reader has to know, a sentence each: pairs of different conditions,
+    results that do not repeat or depend on their block, consumers that never read."""

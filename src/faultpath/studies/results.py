@@ -23,7 +23,7 @@ from faultpath.statistics import (
     success_test,
 )
 from faultpath.studies.cells import Cell
-from faultpath.trials import OutcomeTable, Pairs, Status, pair
+from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 
 
 class NotRun(Exception):
@@ -125,12 +125,15 @@ class Results:
     ) -> Contrast:
         """Pair two cells over the seeds that both were run with; `scenes` keeps some indices.
 
-        `other_noise` pairs planners that differ in how they draw: their noise cannot agree.
+        `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
+        `PairingRefused` where two trials met different conditions: these systems are our own.
         """
         seeds = [seed for seed in self.seeds(first) if seed in self.seeds(second)]
         if not seeds:
             raise NotRun(f"a seed that {first} and {second} share")
         pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
+        if pairs.mismatches:
+            raise PairingRefused(str(pairs.mismatches[0]))
         if scenes is not None:
             kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
             pairs = pairs.only([scene for scene, index in kept if index in scenes])

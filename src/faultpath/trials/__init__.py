@@ -4,7 +4,7 @@ from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
+from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
 from faultpath.trials.registry import load_measurer, load_system
 from faultpath.trials.system import Library, SceneRef, System, Variant
 from faultpath.trials.table import OutcomeTable, TrialRow
@@ -14,6 +14,7 @@ __all__ = [
     "Deliveries",
     "FloorPlan",
     "Library",
+    "Mismatch",
     "Outcome",
     "OutcomeTable",
     "PairingRefused",
@@ -32,5 +33,6 @@ __all__ = [
     "Variant",
     "load_measurer",
     "load_system",
+    "mismatch_words",
     "pair",
 ]

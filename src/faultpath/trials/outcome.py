@@ -1,7 +1,10 @@
 """What one trial leaves behind."""
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
+from numbers import Real
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +25,14 @@ class Outcome:
     """The result of one closed-loop trial in one scene.
 
     The three hashes are of the initial state, the disturbance series and the planner's noise. Two
-    trials may be compared as a pair only when all three agree.
+    trials may be compared as a pair only when all three agree. Where there is nothing to hash, as
+    without a planner that draws, the text is `none`: an empty one proves nothing and is refused.
     """
 
     scene: str
     status: Status
     time_s: float
-    """Time at which the trial ended: the time to the goal for a success."""
+    """Time at which the trial ended, above zero: the time to the goal for a success."""
     terminal_distance_m: float | None
     min_clearance_m: float | None
     initial_hash: str
@@ -46,3 +50,105 @@ class Outcome:
     def failed(self) -> bool:
         """Whether the program failed, so that the trial says nothing."""
         return self.status is Status.FAILED
+
+
+def failed_outcome(scene: str, error: str) -> Outcome:
+    """Return the outcome of a trial in which the program failed."""
+    return Outcome(scene, Status.FAILED, 0.0, None, None, "", "", "", error=_text(error))
+
+
+def checked(outcome: Outcome) -> Outcome:
+    """Return what a system said of one trial, with plain numbers and a trace in float32.
+
+    Where it says something that cannot be (a number that is not finite, a status that is none, a
+    trace that is no `[T, 3]`), the trial is failed and its error says what.
+    """
+    try:
+        if outcome.status is Status.FAILED:
+            said = outcome.error or "the system said that it failed"
+            return failed_outcome(outcome.scene, str(said))
+        return _sound(outcome)
+    except _Malformed as error:
+        return failed_outcome(outcome.scene, f"malformed outcome: {error}")
+
+
+_LONGEST_ERROR = 2000
+
+
+class _Malformed(Exception):
+    pass
+
+
+def _sound(outcome: Outcome) -> Outcome:
+    if not isinstance(outcome.status, Status):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise _Malformed(f"status is {_shown(outcome.status)}: give a faultpath.trials.Status")
+    time_s = _number("time_s", outcome.time_s)
+    if time_s <= 0:
+        raise _Malformed(f"time_s is {time_s}: a trial takes at least one control step")
+    return Outcome(
+        scene=outcome.scene,
+        status=outcome.status,
+        time_s=time_s,
+        terminal_distance_m=_optional("terminal_distance_m", outcome.terminal_distance_m),
+        min_clearance_m=_optional("min_clearance_m", outcome.min_clearance_m),
+        initial_hash=_hash("initial_hash", outcome.initial_hash),
+        disturbance_hash=_hash("disturbance_hash", outcome.disturbance_hash),
+        planner_noise_hash=_hash("planner_noise_hash", outcome.planner_noise_hash),
+        error=None if outcome.error is None else _text(outcome.error),
+        trace=None if outcome.trace is None else _path(outcome.trace),
+    )
+
+
+def _text(error: object) -> str:
+    return str(error).encode(errors="backslashreplace").decode()[:_LONGEST_ERROR]
+
+
+def _number(name: str, value: Any) -> float:
+    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+        raise _Malformed(f"{name} is {_shown(value)}: give a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise _Malformed(f"{name} is {number}: only a finite number says how the trial ended")
+    return number
+
+
+def _optional(name: str, value: Any) -> float | None:
+    return None if value is None else _number(name, value)
+
+
+def _hash(name: str, value: Any) -> str:
+    if not isinstance(value, str):
+        raise _Malformed(f"{name} is {_shown(value)}: give text")
+    if not value:
+        raise _Malformed(f"{name} is empty and proves no pairing: give a hash, or the word none")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise _Malformed(f"{name} is {value!a}, which is no text") from None
+    return value
+
+
+def _path(trace: Any) -> NDArray[np.float32]:
+    try:
+        with np.errstate(over="ignore"):  # what overflows is not finite, and refused below
+            path = np.asarray(trace, dtype=np.float32)
+    except (TypeError, ValueError, RuntimeError):
+        raise _Malformed("trace is no array of numbers") from None
+    if path.ndim != 2 or path.shape[1] != 3:
+        raise _Malformed(f"trace has the shape {list(path.shape)}, not [steps, 3]")
+    lost = np.flatnonzero(~np.isfinite(path).all(axis=1))
+    if lost.size:
+        raise _Malformed(f"trace is not finite at step {lost[0]}")
+    return path
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = ascii(value)
+    except Exception:  # whatever a system's own object does when it is printed
+        return f"a {type(value).__name__}"
+    short = text if len(text) <= 60 else text[:57] + "..."
+    return f"{short} ({type(value).__name__})"

@@ -1,6 +1,6 @@
-"""Two arms over the same scenes, refused unless every pair met the same conditions."""
+"""Two arms over the same scenes; a pair that did not meet the same conditions is void."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,15 +12,15 @@ from faultpath.trials.table import OutcomeTable, TrialRow
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
-_HASHES = (
-    ("initial_hash", "initial states"),
-    ("disturbance_hash", "disturbances"),
-    ("planner_noise_hash", "planner noise"),
-)
+_HASHES = {
+    "initial_hash": "initial states",
+    "disturbance_hash": "disturbances",
+    "planner_noise_hash": "planner noise",
+}
 
 
 class PairingRefused(Exception):
-    """Two trials that were to be compared did not meet the same conditions."""
+    """Two sides that were to be compared do not hold the same seeds and scenes."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +59,45 @@ class Trials:
 
 
 @dataclass(frozen=True)
+class Mismatch:
+    """Two trials of a scene that met different conditions and are no pair."""
+
+    first: Side
+    second: Side
+    scene: str
+    seed: int
+    differences: tuple[tuple[str, str, str], ...]
+    """The name of each hash that differs, and both of its values."""
+
+    def __str__(self) -> str:
+        hashes = "; ".join(f"{name} {a!r} and {b!r}" for name, a, b in self.differences)
+        what = " and ".join(_HASHES[name] for name, _, _ in self.differences)
+        return (
+            f"{self.first} and {self.second} are no pair in scene {self.scene!r} (seed "
+            f"{self.seed}): their {what} differ ({hashes})"
+        )
+
+
+def mismatch_words(mismatches: Iterable[Mismatch]) -> tuple[str, ...]:
+    """Return one sentence for each two sides, which counts their mismatches and shows the first."""
+    sides: dict[tuple[Side, Side], list[Mismatch]] = {}
+    for each in mismatches:
+        sides.setdefault((each.first, each.second), []).append(each)
+    return tuple(
+        f"{first}; {len(more)} more of their pairs are void for such a reason."
+        if more
+        else f"{first}; the pair is void."
+        for first, *more in sides.values()
+    )
+
+
+@dataclass(frozen=True)
 class Pairs:
     """Paired trials without the void ones.
 
-    A scene with a void pair in any seed is left out whole, so that the arrays stay rectangular and
-    every seed is seen over the same scenes; `void` counts the pairs in which a trial failed and
-    `void_scenes` names what was left out.
+    A pair is void where a trial failed, or where the two met different conditions. A scene with a
+    void pair in any seed is left out whole, so that the arrays stay rectangular and every seed is
+    seen over the same scenes; `void` counts the pairs and `void_scenes` names what was left out.
     """
 
     scenes: tuple[str, ...]
@@ -75,6 +108,8 @@ class Pairs:
     second: Trials
     void: int
     void_scenes: tuple[str, ...]
+    mismatches: tuple[Mismatch, ...] = ()
+    """The pairs that are void because their trials met different conditions."""
 
     def only(self, scenes: Sequence[str]) -> "Pairs":
         """Return the pairs of `scenes`, to cut several contrasts to what all of them have."""
@@ -91,6 +126,7 @@ class Pairs:
             second=self.second.only(keep),
             void=self.void,
             void_scenes=self.void_scenes,
+            mismatches=self.mismatches,
         )
 
 
@@ -106,22 +142,26 @@ def pair(
 
     `seeds` are those of the first side when left out. `other_noise` says that the sides are
     planners that draw differently, by number of candidates for one: their noise is not compared.
-    `PairingRefused` when the sides do not hold
-    the same seeds and scenes, or when two trials of a pair differ in their initial state, in
-    their disturbance or in the planner's noise.
+    Two trials that differ in their initial state, their disturbance or the planner's noise are no
+    pair: it is void and among the `mismatches`. `PairingRefused` when the sides do not hold the
+    same seeds and scenes.
     """
     seeds = table.seeds(first.variant, first.path) if seeds is None else tuple(seeds)
     ones = [_arm(table, first, seed) for seed in seeds]
     twos = [_arm(table, second, seed) for seed in seeds]
     if not ones:
         raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
-    hashes = _HASHES[:-1] if other_noise else _HASHES
     for seed, one, two in zip(seeds, ones, twos, strict=True):
         _check_scenes(ones[0], one, first, first, seed)
         _check_scenes(one, two, first, second, seed)
-        for a, b in zip(one, two, strict=True):
-            _check_conditions(a.outcome, b.outcome, first, second, seed, hashes)
+    hashes = [name for name in _HASHES if name != "planner_noise_hash" or not other_noise]
+    mismatches: list[Mismatch] = []
     void = _flags(ones, Status.FAILED) | _flags(twos, Status.FAILED)
+    for at, (seed, one, two) in enumerate(zip(seeds, ones, twos, strict=True)):
+        for scene, (a, b) in enumerate(zip(one, two, strict=True)):
+            if differences := _differences(a.outcome, b.outcome, hashes):
+                mismatches.append(Mismatch(first, second, a.outcome.scene, seed, differences))
+                void[scene, at] = True
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
     kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
     return Pairs(
@@ -135,6 +175,7 @@ def pair(
         void_scenes=tuple(
             row.outcome.scene for row, stays in zip(ones[0], keep, strict=True) if not stays
         ),
+        mismatches=tuple(mismatches),
     )
 
 
@@ -158,23 +199,11 @@ def _check_scenes(
         )
 
 
-def _check_conditions(
-    a: Outcome,
-    b: Outcome,
-    first: Side,
-    second: Side,
-    seed: int,
-    hashes: Sequence[tuple[str, str]],
-) -> None:
+def _differences(a: Outcome, b: Outcome, hashes: Sequence[str]) -> tuple[tuple[str, str, str], ...]:
     if a.failed or b.failed:
-        return  # a failed trial has no conditions to compare; its pair is void
-    for name, what in hashes:
-        if getattr(a, name) != getattr(b, name):
-            raise PairingRefused(
-                f"cannot pair {first} with {second} in scene {a.scene!r} (seed {seed}): their "
-                f"{what} differ ({name} {getattr(a, name)!r} and {getattr(b, name)!r}), so the "
-                "difference between the trials would not be the arms' alone"
-            )
+        return ()  # a failed trial has no conditions to compare; its pair is void anyway
+    values = ((name, getattr(a, name), getattr(b, name)) for name in hashes)
+    return tuple((name, one, two) for name, one, two in values if one != two)
 
 
 def _flags(arms: Sequence[Sequence[TrialRow]], status: Status) -> Bools:

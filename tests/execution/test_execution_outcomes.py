@@ -1,0 +1,96 @@
+"""What a system returns is checked where it ran: one bad outcome costs its trial, no more."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from toy_study import SCENES, study
+from toy_system import ToySystem
+
+from faultpath.execution import WrongOutcomes, run_study
+from faultpath.trials import Status, load_system
+
+HERE = Path(__file__)
+
+
+class Sloppy(ToySystem):
+    """Gives one field of its outcome in scene s05 another value."""
+
+    def run(self, variant, scenes, taps, seed):
+        outcomes = super().run(variant, scenes, taps, seed)
+        changes = WRONG[self._options["wrong"]]
+        if callable(changes):
+            return changes(outcomes)
+        return [replace(o, **changes) if o.scene == "s05" else o for o in outcomes]
+
+
+WRONG = {
+    "distance": {"terminal_distance_m": math.nan},
+    "status": {"status": "success"},
+    "trace": {"trace": np.zeros((3, 2))},
+    "object": {"trace": lambda: None},  # would not even cross to the parent
+    "surrogate": {"initial_hash": "\ud800"},
+    "error": {"status": Status.FAILED, "error": "lost \ud800"},
+    "nothing": lambda outcomes: None,
+    "dict": lambda outcomes: [vars(outcome) for outcome in outcomes],
+    "order": lambda outcomes: outcomes[::-1],
+}
+
+
+def sloppy(**options: str) -> Sloppy:
+    return Sloppy(**options)
+
+
+def _study(wrong: str):
+    asked = study(wrong=wrong)
+    system = asked.system.model_copy(update={"name": f"{HERE}:sloppy"})
+    return asked.model_copy(update={"system": system, "rows": asked.rows[:1]})
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+@pytest.mark.parametrize("wrong", ["distance", "status", "trace", "object", "surrogate", "error"])
+def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
+    result = run_study(_study(wrong), tmp_path, workers=workers)
+    statuses = {row.outcome.scene: row.outcome.status for row in result.outcomes.rows}
+    assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
+    (failure,) = result.failures
+    assert failure.error
+    assert failure.error in failure.details.read_text()
+    assert run_study(_study(wrong), tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [("nothing", "a NoneType"), ("dict", "a dict in place of"), ("order", "in order")],
+)
+def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
+    with pytest.raises(WrongOutcomes, match=said):
+        run_study(_study(wrong), tmp_path, workers=workers)
+
+
+def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
+    """Dividing by an erased gain gives no number; the trials fail, and the rest stands."""
+    from faultpath.audit import plan_audit
+    from faultpath.faults import parse_fault
+    from faultpath.trials import SystemSpec
+
+    spec = SystemSpec(name=f"{HERE.parents[2] / 'examples' / 'toy.py'}:create")
+    system = load_system(spec)
+    audit = plan_audit(
+        system,
+        spec,
+        baseline="calibrated",
+        repair="blind",
+        fault=parse_fault("gain:erase", system.interface, system.fault_presets, 0.1),
+        fault_text="gain:erase",
+        library=system.library("carts"),
+        scenes=4,
+    )
+    with np.errstate(all="ignore"):
+        result = run_study(audit.study, tmp_path, workers=0)
+    failed = {(row.variant, row.path) for row in result.outcomes.failed()}
+    assert failed == {(v, p) for v in ("calibrated", "blind") for p in ("controller", "shared")}
+    assert "terminal_distance_m is nan" in result.failures[0].error

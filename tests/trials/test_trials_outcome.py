@@ -1,0 +1,77 @@
+"""An outcome that is not what it should be makes its trial failed, and says why."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faultpath.trials import Outcome, Status
+from faultpath.trials.outcome import checked
+
+GOOD = Outcome("a", Status.SUCCESS, 2.0, 0.5, None, "i", "d", "none")
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ({"status": "success"}, "status is 'success' (str): give a faultpath.trials.Status"),
+        ({"time_s": math.nan}, "time_s is nan"),
+        ({"time_s": "2"}, "time_s is '2' (str): give a number"),
+        ({"time_s": None}, "time_s is None"),
+        ({"time_s": True}, "time_s is True (bool)"),
+        ({"time_s": 10**400}, "time_s is"),
+        ({"time_s": 0.0}, "time_s is 0.0: a trial takes at least one control step"),
+        ({"time_s": -1.0}, "time_s is -1.0"),
+        ({"terminal_distance_m": math.inf}, "terminal_distance_m is inf"),
+        ({"terminal_distance_m": np.zeros(1)}, "terminal_distance_m is"),
+        ({"min_clearance_m": -math.inf}, "min_clearance_m is -inf"),
+        ({"initial_hash": ""}, "initial_hash is empty"),
+        ({"disturbance_hash": None}, "disturbance_hash is None (NoneType): give text"),
+        ({"planner_noise_hash": 7}, "planner_noise_hash is 7 (int)"),
+        ({"planner_noise_hash": "\ud800"}, "planner_noise_hash"),
+        ({"trace": np.zeros((4, 2))}, "trace has the shape [4, 2], not [steps, 3]"),
+        ({"trace": np.zeros(3)}, "trace has the shape [3]"),
+        ({"trace": [[0.0, 0.0, math.nan]]}, "trace is not finite at step 0"),
+        ({"trace": [["a", "b", "c"]]}, "trace is no array of numbers"),
+        ({"trace": object()}, "trace is no array of numbers"),
+        ({"trace": [[0.0], [0.0, 1.0]]}, "trace is no array of numbers"),
+    ],
+)
+def test_a_malformed_outcome_is_a_failed_trial(fields, said):
+    failed = checked(replace(GOOD, **fields))
+    assert failed.failed
+    assert failed.scene == "a"
+    assert said in failed.error
+    assert failed.error.startswith("malformed outcome: ")
+    assert (failed.terminal_distance_m, failed.trace) == (None, None)
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {},
+        {"time_s": np.float32(2.0)},
+        {"time_s": 2},
+        {"terminal_distance_m": np.float64(0.25), "min_clearance_m": -0.5},
+        {"trace": np.zeros((0, 3), np.float32)},
+        {"trace": np.ones((4, 3))},
+        {"status": Status.FAILED, "time_s": math.nan, "error": "said by the system"},
+    ],
+)
+def test_a_sound_one_stays_what_it_is(fields):
+    given = replace(GOOD, **fields)
+    outcome = checked(given)
+    assert outcome.status is given.status
+    assert type(outcome.time_s) is float
+    if given.trace is not None:
+        np.testing.assert_array_equal(outcome.trace, given.trace)
+        assert outcome.trace.dtype == np.float32
+    if given.failed:
+        assert outcome.error == "said by the system"
+    else:
+        assert outcome.terminal_distance_m == given.terminal_distance_m
+
+
+def test_a_failed_trial_always_says_why():
+    assert checked(replace(GOOD, status=Status.FAILED)).error == "the system said that it failed"
