@@ -51,8 +51,11 @@ class PaysFrom:
             return FEW_SCENES
         if found.value is not None:
             return self.bound.judge(found)
-        paying = found.shares.above + found.shares.always
-        return REFUTED if paying <= RARE else Judged("undecided", "pays from no frequency on")
+        # Resamples in which neither arm is ahead speak for no direction.
+        not_paying = found.shares.below + found.shares.never
+        if not_paying >= 1 - RARE:
+            return REFUTED
+        return Judged("undecided", "pays from no frequency on")
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,8 @@ class NeverPays:
             return FEW_SCENES
         if found.never:
             return CONFIRMED if found.speaks_by_estimate else FEW_FOR_POINTS
-        return REFUTED if found.shares.never <= RARE else Judged("undecided")
+        paying = found.shares.above + found.shares.below + found.shares.always
+        return REFUTED if paying >= 1 - RARE else Judged("undecided")
 
 
 def frequency(repair: str) -> Callable[[Results], Crossing]:
