@@ -72,6 +72,8 @@ class NeverPays:
             return FEW_SCENES
         if found.never:
             return CONFIRMED if found.speaks_by_estimate else FEW_FOR_POINTS
+        if found.value is not None and found.range is None:
+            return FEW_FOR_POINTS
         paying = found.shares.above + found.shares.below + found.shares.always
         return REFUTED if paying >= 1 - RARE else Judged("undecided")
 
