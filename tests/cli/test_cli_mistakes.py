@@ -122,7 +122,7 @@ def test_a_mistake_about_the_quadrotor(options, says, tmp_path):
         (["audit", TOY], ["--baseline"]),
         (["scenes", "bake"], ["'bake'", "`faultpath scenes --help`"]),
         (["report"], ["folder"]),
-        (["report", "nowhere"], ["nowhere", "record.json"]),
+        (["report", "nowhere"], ["nowhere", "provenance.json"]),
         (["interface", "nothing"], ["'nothing'", "quadrotor"]),
         (["interface", TOY, "--svg", "no/such/place/x.svg"], ["no/such/place/x.svg"]),
         (["scenes", "list", "nothing"], ["'nothing'", "held-out"]),

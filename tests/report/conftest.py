@@ -14,7 +14,7 @@ from faultpath.interface import Interface, read_interface
 from faultpath.record import Path, Question, decide
 from faultpath.record.provenance import RunProvenance
 from faultpath.report import OUTCOME_COLUMNS, ReportInput, Traces
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
@@ -104,6 +104,7 @@ def make_input(
         record=record,
         provenance=_provenance(),
         interface=interface(),
+        variants=(_variant(BASELINE), _variant(REPAIR)),
         outcomes=_arrow(rows),
         traces=Traces(tracks, dt_s=0.05),
         plans={_scene(i): _plan(i) for i in range(n_scenes)},
@@ -132,6 +133,14 @@ def three_seeds() -> ReportInput:
 @pytest.fixture(scope="session")
 def drawn_interface() -> Interface:
     return interface()
+
+
+def _variant(name: str) -> VariantShown:
+    return VariantShown(
+        name=name,
+        consumers=tuple(sorted({c for channel in interface().channels for c in channel.consumers})),
+        bindings={"wind": "reconstructed_wind"},
+    )
 
 
 def _paths() -> tuple[Path, ...]:

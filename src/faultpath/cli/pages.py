@@ -1,50 +1,102 @@
-"""From a run folder to its pages."""
+"""From a run folder to its pages. What is in the folder is all that they are made from."""
 
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
-import pyarrow as pa
-
-from faultpath.cli.records import read_provenance, read_record
+from faultpath.cli.records import parsed, read_provenance
 from faultpath.errors import UserError
+from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import ReportInput, Traces, write_report
-from faultpath.store import read_table, read_traces
-from faultpath.trials import System
+from faultpath.store import read_table
+from faultpath.store.parquet import Unreadable
+from faultpath.store.sealed import AGAIN, unseal
+from faultpath.store.tables import decode_outcomes, decode_traces
+from faultpath.trials import OutcomeTable, SystemShown
+
+RECORD, SYSTEM, OUTCOMES, TRACES = (
+    "record.json",
+    "system.json",
+    "outcomes.parquet",
+    "traces.parquet",
+)
+MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES)
+"""The files of a run folder that its pages are made from."""
+
+_Table = TypeVar("_Table")
 
 
-def save_pages(system: System, folder: Path) -> list[Path]:
+def save_pages(folder: Path) -> list[Path]:
     """Write report and tables from what the run folder holds; return their paths.
 
-    `UserError` for a file of the folder that is missing or damaged, and for a library that is no
-    longer the one that was flown.
+    The folder is taken for data: nothing that it names is imported, and every file is compared with
+    the digest in `provenance.json` first. `UserError` for a file that is missing, damaged or
+    changed, and for files that do not belong together.
     """
-    record = read_record(folder)
-    asked = record.question
-    if system.library(asked.library).content_hash != asked.library_hash:
-        raise UserError(
-            f"library '{asked.library}' has changed since {folder} was made: run the audit again "
-            "into a new folder."
-        )
+    return write_report(_read(folder), folder)
+
+
+def _read(folder: Path) -> ReportInput:
     provenance = read_provenance(folder)
-    outcomes = _table(folder / "outcomes.parquet")
-    scenes = {str(scene) for scene in outcomes["scene"].to_pylist()}
-    plans = {scene: system.floor_plan(scene) for scene in sorted(scenes)}
-    traces = read_traces(folder / "traces.parquet")
-    flown = {(at.variant, at.path, at.seed, at.scene): trace for at, trace in traces.items()}
-    report = ReportInput(
+    held = unseal(folder, provenance.files, MADE_FROM)
+    record = parsed(held[RECORD], folder / RECORD, DecisionRecord)
+    shown = parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
+    outcomes = _decoded(held[OUTCOMES], folder / OUTCOMES, decode_outcomes)
+    traces = _decoded(held[TRACES], folder / TRACES, decode_traces)
+    doubts = _doubts(record, provenance, shown, outcomes)
+    if doubts:
+        raise UserError(f"the files of {folder} do not belong together ({doubts}): {AGAIN}.")
+    return ReportInput(
         record=record,
         provenance=provenance,
-        interface=system.interface,
-        outcomes=outcomes,
-        traces=Traces(flown, system.control_dt_s),
-        plans={scene: plan for scene, plan in plans.items() if plan is not None},
+        interface=shown.interface,
+        variants=shown.variants,
+        outcomes=read_table(held[OUTCOMES]),
+        traces=Traces(
+            {(at.variant, at.path, at.seed, at.scene): trace for at, trace in traces.items()},
+            shown.control_dt_s,
+        ),
+        plans=shown.plans,
     )
-    return write_report(report, folder)
 
 
-def _table(path: Path) -> pa.Table:
+def _decoded(data: bytes, path: Path, decode: Callable[[bytes], _Table]) -> _Table:
     try:
-        return read_table(path.read_bytes())
-    except (OSError, pa.ArrowInvalid):
-        raise UserError(
-            f"{path} is missing or damaged: run the audit again with the same --out."
-        ) from None
+        return decode(data)
+    except Unreadable as error:
+        raise UserError(f"{path} is damaged ({error}): {AGAIN}.") from None
+
+
+def _doubts(
+    record: DecisionRecord, provenance: RunProvenance, shown: SystemShown, outcomes: OutcomeTable
+) -> str:
+    """Say what shows that the files are of different runs, or were put together by hand."""
+    asked = record.question
+    arms = (asked.baseline, asked.repair)
+    paths = {path.name for path in record.paths}
+    cells = {(cell.variant, cell.path): cell for cell in record.cells}
+    wanted = {(variant, path) for variant in arms for path in paths}
+    trials = Counter((row.variant, row.path) for row in outcomes.rows)
+    solved = Counter(
+        (row.variant, row.path) for row in outcomes.rows if row.outcome.status == "success"
+    )
+    if provenance.files[OUTCOMES] != provenance.outcomes_sha256:
+        return "provenance gives the outcomes two digests"
+    if provenance.library_hash != asked.library_hash:
+        return "record and provenance name different libraries"
+    if tuple(variant.name for variant in shown.variants) != arms:
+        return "the system's variants are not those of the question"
+    if not paths or set(cells) != wanted or set(trials) != wanted:
+        return "the record and the outcomes have different arms"
+    if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
+        return "the record and the outcomes count different successes"
+    effects = [effect.path for effect in record.effects]
+    others = [each.path for each in record.break_even]
+    if not paths.issuperset(effects + others):
+        return "the record has effects on paths that it does not name"
+    taps = {(c.name, consumer) for c in shown.interface.channels for consumer in c.consumers}
+    struck = {
+        (t.channel, t.consumer) for p in record.paths for t in (*p.struck, *p.baseline_struck)
+    }
+    return "" if struck <= taps else "the record names taps that the interface has not got"

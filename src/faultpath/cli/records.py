@@ -1,14 +1,15 @@
-"""Reading what a finished audit left, without what draws it."""
+"""Reading what a finished audit left, without what draws it and without the system's code."""
 
 from pathlib import Path
 from typing import TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
+from faultpath.store.sealed import AGAIN, read_regular
 
-_Model = TypeVar("_Model", DecisionRecord, RunProvenance)
+_Model = TypeVar("_Model", bound=BaseModel)
 
 
 def read_record(folder: Path) -> DecisionRecord:
@@ -21,14 +22,17 @@ def read_provenance(folder: Path) -> RunProvenance:
     return _read(folder / "provenance.json", RunProvenance)
 
 
-def _read(path: Path, model: type[_Model]) -> _Model:
+def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
+    """Return a file's contents as `model`; `UserError` when they are not that."""
     try:
-        return model.model_validate_json(path.read_bytes())
-    except FileNotFoundError:
+        return model.model_validate_json(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"])) or "the whole"
         raise UserError(
-            f"{path.parent} holds no {path.name}: give the folder of a finished audit."
+            f"{path} is damaged or of another version of faultpath ({where!r}): {AGAIN}."
         ) from None
-    except ValidationError:
-        raise UserError(
-            f"{path} is damaged or of another version of faultpath: run the audit again."
-        ) from None
+
+
+def _read(path: Path, model: type[_Model]) -> _Model:
+    return parsed(read_regular(path), path, model)

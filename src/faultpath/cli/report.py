@@ -11,14 +11,12 @@ from faultpath.cli.options import path
 def command(
     folder: Annotated[Path, typer.Argument(parser=path, help="Folder of a finished audit.")],
 ) -> None:
-    """Write report and tables of a run again from its stored outcomes."""
-    from faultpath.cli.records import read_record
-    from faultpath.trials import SystemSpec, load_system
+    """Write report and tables of a run again from what its folder holds; runs no code of it."""
+    from faultpath.cli.records import read_provenance
 
-    question = read_record(folder).question
-    system = load_system(SystemSpec(name=question.system, options=question.options))
+    read_provenance(folder)  # what draws takes a second to load, and a wrong folder need not wait
 
-    from faultpath.cli.pages import save_pages  # loads what draws; no mistake so far waits for it
+    from faultpath.cli.pages import save_pages
 
-    for written in save_pages(system, folder):
+    for written in save_pages(folder):
         typer.echo(written)

@@ -9,13 +9,14 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.audit import Audit
 from faultpath.cli.options import Stopped
-from faultpath.cli.pages import save_pages
+from faultpath.cli.pages import MADE_FROM, RECORD, SYSTEM, save_pages
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.execution import Progress as RunProgress
 from faultpath.record import DecisionRecord
 from faultpath.report import decision
 from faultpath.store import write_text
-from faultpath.trials import System
+from faultpath.store.sealed import seal
+from faultpath.trials import System, system_shown
 
 
 def run_audit(
@@ -30,13 +31,17 @@ def run_audit(
     stopwatch = Stopwatch()
     if system.backend:
         console.print(f"Computing with {system.backend}.", markup=False, soft_wrap=True)
+    asked = audit.question
+    shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
     result = _run(console, system, audit, folder, workers)
     _tell_failures(console, result)
     record = audit.conclude(result.outcomes, result.deliveries)
-    provenance = run_provenance(result, stopwatch, command, workers, system.backend)
-    write_text(folder / "record.json", _json(record), folder)
+    write_text(folder / RECORD, _json(record), folder)
+    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    files = seal(folder, MADE_FROM)
+    provenance = run_provenance(result, stopwatch, command, workers, system.backend, files)
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
-    save_pages(system, folder)
+    save_pages(folder)
     console.print(decision(record))
     console.print(f"Report: {folder / 'report.html'}", markup=False, soft_wrap=True)
     return len(result.failures)

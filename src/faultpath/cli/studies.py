@@ -23,11 +23,12 @@ from faultpath.report.reproduction import (
     reproduction_page,
 )
 from faultpath.store import traces_of, write_text
+from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.results import Results
-from faultpath.studies.run import Plan, conclude, measure_all, save
+from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
 
 Show = Callable[[float, float, str], None]
 """Shows how much of what is done, and a remark."""
@@ -65,7 +66,8 @@ def carry_out(
     result = save(place, flown, results, evidence, found)
     _tell_failures(console, result)
     backend = plan.system.backend
-    provenance = run_provenance(result, stopwatch, command, workers, backend)
+    files = seal(place, RESULTS)
+    provenance = run_provenance(result, stopwatch, command, workers, backend, files)
     write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
     _write_pages(place, plan, found, provenance, flown)
     return Done(found, place)

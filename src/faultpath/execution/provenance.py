@@ -3,7 +3,7 @@
 import platform
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -33,8 +33,9 @@ def run_provenance(
     command: Sequence[str],
     workers: int,
     backend: str = "",
+    files: Mapping[str, str] | None = None,
 ) -> RunProvenance:
-    """Describe the run that has just finished."""
+    """Describe the run that has just finished; `files` are digests of what it wrote, by name."""
     commit, dirty = checkout(Path(faultpath.__file__).parent)
     return RunProvenance(
         faultpath_version=faultpath.__version__,
@@ -55,6 +56,7 @@ def run_provenance(
         system_fingerprint=result.system_fingerprint,
         library_hash=result.library_hash,
         outcomes_sha256=result.outcomes_sha256,
+        files=dict(files or {}),
     )
 
 

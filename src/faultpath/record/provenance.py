@@ -1,6 +1,11 @@
 """Where a result comes from."""
 
-from pydantic import BaseModel, ConfigDict
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
+Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
 class RunProvenance(BaseModel):
@@ -28,3 +33,5 @@ class RunProvenance(BaseModel):
     system_fingerprint: str
     library_hash: str
     outcomes_sha256: str
+    files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
+    """The files beside this one that a report is made from, so that a change of one is seen."""

@@ -12,6 +12,7 @@ from faultpath.interface import Interface
 from faultpath.record.model import DecisionRecord
 from faultpath.record.provenance import RunProvenance
 from faultpath.trials.floorplan import FloorPlan
+from faultpath.trials.shown import VariantShown
 
 TraceKey = tuple[str, str, int, str]
 """`(variant, path, seed, scene)`."""
@@ -64,6 +65,8 @@ class ReportInput:
     record: DecisionRecord
     provenance: RunProvenance
     interface: Interface
+    variants: tuple[VariantShown, ...]
+    """How baseline and repair are wired."""
     outcomes: pa.Table
     """One row a trial, with the columns of `OUTCOME_COLUMNS`."""
     traces: Traces

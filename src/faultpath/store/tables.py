@@ -1,9 +1,9 @@
 """Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,7 @@ from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 Trace = NDArray[np.float32]
+_Read = TypeVar("_Read")
 
 _ADDRESS = (
     Column("variant", Kind.TEXT),
@@ -36,6 +37,8 @@ _RESULT = (
     Column("planner_noise_hash", Kind.TEXT),
     Column("error", Kind.TEXT),
 )
+_MAY_LACK = ("time_s", "terminal_distance_m", "min_clearance_m", "error")
+_ALWAYS = tuple(column for column in _RESULT if column.name not in _MAY_LACK)
 _TRACE = tuple(Column(name, Kind.NUMBERS) for name in ("x_m", "y_m", "z_m"))
 _SHARD = (Column("scene", Kind.TEXT), *_RESULT, *_TRACE)
 _OUTCOMES = (*_ADDRESS, *_PLACE, *_RESULT)
@@ -104,6 +107,16 @@ def encode_traces(table: OutcomeTable) -> bytes:
 
 def read_outcomes(path: Path) -> OutcomeTable:
     """Read an assembled outcome table (without traces); `UserError` when there is none to read."""
+    return _read(path, decode_outcomes)
+
+
+def read_traces(path: Path) -> dict[TrialAddress, Trace]:
+    """Read assembled traces, `[T, 3]` each, metres; `UserError` when there are none to read."""
+    return _read(path, decode_traces)
+
+
+def decode_outcomes(data: bytes) -> OutcomeTable:
+    """Return an assembled outcome table (without traces); `Unreadable` when it is not one."""
     return OutcomeTable(
         tuple(
             TrialRow(
@@ -114,15 +127,15 @@ def read_outcomes(path: Path) -> OutcomeTable:
                 topology=row["topology"],
                 outcome=_outcome(row, None),
             )
-            for row in _rows(_read(path, _OUTCOMES))
+            for row in _rows(_filled(decode(data, _OUTCOMES), (*_ADDRESS, *_PLACE, *_ALWAYS)))
         )
     )
 
 
-def read_traces(path: Path) -> dict[TrialAddress, Trace]:
-    """Read assembled traces, `[T, 3]` each, metres; `UserError` when there are none to read."""
+def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
+    """Return assembled traces, `[T, 3]` each, metres; `Unreadable` when they are not that."""
     traces: dict[TrialAddress, Trace] = {}
-    for row in _rows(_read(path, _TRACES)):
+    for row in _rows(_filled(decode(data, _TRACES), _ADDRESS)):
         trace = _trace([row[column.name] for column in _TRACE])
         if trace is not None:
             address = TrialAddress(row["variant"], row["path"], row["seed"], row["scene"])
@@ -139,15 +152,22 @@ def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
     }
 
 
-def _read(path: Path, columns: Sequence[Column]) -> dict[str, list[Any]]:
+def _read(path: Path, decoded: Callable[[bytes], _Read]) -> _Read:
     try:
-        return decode(path.read_bytes(), columns)
+        return decoded(path.read_bytes())
     except OSError as error:
         raise UserError(
             f"cannot read {path} ({error.strerror}): finish the run that writes it"
         ) from error
     except Unreadable as error:
         raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
+
+
+def _filled(values: dict[str, list[Any]], required: Sequence[Column]) -> dict[str, list[Any]]:
+    for column in required:
+        if any(value is None for value in values[column.name]):
+            raise Unreadable(f"column {column.name!r} has gaps")
+    return values
 
 
 def _rows(values: Mapping[str, Sequence[Any]]) -> list[dict[str, Any]]:
@@ -184,10 +204,15 @@ def _traces(outcomes: Sequence[Outcome]) -> dict[str, Values]:
 
 def _trace(axes: Sequence[Trace | None]) -> Trace | None:
     present = [axis for axis in axes if axis is not None]
+    if len({len(axis) for axis in present}) > 1:
+        raise Unreadable("the axes of a trace differ in length")
     return np.stack(present, axis=1) if len(present) == len(axes) else None
 
 
 def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
     fields = {column.name: row[column.name] for column in _RESULT}
-    status = Status(fields.pop("status"))
+    try:
+        status = Status(fields.pop("status"))
+    except ValueError as error:
+        raise Unreadable(str(error)) from error
     return Outcome(scene=row["scene"], status=status, trace=trace, **fields)

@@ -5,10 +5,19 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
+from pydantic import ValidationError
+
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measurement
 from faultpath.execution import RunResult
-from faultpath.record import Configuration, Reproduction, SceneShown, Sweep, Table
+from faultpath.record import (
+    Configuration,
+    Reproduction,
+    RunProvenance,
+    SceneShown,
+    Sweep,
+    Table,
+)
 from faultpath.store import (
     RunFolder,
     read_evidence,
@@ -16,6 +25,7 @@ from faultpath.store import (
     write_evidence,
     write_text,
 )
+from faultpath.store.sealed import read_regular, unseal
 from faultpath.studies import reversal
 from faultpath.studies.cells import HELD_OUT, PROFILES, Profile
 from faultpath.studies.claims import ledger
@@ -35,6 +45,9 @@ from faultpath.trials import (
 
 EVIDENCE = "evidence.parquet"
 CONCLUSIONS = "reproduction.json"
+OUTCOMES = "outcomes.parquet"
+RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
+"""The files that `read_results` reads."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +188,11 @@ def save(
 
 
 def read_results(folder: Path) -> tuple[Results, Reproduction]:
-    """Read what `save` wrote; `UserError` for a folder without a finished reproduction."""
+    """Read what `save` wrote; `UserError` for a folder without a finished reproduction.
+
+    Where the run left its provenance, the files are compared with the digests in it first.
+    """
+    _check_digests(folder)
     try:
         found = Reproduction.model_validate_json((folder / CONCLUSIONS).read_bytes())
     except (OSError, ValueError):
@@ -183,9 +200,22 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
             f"{folder} holds no finished reproduction: give the folder of one, or make it with "
             "`faultpath reproduce`."
         ) from None
-    outcomes = read_outcomes(folder / "outcomes.parquet")
+    outcomes = read_outcomes(folder / OUTCOMES)
     evidence = read_evidence(folder / EVIDENCE)
     return Results(outcomes, evidence, found.ledger.library_hash), found
+
+
+def _check_digests(folder: Path) -> None:
+    place = folder / "provenance.json"
+    if not place.exists():
+        return
+    try:
+        provenance = RunProvenance.model_validate_json(read_regular(place))
+    except ValidationError:
+        raise UserError(
+            f"{place} is damaged or of another version of faultpath: reproduce the paper again."
+        ) from None
+    unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **provenance.files}, ())
 
 
 def _gallery(library: Library) -> tuple[SceneShown, ...]:
