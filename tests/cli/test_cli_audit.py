@@ -162,7 +162,10 @@ def test_a_folder_of_another_study_is_left_alone(options, says, run, monkeypatch
     [
         ({"faultpath_version": "0.0.0"}, "another version of faultpath"),
         ({"format": 99}, "format 99"),
-        ({"system_fingerprint": "older"}, "another state of the system"),
+        (
+            {"code": {"files": {"toy.py": "0"}, "packages": {}, "python": "3"}},
+            "other code than this (changed since: ",
+        ),
         ({"study": 3}, "cannot be read as a manifest"),
     ],
 )

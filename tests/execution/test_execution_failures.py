@@ -165,11 +165,27 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path, workers):
         assert json.dumps(failure.arm.variant) in text
 
 
-def test_what_failed_is_kept_and_named_again_on_resuming(tmp_path):
-    first = run_study(study(raises="s05"), tmp_path, workers=0)
-    again = run_study(study(raises="s05"), tmp_path, workers=0)
-    assert again.blocks_computed == 0
+def test_what_failed_is_tried_again_and_nothing_else(undisturbed, tmp_path):
+    log, gate = tmp_path / "log", tmp_path / "no-air"
+    gate.touch()
+    options = {"raises": "s05", "while": str(gate), "log": str(log)}
+    first = run_study(study(**options), tmp_path / "run", workers=0)
+    assert first.failures
+    before = len(_calls(log))
+    again = run_study(study(**options), tmp_path / "run", workers=0)
     assert again.failures == first.failures
+    assert {call[2] for call in _calls(log)[before:]} == {"s05"}
+
+    gate.unlink()
+    notices: list[str] = []
+    healed = run_study(study(**options), tmp_path / "run", workers=2, notice=notices.append)
+    assert not healed.failures
+    assert _same_tables(undisturbed, tmp_path / "run")
+    assert not list((tmp_path / "run" / "failures").iterdir())
+    assert _shards(tmp_path / "run") == UNITS
+    (notice,) = notices
+    assert notice.startswith("Kept 90 of 100 trials, from 20")
+    assert "10 that failed are tried again" in notice
 
 
 def test_a_damaged_shard_is_named_and_run_again(undisturbed, tmp_path):
@@ -179,8 +195,9 @@ def test_a_damaged_shard_is_named_and_run_again(undisturbed, tmp_path):
     notices: list[str] = []
     result = run_study(study(), tmp_path, workers=0, notice=notices.append)
     assert (result.blocks_computed, result.blocks_kept) == (1, UNITS - 1)
-    (notice,) = notices
+    notice, kept = notices
     assert str(damaged) in notice
+    assert kept.startswith("Kept ")
     assert _same_tables(undisturbed, tmp_path)
 
 

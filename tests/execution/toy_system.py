@@ -93,7 +93,7 @@ class ToySystem(System):
             time.sleep(0.2)
         while Path(options.get("hang_while", "")).is_file():
             time.sleep(0.01)
-        if options.get("raises") in scenes:
+        if options.get("raises") in scenes and Path(options.get("while", __file__)).exists():
             raise ValueError(f"no air in {options['raises']}")
         if options.get("dies") in scenes:
             once = options.get("once")

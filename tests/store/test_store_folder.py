@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from faultpath.code import CodeState
 from faultpath.errors import UserError
 from faultpath.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
 from faultpath.store.tables import encode_shard
@@ -19,7 +20,11 @@ def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",))
     row = Row(variant="v", path="correct", seed=seed, arm=Arm(variant="v", seed=seed))
     system = SystemSpec(name="quadrotor")
     study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
-    return Manifest(faultpath_version="1", system_fingerprint="f", library_hash="h", study=study)
+    return Manifest(faultpath_version="1", code=_code(), library_hash="h", study=study)
+
+
+def _code(**files: str) -> CodeState:
+    return CodeState(files={"my.py": "1", **files}, packages={"numpy": "2"}, python="3")
 
 
 def _outcomes() -> tuple[Outcome, ...]:
@@ -87,6 +92,19 @@ def test_a_damaged_shard_is_named_and_removed(folder, damage):
     assert not shard.exists()
 
 
+def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
+    (before,) = folder.shards.iterdir()
+    data = before.read_bytes()
+    sound = Shard(tuple(replace(o, status=Status.CRASH) for o in _outcomes()), TAPS)
+    folder.save_shard("k", sound)
+    (after,) = folder.shards.iterdir()
+    assert after != before
+    before.write_bytes(data)  # as a process leaves it that was killed before it tidied up
+    found = folder.load_shard("k", SCENES, _unexpected)
+    assert found is not None
+    assert not any(outcome.failed for outcome in found.outcomes)
+
+
 def test_a_shard_of_other_scenes_is_not_taken(folder):
     notices: list[str] = []
     assert folder.load_shard("k", SCENES[:2], notices.append) is None
@@ -109,7 +127,7 @@ def test_a_shard_under_the_name_of_another_unit_is_not_taken(folder):
     [
         (_manifest(name="b"), "another study"),
         (_manifest(seed=1), "another set of variants, faults or seeds"),
-        (_manifest().model_copy(update={"system_fingerprint": "g"}), "another state of the system"),
+        (_manifest().model_copy(update={"code": _code(helper="2")}), r"other code.*: helper\)"),
         (_manifest().model_copy(update={"library_hash": "g"}), "another state of the library"),
         (_manifest().model_copy(update={"faultpath_version": "2"}), "version of faultpath"),
     ],

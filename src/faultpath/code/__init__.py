@@ -1,6 +1,7 @@
 """Which source decides a result: what a module imports, where it lies, and what it is made of."""
 
 from faultpath.code.graph import Root
-from faultpath.code.state import CodeState, code_state
+from faultpath.code.state import Code, CodeState, named, read_code
+from faultpath.code.watch import Watch
 
-__all__ = ["CodeState", "Root", "code_state"]
+__all__ = ["Code", "CodeState", "Root", "Watch", "named", "read_code"]

@@ -19,6 +19,15 @@ class Root:
 
     module: str
     file: Path | None = None
+    of_system: bool = True
+    """Whether its package belongs to the system, so that it is entered even where installed."""
+
+    @property
+    def folder(self) -> Path | None:
+        """Where the module lies, if it lies anywhere."""
+        spec = locate(self.module) if self.file is None else None
+        path = self.file if spec is None else file_of(spec)
+        return None if path is None else path.parent
 
 
 class Graph:
@@ -44,7 +53,8 @@ class Graph:
 
     def add(self, root: Root) -> None:
         """Follow everything that a root imports."""
-        self._entered.add(root.module.partition(".")[0])
+        if root.of_system:
+            self._entered.add(root.module.partition(".")[0])
         if root.file is None:
             self._module(root.module)
         else:

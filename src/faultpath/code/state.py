@@ -3,15 +3,20 @@
 import gc
 import json
 import platform
-from collections.abc import Iterable, Iterator
+import sys
+from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.code.graph import Graph, Root
+from faultpath.code.watch import Watch, Watched
 from faultpath.errors import UserError
+
+_NAMED = 3
 
 
 class CodeState(BaseModel):
@@ -35,9 +40,9 @@ class CodeState(BaseModel):
         return _hash(self.model_dump(mode="json"))
 
     @property
-    def sources(self) -> str:
-        """Hash of the source files alone."""
-        return _hash(self.files)
+    def contents(self) -> str:
+        """Hash of all but the versions of packages and Python."""
+        return _hash([self.files, self.data, self.given])
 
     def changed(self, other: "CodeState") -> tuple[str, ...]:
         """Say what `other` has otherwise: files, data files, packages, Python."""
@@ -53,28 +58,57 @@ class CodeState(BaseModel):
         return tuple(found)
 
 
-def code_state(
-    roots: Iterable[Root], data: Iterable[Path] = (), base: Path | None = None, given: str = ""
-) -> CodeState:
-    """Return the state of what `roots` import and of some data files and folders.
+def named(names: Sequence[str]) -> str:
+    """Name the first few of some names and count the others."""
+    more = len(names) - _NAMED
+    return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
 
-    Paths of data are taken from `base`. `UserError` for a data file that cannot be read.
+
+@dataclass(frozen=True)
+class Code:
+    """The state of some code, and where its files are."""
+
+    state: CodeState
+    sources: Mapping[str, Path]
+    data: Mapping[str, Path]
+
+    def unread(self) -> Watch:
+        """Watch what this process may still read: data files, and modules not imported yet."""
+        loaded = {getattr(module, "__file__", None) for module in tuple(sys.modules.values())}
+        late = {
+            name: Watched(path, self.state.files[name])
+            for name, path in self.sources.items()
+            if str(path) not in loaded
+        }
+        data = {name: Watched(path, self.state.data[name]) for name, path in self.data.items()}
+        return Watch(late | data)
+
+
+def read_code(
+    roots: Iterable[Root], data: Iterable[Path] = (), base: Path | None = None, given: str = ""
+) -> Code:
+    """Return what `roots` import, with some data files and folders.
+
+    Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
     graph = Graph()
     with _no_collection():
         for root in roots:
             graph.add(root)
-    return CodeState(
-        files={name: digest for name, (_, digest) in sorted(graph.files.items())},
-        data=_data(data, base or Path()),
+    sources = dict(sorted(graph.files.items()))
+    files = _data(data, base or Path())
+    state = CodeState(
+        files={name: digest for name, (_, digest) in sources.items()},
+        data={name: digest for name, (_, digest) in files.items()},
         packages=dict(sorted(graph.packages.items())),
         python=platform.python_version(),
         given=given,
     )
+    return Code(state, _paths(sources), _paths(files))
 
 
 @contextmanager
-def _no_collection() -> Iterator[None]:
+def _no_collection() -> Generator[None]:
     """Keep the garbage collector from looking through all of torch for the sake of syntax trees."""
     enabled = gc.isenabled()
     gc.disable()
@@ -85,15 +119,21 @@ def _no_collection() -> Iterator[None]:
             gc.enable()
 
 
-def _data(paths: Iterable[Path], base: Path) -> dict[str, str]:
-    found: dict[str, str] = {}
+def _paths(files: Mapping[str, tuple[Path, str]]) -> dict[str, Path]:
+    return {name: path for name, (path, _) in files.items()}
+
+
+def _data(paths: Iterable[Path], base: Path) -> dict[str, tuple[Path, str]]:
+    found: dict[str, tuple[Path, str]] = {}
     for path in paths:
         place = base / path
         try:
-            files = sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]
+            files = (
+                sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]
+            )
             for file in files:
                 name = file.relative_to(base) if file.is_relative_to(base) else file
-                found[name.as_posix()] = sha256(file.read_bytes()).hexdigest()
+                found[name.as_posix()] = file, sha256(file.read_bytes()).hexdigest()
         except OSError as error:
             raise UserError(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
@@ -107,4 +147,4 @@ def _differences(mine: dict[str, str], theirs: dict[str, str]) -> list[str]:
 
 
 def _hash(content: object) -> str:
-    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]

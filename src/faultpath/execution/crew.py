@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
+from faultpath.code import named
 from faultpath.execution.attempt import Died, Done, Raised, Wrong
+from faultpath.execution.changes import check_same
 from faultpath.execution.schedule import Task
 from faultpath.execution.worker import Hello, Order, Ready
 
@@ -176,10 +178,12 @@ class Crew:
         worker.answered()
         if not worker.ready:
             return  # it has still to build what it was told since
-        if message != self._expected:
+        if self._expected is not None and message != self._expected:
+            check_same(self._expected.state, message.state)
+            differ = self._expected.state.changed(message.state) or ("the library",)
             raise WorkerLost(
-                f"system {self._name!r} has another fingerprint or library in a worker process "
-                "than here: neither may depend on the process that builds it"
+                f"system {self._name!r} is another one in a worker process than here "
+                f"({named(differ)}): nothing of it may depend on the process that builds it"
             )
 
     def _replace(self, worker: Worker) -> None:

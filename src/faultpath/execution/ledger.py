@@ -54,10 +54,17 @@ class Ledger:
         """Units done."""
         return self.kept + self.computed
 
-    def keep(self, unit: Unit, shard: Shard) -> None:
-        """Take over a unit that was done before."""
-        self.kept += 1
-        self._enter(unit, shard)
+    def keep(self, unit: Unit, shard: Shard) -> tuple[Task, ...]:
+        """Take over a unit that was done before; return the task of its failed trials, if any."""
+        failed = tuple(outcome.scene for outcome in shard.outcomes if outcome.failed)
+        if not failed:
+            self.kept += 1
+            self._enter(unit, shard)
+            return ()
+        sound = tuple(outcome for outcome in shard.outcomes if not outcome.failed)
+        self._partial[unit.key] = {outcome.scene: outcome for outcome in sound}
+        self._partial_taps[unit.key] = shard.taps
+        return (Task(unit, failed),)
 
     def start(self, task: Task) -> None:
         """Note that a task runs now."""
@@ -122,8 +129,8 @@ class Ledger:
         )
         if len(partial) == len(unit.scenes):
             shard = Shard(tuple(partial[scene] for scene in unit.scenes), counted)
-            if details := self._tracebacks.pop(unit.key, None):
-                self._folder.save_failure(unit.key, "\n".join(sorted(details)))
+            details = self._tracebacks.pop(unit.key, ())
+            self._folder.save_failure(unit.key, "\n".join(sorted(details)))
             self._folder.save_shard(unit.key, shard)
             del self._partial[unit.key], self._partial_taps[unit.key]
             self.computed += 1

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import faultpath
+from faultpath.code import CodeState, Watch
 from faultpath.errors import UserError
 from faultpath.execution.attempt import attempt, limit_threads
+from faultpath.execution.changes import kept_trials, watched
 from faultpath.execution.crew import Crew
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
-from faultpath.execution.schedule import Schedule
+from faultpath.execution.schedule import Schedule, Task
 from faultpath.execution.units import Unit, plan
 from faultpath.execution.worker import Hello, Ready
 from faultpath.store.folder import RunFolder
@@ -20,6 +22,7 @@ from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.registry import load_system
+from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
 
@@ -61,6 +64,9 @@ class RunResult:
     failures: tuple[Failure, ...]
     outcomes_sha256: str
     system_fingerprint: str
+    """Of `code`, shortened; for several runs together, of all of them."""
+    code: tuple[CodeState, ...]
+    """Of the runs that this is made of."""
     library_hash: str
 
 
@@ -90,13 +96,14 @@ def run_study(
         raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
     system = load_system(study.system) if system is None else system
     library = system.library(study.library)
-    fingerprint = system.fingerprint()
+    code = system_code(system, study.system)
+    fingerprint = code.state.digest
     scenes = selected(study, library)
     check_rows(study.rows, system.variants)
     units = plan(study.arms(), scenes, system.block_size, library, fingerprint)
     manifest = Manifest(
         faultpath_version=faultpath.__version__,
-        system_fingerprint=fingerprint,
+        code=code.state,
         library_hash=library.content_hash,
         study=study,
     )
@@ -105,16 +112,16 @@ def run_study(
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
-            missing = _keep_finished(ledger, run, notice)
+            schedule = _keep_finished(ledger, run, notice)
             report(ledger.progress())
             if workers == 0:
-                _run_here(system, missing, ledger, report)
-            elif missing:
+                _run_here(system, code.unread(), schedule, ledger, report)
+            elif schedule:
                 hello = Hello(study.system, study.library)
-                expected = Ready(fingerprint, library.content_hash)
+                expected = Ready(code.state, library.content_hash)
                 with Crew() if crew is None else nullcontext(crew) as hands:
-                    hands.begin(hello, expected, min(workers, len(missing)))
-                    _run_with(hands, missing, ledger, report)
+                    hands.begin(hello, expected, min(workers, len(schedule)))
+                    _run_with(hands, schedule, ledger, report)
             table = assemble(study, library, ledger.outcomes)
             deliveries = Deliveries.of(study, ledger.taps)
             digest = run.save_tables(table, deliveries)
@@ -131,38 +138,45 @@ def run_study(
         failures=_failures(ledger, run),
         outcomes_sha256=digest,
         system_fingerprint=fingerprint,
+        code=(code.state,),
         library_hash=library.content_hash,
     )
 
 
-def _keep_finished(
-    ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
-) -> tuple[Unit, ...]:
+def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]) -> Schedule:
+    """Take over what is stored, say how much and from when, and return what is left to do.
+
+    Trials that failed are left to do: what was wrong may have been the machine.
+    """
     missing: list[Unit] = []
+    again: list[Task] = []
+    kept: list[str] = []
     for unit in ledger.units:
         shard = run.load_shard(unit.key, unit.scenes, notice)
         if shard is None:
             missing.append(unit)
         else:
-            ledger.keep(unit, shard)
-    return tuple(missing)
+            kept.append(unit.key)
+            again += ledger.keep(unit, shard)
+    if kept:
+        notice(kept_trials(ledger.progress(), sum(len(t.scenes) for t in again), run.written(kept)))
+    schedule = Schedule(missing)
+    schedule.put(again)
+    return schedule
 
 
 def _run_here(
-    system: System, missing: tuple[Unit, ...], ledger: Ledger, report: ProgressCallback
+    system: System, unread: Watch, schedule: Schedule, ledger: Ledger, report: ProgressCallback
 ) -> None:
     limit_threads()
-    schedule = Schedule(missing)
     while task := schedule.take(0):
         ledger.start(task)
-        schedule.put(ledger.settle(task, attempt(system, task.unit.arm, task.scenes)))
+        reply = watched(unread, attempt(system, task.unit.arm, task.scenes))
+        schedule.put(ledger.settle(task, reply))
         report(ledger.progress())
 
 
-def _run_with(
-    crew: Crew, missing: tuple[Unit, ...], ledger: Ledger, report: ProgressCallback
-) -> None:
-    schedule = Schedule(missing)
+def _run_with(crew: Crew, schedule: Schedule, ledger: Ledger, report: ProgressCallback) -> None:
     while ledger.done < len(ledger.units):
         for worker in crew.idle():
             if task := schedule.take(worker.number):

@@ -31,6 +31,9 @@ class Schedule:
             self._blocks.setdefault(unit.block, deque()).append(Task(unit, unit.scenes))
         self._home: dict[int, int] = {}
 
+    def __len__(self) -> int:
+        return sum(map(len, self._blocks.values()))
+
     def __bool__(self) -> bool:
         return bool(self._blocks)
 

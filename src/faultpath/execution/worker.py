@@ -11,10 +11,13 @@ from multiprocessing.connection import Connection
 from pickle import PicklingError
 from typing import Any
 
+from faultpath.code import CodeState, Watch
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Raised, Wrong, attempt, limit_threads
+from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
+from faultpath.trials.state import source_state, system_code
 from faultpath.trials.system import System
 
 
@@ -36,10 +39,16 @@ class Order:
 
 @dataclass(frozen=True)
 class Ready:
-    """The system is built, and these are its fingerprint and the hash of its library."""
+    """The system is built: the state of its code, and the hash of its library."""
 
-    fingerprint: str
+    state: CodeState
     library_hash: str
+
+
+@dataclass(frozen=True)
+class _Built:
+    system: System
+    unread: Watch
 
 
 def main(channel: int, lifeline: int) -> None:
@@ -57,26 +66,29 @@ def main(channel: int, lifeline: int) -> None:
 
 
 def _serve(parent: "Connection[Any, Any]") -> None:
-    system: System | None = None
+    built: _Built | None = None
     while True:
         message: Hello | Order = parent.recv()
         if isinstance(message, Hello):
-            system, reply = _build(message)
+            built, reply = _build(message)
         else:
-            assert system is not None  # whoever built none has said so and is sent nothing
-            reply = attempt(system, message.arm, message.scenes)
+            assert built is not None  # whoever built none has said so and is sent nothing
+            reply = watched(built.unread, attempt(built.system, message.arm, message.scenes))
         try:
             parent.send(reply)
         except (PicklingError, TypeError, AttributeError) as error:
             parent.send(Raised(f"{type(error).__name__}: {error}", traceback.format_exc()))
 
 
-def _build(hello: Hello) -> tuple[System | None, Ready | Wrong | Raised]:
+def _build(hello: Hello) -> tuple[_Built | None, Ready | Wrong | Raised]:
     try:
+        before = source_state(hello.system)
         system = load_system(hello.system)
         limit_threads()
         library = system.library(hello.library)
-        return system, Ready(system.fingerprint(), library.content_hash)
+        code = system_code(system, hello.system)
+        check_same(before, code.state)
+        return _Built(system, code.unread()), Ready(code.state, library.content_hash)
     except UserError as error:
         return None, Wrong(error)
     except Exception as error:

@@ -1,11 +1,10 @@
 """The quadrotor as a system that can be audited."""
 
-import hashlib
 import json
 import math
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
-from importlib.resources import files
+from pathlib import Path
 from typing import Self
 
 import torch
@@ -29,6 +28,7 @@ from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
+from faultpath.quadrotor.training.checkpoint import shipped_folder
 from faultpath.quadrotor.variants import variant, wirings
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.world import World
@@ -98,13 +98,14 @@ class Quadrotor(System):
         return native.describe() if device is DeviceName.CPU else describe(device)
 
     def fingerprint(self) -> str:
-        """See `System.fingerprint`."""
-        content = {
-            "code": _code_digest(),
-            "kernels": native.numerics(),
-            "options": self.options.model_dump(mode="json"),
-        }
-        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
+        """See `System.fingerprint`: the kernels' arithmetic on this machine, and the options."""
+        options = self.options.model_dump(mode="json")
+        return json.dumps({"kernels": native.numerics(), "options": options}, sort_keys=True)
+
+    @property
+    def data_files(self) -> Sequence[Path]:
+        """See `System.data_files`: the interface, the weights, and what kernels are built from."""
+        return (*_weights(), Path("interface.yaml"), Path("native/source"))
 
     @torch.inference_mode()
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
@@ -190,26 +191,10 @@ def _outcomes(
     return outcomes
 
 
-_NOT_FLOWN = ("training", "evidence")
-
-
 @cache
-def _code_digest() -> str:
-    """Hash of every file that decides a trial: results of two codes never mix in a folder.
-
-    Trained weights are among them; how they were trained and what is measured beside is not.
-    """
-    package = files("faultpath")
-    parts = [package / name for name in ("quadrotor", "taps", "faults", "arrays.py", "streams.py")]
-    digest = hashlib.sha256()
-    while parts:
-        part = parts.pop()
-        if part.is_dir():
-            children = (child for child in part.iterdir() if child.name not in _NOT_FLOWN)
-            parts += sorted(children, key=lambda child: child.name)
-        elif part.name.endswith((".py", ".cpp", ".hpp", ".yaml", ".safetensors")):
-            digest.update(part.name.encode() + part.read_bytes())
-    return digest.hexdigest()
+def _weights() -> tuple[Path, ...]:
+    """Return the weights of the package; their cards decide nothing."""
+    return tuple(sorted(shipped_folder().glob("*.safetensors")))
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones

@@ -4,6 +4,7 @@ import hashlib
 import os
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.errors import UserError
@@ -68,15 +69,25 @@ class RunFolder:
     def save_shard(self, key: str, shard: Shard) -> None:
         """Store a finished block. The name carries a digest of the bytes, checked on reading."""
         data = encode_shard(key, shard)
-        self._write(self.shards / f"{key}-{_digest(data)}.parquet", data)
+        path = self.shards / f"{key}-{_digest(data)}.parquet"
+        self._write(path, data)
+        for other in self._of(key):
+            if other != path:  # the block as it was before its failed trials were tried again
+                other.unlink(missing_ok=True)
 
     def holds_shard(self, key: str) -> bool:
         """Return whether a finished block is stored."""
-        return any(self.shards.glob(f"{key}-*.parquet"))
+        return bool(self._of(key))
+
+    def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
+        """Return when the first and the last of some stored blocks were written, UTC."""
+        times = [path.stat().st_mtime for key in keys for path in self._of(key)]
+        return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
 
     def load_shard(self, key: str, scenes: Sequence[str], notice: Notice) -> Shard | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
-        for path in sorted(self.shards.glob(f"{key}-*.parquet")):
+        found: list[Shard] = []
+        for path in self._of(key):
             try:
                 data = path.read_bytes()
                 if path.stem != f"{key}-{_digest(data)}":
@@ -88,14 +99,17 @@ class RunFolder:
                 notice(f"{path} is damaged ({error}); removing it and running its trials again")
                 path.unlink()
             else:
-                return shard
-        return None
+                found.append(shard)
+        # A process killed between writing and tidying leaves two; the later one failed less often.
+        return min(found, key=_failed, default=None)
 
-    def save_failure(self, key: str, text: str) -> Path:
-        """Store what is known about the failed trials of a block and return where."""
+    def save_failure(self, key: str, text: str) -> None:
+        """Store what is known about the failed trials of a block; without any, forget the last."""
         path = self.failures / f"{key}.txt"
-        self._write(path, text.encode(errors="backslashreplace"))
-        return path
+        if text:
+            self._write(path, text.encode(errors="backslashreplace"))
+        else:
+            path.unlink(missing_ok=True)
 
     def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""
@@ -104,6 +118,9 @@ class RunFolder:
         self._write(self.traces, encode_traces(table))
         self._write(self.outcomes, data)
         return hashlib.sha256(data).hexdigest()
+
+    def _of(self, key: str) -> list[Path]:
+        return sorted(self.shards.glob(f"{key}-*.parquet"))
 
     def _create(self) -> None:
         try:
@@ -128,6 +145,10 @@ class RunFolder:
             f"cannot write to {self.path} ({error.strerror}): choose a folder that you may write "
             "to and that has room"
         )
+
+
+def _failed(shard: Shard) -> int:
+    return sum(outcome.failed for outcome in shard.outcomes)
 
 
 def _digest(data: bytes) -> str:

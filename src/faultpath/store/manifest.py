@@ -6,6 +6,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from faultpath.code import CodeState, named
 from faultpath.errors import UserError
 from faultpath.trials.arm import Study
 
@@ -20,7 +21,8 @@ class Manifest(BaseModel):
 
     format: int = FORMAT
     faultpath_version: str
-    system_fingerprint: str
+    code: CodeState
+    """Source files, data files, packages."""
     library_hash: str
     study: Study
 
@@ -66,13 +68,19 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
         for what, one, two in (
             ("version of faultpath", found.faultpath_version, asked.faultpath_version),
             ("system", found.study.system, asked.study.system),
-            ("state of the system", found.system_fingerprint, asked.system_fingerprint),
             ("library", found.study.library, asked.study.library),
             ("state of the library", found.library_hash, asked.library_hash),
             *(() if shared else same_study),
         )
         if one != two
     ]
+    changed = found.code.changed(asked.code)
+    if changed and not differences:
+        raise UserError(
+            f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
+            "they are kept and not mixed with new ones; choose a new folder, or go back to that "
+            "code to resume"
+        )
     if differences:
         raise UserError(
             f"{folder} holds the run of another study, with another {differences[0]}: choose a "

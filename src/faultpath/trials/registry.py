@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+from faultpath.code import Root
 from faultpath.errors import UserError
 from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
@@ -29,18 +30,7 @@ def load_system(spec: SystemSpec) -> System:
     is called with the options as keyword arguments, all strings, and returns a `System`.
     `UserError` for a name, attribute or option that does not exist, or a missing package.
     """
-    target = BUILT_IN.get(spec.name, spec.name)
-    place, separator, attribute = target.rpartition(":")
-    if (
-        not separator
-        or not place
-        or not attribute
-        or (place.startswith(".") and not place.endswith(".py"))
-    ):
-        raise UserError(
-            f"there is no system {spec.name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
-            "factory as 'module:attribute' or 'path/to/file.py:attribute'"
-        )
+    place, attribute = _target(spec)
     try:
         module = _load_file(place) if place.endswith(".py") else _load_module(place)
         factory = getattr(module, attribute, None)
@@ -52,10 +42,21 @@ def load_system(spec: SystemSpec) -> System:
         raise _missing(spec.name, error) from error
     if not isinstance(system, System):
         raise UserError(
-            f"{target} returned a {type(system).__name__}: it must return a "
+            f"{place}:{attribute} returned a {type(system).__name__}: it must return a "
             "faultpath.trials.system.System"
         )
     return system
+
+
+def factory_root(spec: SystemSpec) -> Root:
+    """Return the module that builds the system; `UserError` where `load_system` raises one."""
+    place, _ = _target(spec)
+    if not place.endswith(".py"):
+        _look_here()
+        return Root(place)
+    path = _file(place)
+    _look_beside(path)
+    return Root(_module_name(path), path)
 
 
 def load_measurer(name: str) -> Measurer:
@@ -76,10 +77,24 @@ def load_measurer(name: str) -> Measurer:
         raise _missing(name, error) from error
 
 
+def _target(spec: SystemSpec) -> tuple[str, str]:
+    target = BUILT_IN.get(spec.name, spec.name)
+    place, separator, attribute = target.rpartition(":")
+    if (
+        not separator
+        or not place
+        or not attribute
+        or (place.startswith(".") and not place.endswith(".py"))
+    ):
+        raise UserError(
+            f"there is no system {spec.name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
+            "factory as 'module:attribute' or 'path/to/file.py:attribute'"
+        )
+    return place, attribute
+
+
 def _load_module(name: str) -> ModuleType:
-    here = os.getcwd()
-    if here not in sys.path:  # a console script does not look in the working directory
-        sys.path.append(here)
+    _look_here()
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -92,19 +107,40 @@ def _load_module(name: str) -> ModuleType:
 
 
 def _load_file(place: str) -> ModuleType:
-    path = Path(place).resolve()
-    if not path.is_file():
-        raise UserError(f"there is no file {place!r} to load a system from: check the path")
-    name = f"faultpath_system_{path.stem}"
+    path = _file(place)
+    name = _module_name(path)
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:
         raise UserError(f"{place!r} cannot be imported: it must be a Python file")
-    if str(path.parent) not in sys.path:  # a file may import the files beside it
-        sys.path.append(str(path.parent))
+    _look_beside(path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module  # dataclasses look their module up by name
     spec.loader.exec_module(module)
     return module
+
+
+def _file(place: str) -> Path:
+    path = Path(place).resolve()
+    if not path.is_file():
+        raise UserError(f"there is no file {place!r} to load a system from: check the path")
+    return path
+
+
+def _module_name(path: Path) -> str:
+    return f"faultpath_system_{path.stem}"
+
+
+def _look_here() -> None:
+    """Find modules in the working directory, where a console script does not look."""
+    here = os.getcwd()
+    if here not in sys.path:
+        sys.path.append(here)
+
+
+def _look_beside(path: Path) -> None:
+    """Find the files beside one, which it may import."""
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
 
 
 def _check_options(spec: SystemSpec, factory: object) -> None:

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from os import PathLike
 
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
@@ -82,9 +83,22 @@ class System(ABC):
         `altered_steps` in from their receipts.
         """
 
-    @abstractmethod
+    @property
+    def data_files(self) -> Sequence[str | PathLike[str]]:
+        """Files and folders whose contents decide a result, such as weights.
+
+        Relative ones are looked for beside the file of the system. A change of their contents is
+        noticed as one of the source is: trials of before are not taken for trials of now.
+        """
+        return ()
+
     def fingerprint(self) -> str:
-        """Hash of everything that decides a result beside variant, scene, faults and seed."""
+        """Return what decides a result and stands in no file: a device, an option, a service.
+
+        Source, data files and versions of packages are found without it; see
+        `faultpath.trials.state`.
+        """
+        return ""
 
     @property
     def backend(self) -> str:

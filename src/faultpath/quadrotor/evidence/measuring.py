@@ -14,9 +14,9 @@ from pathlib import Path
 import torch
 
 from faultpath.evidence import EvidenceTable, Measurement, Progress
-from faultpath.quadrotor.evidence.code import digest
 from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import Block, Recorded, blocks, recorded
+from faultpath.quadrotor.training.provenance import code_of
 from faultpath.store import atomic, make_folder
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.lock import locked
@@ -58,7 +58,7 @@ class Measuring:
         content = (
             self.measurement.key(),
             tuple(block.stem for block in self.blocks),
-            digest("windows"),
+            code_of("evidence.measuring"),
         )
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:24]
         return self.folder / f"{name}.measured.parquet"

@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from faultpath.errors import UserError
 from faultpath.evidence import Recording
-from faultpath.quadrotor.evidence.code import digest
 from faultpath.quadrotor.system import Quadrotor, create
 from faultpath.quadrotor.training.closed_loop import record_flights
 from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows, join
+from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
 from faultpath.store import atomic
+from faultpath.trials import SystemSpec
+from faultpath.trials.state import system_code
 
 BLOCK = 25
 """Scenes flown together and stored together."""
@@ -60,6 +62,11 @@ class Recorded:
     """Control step of each window's present, `[W]`."""
 
 
+def spec(recording: Recording) -> SystemSpec:
+    """Return how the system that a recording is flown with is named."""
+    return SystemSpec(name=Quadrotor.name, options=dict(recording.options))
+
+
 def quadrotor(recording: Recording) -> Quadrotor:
     """Return the system that a recording is flown with; `UserError` for a wrong option."""
     system = create(**recording.options)
@@ -87,11 +94,11 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
             f"{len(scenes)}"
         )
     decisive = (
-        system.fingerprint(),
+        system_code(system, spec(recording)).state.digest,
         library.content_hash,
         recording.variant,
         recording.seed,
-        digest("flights"),
+        code_of("training.closed_loop", "training.pool"),
     )
     chosen = scenes[:count]
     return tuple(

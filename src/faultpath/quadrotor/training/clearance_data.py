@@ -31,6 +31,7 @@ from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import Library, load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State
+from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 from faultpath.store import atomic
 from faultpath.store.lock import locked
@@ -120,8 +121,8 @@ def collect(
         if _read_provenance(path) == asked:
             return path
         raise UserError(
-            f"{path} was made by another recipe: choose another folder, or delete it and the "
-            f"folder {path.with_suffix('')} to make the data again."
+            f"{path} was made by another recipe or other code: choose another folder, or delete "
+            f"it and the folder {path.with_suffix('')} to make the data again."
         )
     shards = _shards(folder, recipe, library)
     place = shards[0][1].parent
@@ -258,7 +259,11 @@ def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
 
 
 def _provenance(recipe: Recipe, library: Library) -> dict:
-    return {"recipe": recipe.model_dump(mode="json"), "library_sha": library.content_hash}
+    return {
+        "recipe": recipe.model_dump(mode="json"),
+        "library_sha": library.content_hash,
+        "code_sha256": code_of("training.clearance_data"),
+    }
 
 
 def _read_provenance(path: Path) -> dict:

@@ -2,30 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
 
+from faultpath.code import Root, read_code
 from faultpath.errors import UserError
 from faultpath.quadrotor.training.flight import FlightSettings
 from faultpath.quadrotor.vehicle import VehicleRanges
 
 FORMAT = 1
-_DECISIVE = (
-    "quadrotor/training/controller.py",
-    "quadrotor/training/perturbation.py",
-    "quadrotor/training/flight.py",
-    "quadrotor/plant",
-    "quadrotor/wind.py",
-    "quadrotor/vehicle.py",
-    "quadrotor/state.py",
-    "quadrotor/so3.py",
-    "streams.py",
-)
 
 
 class Recipe(BaseModel):
@@ -72,18 +60,17 @@ def provenance_path(path: Path) -> Path:
 
 
 @cache
+def code_of(*modules: str) -> str:
+    """Return a hash of some modules of the quadrotor and of all that they import.
+
+    What they made is made anew where one of these files has changed.
+    """
+    return read_code([Root(f"faultpath.quadrotor.{module}") for module in modules]).state.contents
+
+
 def code_sha256() -> str:
     """Return a hash of the files that draw and fly episodes: another code, another pool."""
-    package = files("faultpath")
-    parts = [package.joinpath(name) for name in _DECISIVE]
-    digest = hashlib.sha256()
-    while parts:
-        part = parts.pop()
-        if part.is_dir():
-            parts += sorted(part.iterdir(), key=lambda child: child.name)
-        elif part.name.endswith(".py"):
-            digest.update(part.name.encode() + part.read_bytes())
-    return digest.hexdigest()
+    return code_of("training.shards")
 
 
 def read_provenance(path: Path) -> Provenance | None:

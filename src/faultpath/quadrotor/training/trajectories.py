@@ -29,9 +29,11 @@ from faultpath.quadrotor.training.pool import (
     vehicle_seconds,
     write_pool,
 )
-from faultpath.quadrotor.training.provenance import Provenance
+from faultpath.quadrotor.training.provenance import Provenance, code_of
 from faultpath.store import atomic
 from faultpath.store.lock import locked
+from faultpath.trials import SystemSpec
+from faultpath.trials.state import system_code
 
 POOL = "trajectory"
 LIBRARY = "selection"
@@ -114,8 +116,10 @@ def fly(shard: Shard, place: Path) -> None:
 
 def _recipe() -> str:
     """Hash of what decides the pool: the system's code and checkpoints, and the settings here."""
-    system = Quadrotor.parse(clearance="true")
-    content = repr((system.fingerprint(), LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK))
+    spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
+    state = system_code(Quadrotor.parse(**spec.options), spec).state
+    code = code_of("training.trajectories")
+    content = repr((state.contents, code, LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK))
     return hashlib.sha256(content.encode()).hexdigest()
 
 

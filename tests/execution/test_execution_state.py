@@ -1,0 +1,79 @@
+"""What counts as the code of a flight: all that runs in one, and nothing that only tells of it."""
+
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from faultpath.execution.attempt import Done, attempt
+from faultpath.faults import parse_fault
+from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials.state import source_state, system_code
+
+ROOT = Path(__file__).resolve().parents[2]
+FLOWN = {
+    "toy": (f"{ROOT}/examples/toy.py:create", {}, "carts", "calibrated", "gain:scale=0.6"),
+    "dock": (f"{ROOT}/examples/dock.py:create", {}, "floors", "ranges", "range:scale=0.7"),
+    "quadrotor": ("quadrotor", {"wind": "L3"}, "selection", "gru", "calibration=+0.1"),
+    "quadrotor on the portable path": (
+        "quadrotor",
+        {"wind": "L1", "environment": "free-space"},
+        "selection",
+        "wm-u",
+        "calibration=+0.1",
+    ),
+}
+TELLING = ("cli", "report", "record", "statistics", "studies", "evidence", "audit.py")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=pytest.mark.slow if "quadrotor" in name else ()) for name in FLOWN],
+)
+def test_whatever_runs_in_a_flight_counts(name, monkeypatch):
+    if "portable" in name:
+        monkeypatch.setenv("FAULTPATH_KERNELS", "portable")
+    place, options, library, variant, text = FLOWN[name]
+    spec = SystemSpec(name=place, options=options)
+    system = load_system(spec)
+    scenes = [scene.id for scene in system.library(library).scenes[:1]]
+    fault = parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
+    faults = fault.resolved(system.interface, system.variants[variant].consumers)
+    code = system_code(system, spec)
+
+    ran: set[str] = set()
+    sys.setprofile(lambda frame, event, _: ran.add(frame.f_code.co_filename))
+    try:
+        done = attempt(system, Arm(variant=variant, faults=faults), scenes)
+    finally:
+        sys.setprofile(None)
+    assert isinstance(done, Done), done
+    ours = {Path(file).resolve() for file in ran if Path(file).is_relative_to(ROOT / "src")}
+    assert len(ours) > 5
+    assert ours <= {path.resolve() for path in code.sources.values()}
+
+
+@pytest.mark.parametrize("name", FLOWN)
+def test_what_only_tells_of_flights_does_not_count(name):
+    place, options, *_ = FLOWN[name]
+    spec = SystemSpec(name=place, options=options)
+    files = system_code(load_system(spec), spec).state.files
+    assert not [file for file in files for part in TELLING if file.startswith(f"faultpath/{part}")]
+    assert not [file for file in files if file.startswith("faultpath/quadrotor/evidence")]
+
+
+@pytest.mark.parametrize("name", FLOWN)
+def test_the_code_is_known_before_it_is_loaded(name):
+    place, options, *_ = FLOWN[name]
+    spec = SystemSpec(name=place, options=options)
+    assert source_state(spec).files == system_code(load_system(spec), spec).state.files
+
+
+def test_the_state_of_the_quadrotor_is_found_fast():
+    spec = SystemSpec(name="quadrotor")
+    system = load_system(spec)
+    system_code(system, spec)
+    started = time.process_time()
+    system_code(system, spec)
+    assert time.process_time() - started < 0.2
