@@ -36,6 +36,14 @@ def test_every_file_is_there(done: Done) -> None:
     }
 
 
+def test_no_file_names_the_library_that_did_not_fly(done: Done) -> None:
+    """`The library selection takes the place of the held-out one` apart."""
+    stands = "takes the place of the held-out one"
+    for name in ("ledger.md", "tables.md", "tables.tex", "reproduction.html"):
+        text = (done.folder / name).read_text("utf-8").replace(stands, "")
+        assert "held-out" not in text.lower(), name
+
+
 def test_no_figure_of_ours_is_missing(done: Done) -> None:
     (table,) = done.reproduction.tables
     assert MISSING not in {entry.text for line in table.lines for entry in line.entries}

@@ -18,6 +18,14 @@ MISTAKES = {
     "workers": (["reproduce", "table-4", "--workers", "-1"], ["-1", "0 (this process) or more"]),
     "no run": (["claims", "--run", "nowhere"], ["nowhere holds no finished reproduction"]),
     "no library": (["claims", "--library", "nowhere.json"], ["nowhere.json"]),
+    "no library to reproduce on": (
+        ["reproduce", "table-4", "--library", "nowhere.json"],
+        ["nowhere.json", "faultpath scenes generate"],
+    ),
+    "a library that no page flies on": (
+        ["reproduce", "figure-3", "--library", "training"],
+        ["figure-3 is flown on the selection library", "'training' would change nothing"],
+    ),
     "run and library": (["claims", "--run", "a", "--library", "b.json"], ["give one of them"]),
 }
 

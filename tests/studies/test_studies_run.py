@@ -111,6 +111,24 @@ def test_a_page_that_the_paper_does_not_have_is_refused() -> None:
         plan([], "huge")
 
 
+def test_what_a_library_of_ones_own_leaves_alone_is_said() -> None:
+    mine = {HELD_OUT: SELECTION}
+    assert plan([], "paper").substitution() == ""
+    assert plan(["table-4"], "quick", mine).substitution() == (
+        "The library selection takes the place of the held-out one."
+    )
+    said = plan(["table-4", "figure-3", "text-mechanism"], "quick", mine).substitution()
+    assert "On the selection library stay, as in the paper: figure-3." in said
+    whole = plan([], "paper", mine).substitution()
+    assert "figure-3" in whole
+    assert "text-planning" in whole
+
+
+def test_a_library_that_no_page_flies_on_is_refused() -> None:
+    with pytest.raises(UserError, match=r"figure-3 is flown on the selection library.*--library"):
+        plan(["figure-3"], "quick", {HELD_OUT: SELECTION}).substitution()
+
+
 def test_all_pages_are_the_whole_paper() -> None:
     assert plan([], "paper").whole
     assert plan(["table-4"], "paper").place == "table-4"

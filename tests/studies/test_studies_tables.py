@@ -1,5 +1,7 @@
 """Tables of the studies: known figures from runs with known results."""
 
+from dataclasses import replace
+
 from toy_runs import (
     EMPTY,
     MEASUREMENTS,
@@ -17,7 +19,8 @@ from toy_runs import (
 
 from faultpath.evidence import Measurement
 from faultpath.record import Sweep
-from faultpath.studies.cells import Cell
+from faultpath.studies.cells import HELD_OUT, Cell
+from faultpath.studies.claims import evaluate
 from faultpath.studies.pages import PAGES, figure_3, table_1, table_2, table_4, table_6
 from faultpath.trials import Status
 
@@ -174,13 +177,30 @@ def test_notes_say_what_was_flown_and_measured() -> None:
     built = {k: v for each in PAGES for k, v in tables(each, results).items()}
     assert built["table-4"].notes[0] == "20 scenes of the held-out library, seeds 0, 1, 2."
     assert any(
-        note.endswith("220 windows of 20 scenes, seeds 0, 1, 2.")
+        note.endswith("220 windows of 20 scenes of the held-out library, seeds 0, 1, 2.")
         for note in built["table-6a"].notes
     )
     both = "20 scenes of the held-out library, seed 0; 20 scenes of the selection library, seed 0."
     assert built["text-freezes"].notes[0] == both
     (nothing,) = {table.notes[0] for table in tables(page("table-4"), EMPTY).values()}
     assert nothing == "No trial of this table was run."
+
+
+def test_only_the_library_that_flew_is_named() -> None:
+    """Where a user's library takes the place of the held-out one, nothing says `held-out`."""
+    published = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
+    results = replace(published, libraries={HELD_OUT: "mine"})
+    built = [part for each in PAGES for part in each.build(results)]
+    told = [part.model_dump_json() for part in built] + [each.title for each in PAGES]
+    assert sum("of the mine library" in words for words in told) > 10
+    assert [words for words in told if "held-out" in words.lower()] == []
+
+
+def test_a_reason_names_the_library_that_flew() -> None:
+    empty = replace(EMPTY, libraries={HELD_OUT: "mine"})
+    reasons = [part.reason for claim in evaluate(empty) for part in claim.parts]
+    assert any("mine, obstacles, L0" in reason for reason in reasons)
+    assert [reason for reason in reasons if "held-out" in reason] == []
 
 
 def test_a_freeze_is_compared_with_the_same_seed_alone() -> None:

@@ -45,11 +45,10 @@ def command(
     if library is None:
         return _show(run, as_json)
     from faultpath.cli.reproduce import crew
-    from faultpath.studies.cells import HELD_OUT
-    from faultpath.studies.run import plan
+    from faultpath.studies.run import plan, standing
 
     options = {} if device is None else {"device": device}
-    asked = plan((), profile, {HELD_OUT: str(library)}, options)
+    asked = plan((), profile, standing(str(library)), options)
     folder = out or Path("runs") / f"claims-{library.stem}-{profile}"
 
     from faultpath.cli.studies import carry_out, tell
@@ -71,7 +70,7 @@ def _show(run: Path | None, as_json: bool) -> int:
     with as_file(files("faultpath.studies") / "paper" / "run") as shipped:
         results, found = read_results(shipped if run is None else run)
     old = found.ledger
-    answers = ledger(results, old.library, old.library_hash, old.scenes, old.seeds)
+    answers = ledger(results, old.library, old.library_hash, old.scenes, old.seeds, note=old.note)
     if as_json:
         _print(answers)
         return 0

@@ -22,17 +22,22 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>.")
     ] = None,
+    library: Annotated[
+        str | None,
+        typer.Option(help="Library or file to fly in place of the held-out library."),
+    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Worker processes; default one a core, or one a GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and set the results beside it."""
-    from faultpath.studies.run import plan
+    from faultpath.studies.run import plan, standing
 
     options = {} if device is None else {"device": device}
-    asked = plan(pages or (), profile, options=options)
-    folder = out or Path("runs") / f"reproduction-{asked.profile.name}"
+    asked = plan(pages or (), profile, standing(library), options)
+    own = "" if library is None else f"-{asked.library().name}"
+    folder = out or Path("runs") / f"reproduction{own}-{asked.profile.name}"
 
     from faultpath.cli.studies import carry_out, tell
 

@@ -27,7 +27,6 @@ from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
-from faultpath.studies.results import Results
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
 
 Show = Callable[[float, float, str], None]
@@ -53,6 +52,8 @@ def carry_out(
     console = Console(stderr=quiet)
     stopwatch = Stopwatch()
     legs = plan.legs()
+    if note := plan.substitution():
+        console.print(note, markup=False, soft_wrap=True)
     try:
         flown = _fly(console, legs, folder, workers)
         evidence = _measure(console, plan, folder, workers)
@@ -60,7 +61,7 @@ def carry_out(
         raise Stopped(
             f"interrupted; what is finished is kept in {folder}, and the same command resumes."
         ) from None
-    results = Results(flown.outcomes, evidence, plan.library().content_hash)
+    results = plan.results(flown.outcomes, evidence)
     place = folder / plan.place
     found = conclude(plan, flown, results)
     result = save(place, flown, results, evidence, found)

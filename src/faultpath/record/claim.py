@@ -59,6 +59,8 @@ class Ledger(_Frozen):
     claims: tuple[ClaimVerdict, ...]
     left_out: int = 0
     """Claims that the run is not about."""
+    note: str = ""
+    """What was flown elsewhere than on `library`, where that takes the place of another."""
 
     def count(self, answer: Answer) -> int:
         """Return how many claims got this answer."""

@@ -75,7 +75,7 @@ def ended(results: Results, cell: Cell, status: Status) -> Entry:
     counts = results.counts(cell)
     flown = sum(counts.values()) - counts[Status.FAILED]
     if not flown:
-        raise NotRun(f"a trial of {cell} that did not fail")
+        raise NotRun(f"a trial of {results.named(cell)} that did not fail")
     return Entry(text=wording.plain(100 * counts[status] / flown, 0))
 
 

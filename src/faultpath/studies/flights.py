@@ -4,7 +4,7 @@ import hashlib
 import re
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -25,6 +25,8 @@ class Leg:
     setting: Setting
     system: System
     study: Study
+    title: str
+    """The setting with the name of the library that flies."""
 
     @property
     def folder(self) -> str:
@@ -104,7 +106,7 @@ def fly(
     results: list[RunResult] = []
     with Crew() as crew:
         for leg in legs:
-            clock.begin(str(leg.setting))
+            clock.begin(leg.title)
             place, system = folder / FLIGHTS / leg.folder, leg.system
             results.append(
                 run_study(
@@ -176,7 +178,7 @@ def _leg(
         scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
         rows=tuple(_row(system, cell, seed) for cell in cells for seed in cell.seeds),
     )
-    return Leg(setting, system, study)
+    return Leg(setting, system, study, str(replace(setting, library=library.name)))
 
 
 def _row(system: System, cell: Cell, seed: int) -> Row:

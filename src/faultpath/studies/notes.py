@@ -30,7 +30,7 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
     scenes: dict[str, set[str]] = {}
     seeds: dict[str, set[int]] = {}
     for cell in cells:
-        library = cell.setting.library
+        library = results.library(cell.setting.library)
         try:
             run = results.seeds(cell)
         except NotRun:
@@ -49,14 +49,15 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
 
 
 def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
-    """Return windows, scenes and seeds that a run holds of measurements of one recording."""
+    """Return windows, scenes, library and seeds that a run holds of one recording."""
     found: dict[Measurement, Measured] = {}
     for measurement in measurements:
         with suppress(NotRun):
             found[measurement] = results.measured(measurement)
     if not found:
         return "No error of this table was measured."
-    windows = next(iter(found.values()))
+    measurement, windows = next(iter(found.items()))
+    library = results.library(measurement.recording.library)
     scenes = wording.counted(len(set(windows.scenes)), "scene")
     seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in found})))
-    return f"{len(windows):,} windows of {scenes}, {seeds}."
+    return f"{len(windows):,} windows of {scenes} of the {library} library, {seeds}."

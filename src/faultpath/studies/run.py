@@ -26,7 +26,7 @@ from faultpath.store import (
     write_text,
 )
 from faultpath.store.sealed import read_regular, unseal
-from faultpath.studies import reversal
+from faultpath.studies import reversal, stand_in
 from faultpath.studies.cells import HELD_OUT, PROFILES, Profile
 from faultpath.studies.claims import ledger
 from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
@@ -90,6 +90,21 @@ class Plan:
         """Return the library that stands for the held-out one."""
         return self.system.library(self.libraries.get(HELD_OUT, HELD_OUT))
 
+    def substitution(self) -> str:
+        """Return what takes the place of the held-out library, and which pages that leaves alone.
+
+        Raises `UserError` where no page of the plan flies on the held-out library.
+        """
+        if HELD_OUT not in self.libraries:
+            return ""
+        return stand_in.words(self.pages, self.profile, self.libraries[HELD_OUT], self.library())
+
+    def results(self, outcomes: OutcomeTable, evidence: EvidenceTable) -> Results:
+        """Return what was flown and measured, as pages and claims ask for it."""
+        library = self.library()
+        names = {HELD_OUT: library.name}
+        return Results(outcomes, evidence, library.content_hash, names)
+
     def _stands_in(self, measurement: Measurement) -> Measurement:
         recording = measurement.recording
         changed = {
@@ -114,6 +129,11 @@ def plan(
         raise UserError(f"unknown profile '{profile}'; choose one of {', '.join(PROFILES)}.")
     pages = tuple(page for page in PAGES if page.name in names) if names else PAGES
     return Plan(pages, PROFILES[profile], libraries or {}, options or {})
+
+
+def standing(library: str | None) -> dict[str, str]:
+    """Return the libraries of a plan in which one by name or file stands for the held-out one."""
+    return {} if library in (None, HELD_OUT) else {HELD_OUT: library}
 
 
 def measure_all(
@@ -145,6 +165,7 @@ def conclude(plan: Plan, flown: Flown, results: Results) -> Reproduction:
             len(scenes),
             plan.profile.seeds,
             only_run=not plan.whole,
+            note=plan.substitution(),
         ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),
@@ -203,7 +224,8 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
         ) from None
     outcomes = read_outcomes(folder / OUTCOMES)
     evidence = read_evidence(folder / EVIDENCE)
-    return Results(outcomes, evidence, found.ledger.library_hash), found
+    names = {HELD_OUT: found.ledger.library}
+    return Results(outcomes, evidence, found.ledger.library_hash, names), found
 
 
 def _check_digests(folder: Path) -> None:
@@ -228,7 +250,7 @@ def _gallery(library: Library) -> tuple[SceneShown, ...]:
 
 def _configuration(leg: Leg, result: RunResult) -> Configuration:
     return Configuration(
-        setting=str(leg.setting),
+        setting=leg.title,
         library=leg.study.library,
         library_hash=result.library_hash,
         system_fingerprint=result.system_fingerprint,

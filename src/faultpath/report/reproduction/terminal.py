@@ -48,7 +48,10 @@ def ledger_view(ledger: Ledger) -> RenderableType:
         f"{ledger.library}, {wording.counted(ledger.scenes, 'scene')}, "
         f"{wording.seeds(ledger.seeds)}"
     )
-    return Group(title, where, Text(""), ledger_table(ledger), Text(""), ledger_counts(ledger))
+    note = (Text(ledger.note, "dim"),) if ledger.note else ()
+    return Group(
+        title, where, *note, Text(""), ledger_table(ledger), Text(""), ledger_counts(ledger)
+    )
 
 
 def ledger_markdown(ledger: Ledger) -> str:
@@ -72,6 +75,8 @@ def ledger_markdown(ledger: Ledger) -> str:
         f"{ledger.library}, {wording.counted(ledger.scenes, 'scene')}, "
         f"{wording.seeds(ledger.seeds)}."
     )
+    if ledger.note:
+        about = f"{about} {ledger.note}"
     return "\n".join([f"{words.headline(ledger)}.", "", escapes.markdown(about), "", *rows, ""])
 
 

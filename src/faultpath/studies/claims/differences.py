@@ -59,7 +59,9 @@ def time(first: Cell, second: Cell) -> Quantity:
         one, two = contrast.pairs.first, contrast.pairs.second
         both = one.success & two.success
         if not both.any():
-            raise NotRun(f"a scene in which both {first} and {second} succeed")
+            raise NotRun(
+                f"a scene in which both {results.named(first)} and {results.named(second)} succeed"
+            )
         return of_effect(median_effect(one.time_s, two.time_s, both, contrast.resamples))
 
     return found
@@ -90,7 +92,7 @@ def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
     """
     seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
     if not seeds:
-        raise NotRun(f"a seed that {pairs[0][0]} and all it is compared with share")
+        raise NotRun(f"a seed that {results.named(pairs[0][0])} and all it is compared with share")
     return joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
 
 

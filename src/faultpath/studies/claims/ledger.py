@@ -38,8 +38,9 @@ def ledger(
     seeds: Sequence[int],
     *,
     only_run: bool = False,
+    note: str = "",
 ) -> Ledger:
-    """Return all answers with what they were answered on.
+    """Return all answers with what they were answered on; `note` as in `Ledger`.
 
     `only_run` leaves claims out of which a part was not run: a run of some pages is not about them.
     """
@@ -52,4 +53,5 @@ def ledger(
         seeds=tuple(seeds),
         claims=tuple(kept),
         left_out=len(every) - len(kept),
+        note=note,
     )

@@ -2,4 +2,4 @@
 
 from faultpath.studies.page import Page
 
-PAGE = Page("figure-2", "Held-out scenes, the first of each topology")
+PAGE = Page("figure-2", "Scenes, the first of each topology")

@@ -77,8 +77,8 @@ def build(results: Results) -> Built:
         ),
         notes=(
             flown(results, CELLS),
-            "Columns: calibration error of the reconstruction and of the predictor. Held-out "
-            "obstacles, wind L3. Predictor of seed 0 throughout; seeds are those of the "
+            "Columns: calibration error of the reconstruction and of the predictor. "
+            "Obstacles, wind L3. Predictor of seed 0 throughout; seeds are those of the "
             "reconstruction.",
             EVERY_NOISE,
             WINS,
