@@ -4,11 +4,14 @@ The repair is a reconstruction trained with uncertainty: ahead when only the rec
 struck, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
 """
 
+import os
+import shutil
 from collections.abc import Callable, Iterator
 
 import numpy as np
 import pyarrow as pa
 import pytest
+from playwright.sync_api import Browser, sync_playwright
 
 from faultpath.interface import Interface, read_interface
 from faultpath.record import Path, Question, decide
@@ -19,6 +22,14 @@ from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"
+ARGUMENTS = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+)
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 
 # Chance of success by path: (baseline, repair). They share one draw, so pairs are correlated.
@@ -113,6 +124,20 @@ def make_input(
 
 def interface() -> Interface:
     return read_interface(INTERFACE)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """A Chromium without a network; skipped only where there is none and `CI` is not set."""
+    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
+    if chromium is None:
+        if os.environ.get("CI"):
+            pytest.fail("there is no Chromium, and CI must run the browser tests")
+        pytest.skip("there is no Chromium on this machine")
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=chromium, args=list(ARGUMENTS))
+        yield running
+        running.close()
 
 
 @pytest.fixture(scope="session")

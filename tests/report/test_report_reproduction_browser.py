@@ -1,35 +1,15 @@
-"""The page of a reproduction in a real browser: it fits, filters, opens and stays quiet.
+"""The page of a reproduction in a real browser: it fits, filters, opens and stays quiet."""
 
-Skipped only where there is no Chromium and `CI` is not set.
-"""
-
-import os
-import shutil
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 from reproduction_toys import ledger, source
 
 from faultpath.report import ReportInput
 from faultpath.report.reproduction import reproduction_page
 
 pytestmark = pytest.mark.browser
-
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    if CHROMIUM is None:
-        if os.environ.get("CI"):
-            pytest.fail("there is no Chromium, and CI must run the browser test")
-        pytest.skip("there is no Chromium on this machine")
-    with sync_playwright() as playwright:
-        arguments = ["--no-sandbox", "--disable-gpu", "--disable-background-networking"]
-        running = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield running
-        running.close()
 
 
 @pytest.fixture(scope="module")

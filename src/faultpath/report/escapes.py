@@ -1,8 +1,23 @@
-"""Text as LaTeX and Markdown print it."""
+"""Text as HTML, Markdown and LaTeX show it: names are the user's, and markup is ours.
+
+Every format shows what cannot be seen by its number, such as `[U+202E]`: control characters, the
+marks that turn the direction of reading, and halves of characters that no file can hold.
+"""
+
+import re
+from html import escape
+
+_SPACE = str.maketrans("\t\n\r", "   ")
+
+_UNSEEN = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 
 _MARKDOWN = str.maketrans(
-    {c: f"\\{c}" for c in r"\`*_[]|#"} | {"<": "&lt;", ">": "&gt;", "\n": " ", "\r": " "}
+    {c: f"\\{c}" for c in r"\`*_[]|#$~"} | {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
 )
+_OPENING = re.compile(r"(?:[-+]|\d+[.)])(?= |$)|(?:-+|=+)$")
+"""What opens a list, or makes a heading of the line before."""
 
 _LATEX = str.maketrans(
     {
@@ -23,18 +38,32 @@ _LATEX = str.maketrans(
         "–": "--",
         "Δ": r"$\Delta$",
         "²": "$^2$",
-        "\n": " ",
-        "\r": " ",
     }
 )
 
 
+def visible(text: str) -> str:
+    """Return text in which what cannot be seen stands by its number."""
+    return _UNSEEN.sub(lambda found: f"[U+{ord(found[0]):04X}]", text)
+
+
+def html(text: str) -> str:
+    """Return text that HTML and SVG show as it is, between tags and in quoted attributes."""
+    return escape(visible(text))
+
+
 def markdown(text: str) -> str:
-    """Return text that Markdown shows as it is."""
-    return text.translate(_MARKDOWN)
+    """Return text that Markdown shows as it is, in a cell or as a line; `$` opens no formula."""
+    line = visible(text.translate(_SPACE)).strip(" ")
+    opening = _OPENING.match(line)
+    escaped = line.translate(_MARKDOWN)
+    if not opening:
+        return escaped
+    return f"{escaped[: opening.end() - 1]}\\{escaped[opening.end() - 1 :]}"
 
 
 def latex(text: str) -> str:
     """Return text that LaTeX prints as it is; what an old pdflatex has no glyph for, by number."""
-    marked = text.replace("p*", "\0").translate(_LATEX).replace("\0", r"$p^\star$")
+    line = visible(text.translate(_SPACE))
+    marked = line.replace("p*", "\0").translate(_LATEX).replace("\0", r"$p^\star$")
     return "".join(c if ord(c) < 0x250 else f"[U+{ord(c):04X}]" for c in marked)

@@ -1,17 +1,15 @@
 """The report as one page that opens without a network."""
 
 from collections.abc import Mapping, Sequence
-from functools import cache
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.report import figures, wording
+from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface, struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
-from faultpath.report.svg import template
 from faultpath.report.viewer import choose, viewer_data
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
@@ -22,39 +20,25 @@ def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     pairs = read_pairs(source.outcomes, source.record.question)
     chosen = choose(source, pairs)
-    return (
-        _environment()
-        .get_template("report.html.j2")
-        .render(
-            record=source.record,
-            asked=source.record.question,
-            provenance=source.provenance,
-            paths=_path_titles(source.record),
-            tiles=_tiles(source.record),
-            pictures=_pictures(source, pairs),
-            struck=struck_paths(source.interface, source.record),
-            void=[pair for pair in pairs if pair.kind is Kind.VOID],
-            n_void=sum(effect.void_pairs for effect in source.record.effects),
-            n_pairs=len(pairs),
-            n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
-            break_even={b.path: b.result for b in source.record.break_even},
-            estimands=_estimands(source.record),
-            viewer=viewer_data(source, chosen) if chosen else None,
-            styles=Markup("".join(map(template, _STYLES))),
-            scripts=Markup("".join(map(template, _SCRIPTS))),
-            w=wording,
-        )
-    )
-
-
-@cache
-def _environment() -> Environment:
-    return Environment(
-        loader=PackageLoader("faultpath.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+    return render(
+        "report.html.j2",
+        _STYLES,
+        _SCRIPTS,
+        record=source.record,
+        asked=source.record.question,
+        provenance=source.provenance,
+        paths=_path_titles(source.record),
+        tiles=_tiles(source.record),
+        pictures=_pictures(source, pairs),
+        struck=struck_paths(source.interface, source.record),
+        void=[pair for pair in pairs if pair.kind is Kind.VOID],
+        n_void=sum(effect.void_pairs for effect in source.record.effects),
+        n_pairs=len(pairs),
+        n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
+        break_even={b.path: b.result for b in source.record.break_even},
+        estimands=_estimands(source.record),
+        viewer=viewer_data(source, chosen) if chosen else None,
+        w=wording,
     )
 
 

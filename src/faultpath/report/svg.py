@@ -4,8 +4,9 @@ from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from hashlib import blake2b
-from html import escape
 from importlib import resources
+
+from faultpath.report.escapes import html as escape
 
 Point = tuple[float, float]
 
@@ -68,7 +69,7 @@ class Svg:
 
     def __init__(self, width: float, height: float, title: str, description: str = "") -> None:
         self.width, self.height = width, height
-        content = f"{title}\0{description}\0{width}\0{height}".encode()
+        content = f"{title}\0{description}\0{width}\0{height}".encode(errors="backslashreplace")
         self.uid = f"fig-{blake2b(content, digest_size=6).hexdigest()}"
         self._title, self._description = title, description
         self._parts: list[str] = []

@@ -2,23 +2,21 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import cache
 
 import pyarrow as pa
-from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from faultpath.record import DecisionRecord, Line, Table
 from faultpath.report import figures, wording
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
+from faultpath.report.frame import render
 from faultpath.report.inputs import Traces
 from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.ledger import ledger_rows
-from faultpath.report.svg import template
 from faultpath.report.viewer import ViewerData, choose, viewer_data
 from faultpath.store import read_table
 from faultpath.store.tables import encode_outcomes
@@ -49,27 +47,24 @@ def reproduction_page(source: ReproductionInput) -> str:
     """Return the whole page as HTML: styles, scripts, pictures and data inside."""
     reproduction, decision = source.reproduction, source.decision
     struck = struck_paths(source.interface, decision) if decision else ()
-    return (
-        _environment()
-        .get_template("reproduction.html.j2")
-        .render(
-            found=reproduction,
-            ledger=reproduction.ledger,
-            rows=ledger_rows(reproduction.ledger),
-            tables=[(table, tuple(blocks(table))) for table in reproduction.tables],
-            sweeps=_sweeps(source),
-            gallery=_gallery(source),
-            reversal=_reversal(source, struck),
-            struck=struck,
-            asked=decision and decision.question,
-            paths={path.name: path.title for path in decision.paths} if decision else {},
-            viewer=_flights(source),
-            provenance=source.provenance,
-            styles=Markup("".join(map(template, _STYLES))),
-            scripts=Markup("".join(map(template, _SCRIPTS))),
-            w=wording,
-            words=words,
-        )
+    return render(
+        "reproduction.html.j2",
+        _STYLES,
+        _SCRIPTS,
+        found=reproduction,
+        ledger=reproduction.ledger,
+        rows=ledger_rows(reproduction.ledger),
+        tables=[(table, tuple(blocks(table))) for table in reproduction.tables],
+        sweeps=_sweeps(source),
+        gallery=_gallery(source),
+        reversal=_reversal(source, struck),
+        struck=struck,
+        asked=decision and decision.question,
+        paths={path.name: path.title for path in decision.paths} if decision else {},
+        viewer=_flights(source),
+        provenance=source.provenance,
+        w=wording,
+        words=words,
     )
 
 
@@ -84,17 +79,6 @@ def blocks(table: Table) -> Iterator[Block]:
             yield Block(heading, tuple(lines))
         heading, lines = line.label, []
     yield Block(heading, tuple(lines))
-
-
-@cache
-def _environment() -> Environment:
-    return Environment(
-        loader=PackageLoader("faultpath.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
 
 
 def _sweeps(source: ReproductionInput) -> list[Mapping[str, object]]:

@@ -1,0 +1,150 @@
+"""Names in Markdown, HTML and SVG are shown, and are nothing else."""
+
+import html as html_module
+import re
+from xml.etree import ElementTree
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from markdown_it import MarkdownIt
+from reproduction_toys import ledger
+
+from faultpath.record import Entry, Line, Table
+from faultpath.report import ReportInput, escapes, markdown_table, report_page
+from faultpath.report.frame import render
+from faultpath.report.markdown_tables import markdown as table_markdown
+from faultpath.report.reproduction import ledger_markdown
+from faultpath.report.svg import Svg
+
+NASTY = '<script>alert("x")</script> & 100 % of _it_'
+PARSER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
+NAMES = (
+    NASTY,
+    "cost $x$ and $$y$$",
+    "\\$z$ `code` $`a`$",
+    "&lt;b&gt; &amp; &#36;x&#36;",
+    "<img src=x onerror=alert(1)>",
+    "![a](javascript:alert(1)) [b](http://x)",
+    "<http://x.example>",
+    "a | b || c",
+    "# head",
+    "- list",
+    "+ list",
+    "12. list",
+    "1) list",
+    "===",
+    "---",
+    "    code",
+    "~~gone~~ **bold** __bold__ *it* _it_",
+    "one\n\n- two\r\n<b>",
+    "> quote",
+    "``` fence",
+)
+
+
+def _shown(markdown: str) -> str:
+    """Return the text of the only paragraph that this is, after checking that it is plain text."""
+    opening, inline, closing = PARSER.parse(markdown)
+    assert (opening.type, closing.type) == ("paragraph_open", "paragraph_close")
+    assert {child.type for child in inline.children} <= {"text", "text_special"}
+    return "".join(child.content for child in inline.children)
+
+
+def _line(text: str) -> str:
+    return re.sub(r"[\t\n\r]", " ", text).strip(" ")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_markdown_shows_a_name_as_it_is(name: str) -> None:
+    escaped = escapes.markdown(name)
+    assert _shown(escaped) == _line(name)
+    assert not re.search(r"(?<!\\)(\\\\)*\$", escaped)
+
+
+def test_numbers_need_no_escapes() -> None:
+    for text in ("+12.3", "-4.0", "[+1, 2.5]", "3:12", "1.5 %"):
+        assert escapes.markdown(text).replace("\\[", "[").replace("\\]", "]") == text
+
+
+@given(st.text(st.characters(codec="utf-8", max_codepoint=0x2FF), min_size=1))
+def test_markdown_shows_any_text_as_it_is(name: str) -> None:
+    seen = escapes.visible(_line(name)).strip(" ")
+    if seen.strip():
+        assert _shown(escapes.markdown(name)).split() == seen.split()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_markdown_tables_hold_no_markup_of_a_user(name: str, one_seed: ReportInput) -> None:
+    record = one_seed.record
+    named = {"library": name, "fault": name, "system": name}
+    paths = tuple(path.model_copy(update={"title": name}) for path in record.paths)
+    question = record.question.model_copy(update=named)
+    entry = Entry(text=name, published=name)
+    table = Table(
+        name="table-9",
+        title=name,
+        columns=(name,),
+        lines=(Line(label=name, entries=(entry,)), Line(label=name, entries=())),
+        notes=(name,),
+    )
+    claimed = ledger().model_copy(update={"library": name})
+    for text in (
+        markdown_table(record.model_copy(update={"question": question, "paths": paths})),
+        table_markdown(table),
+        ledger_markdown(claimed),
+    ):
+        kinds = {
+            child.type
+            for token in PARSER.parse(text)
+            for child in (token, *(token.children or ()))
+            if child.type != "text_special"
+        }
+        assert not kinds & {"html_inline", "html_block", "link_open", "image", "code_inline"}
+        assert not kinds & {
+            "heading_open",
+            "fence",
+            "code_block",
+            "hr",
+            "blockquote_open",
+            "s_open",
+        }
+        assert "ordered_list_open" not in kinds
+        assert not re.search(r"(?<!\\)(\\\\)*\$", text)
+        widths = {
+            len(re.findall(r"(?<!\\)\|", line)) for line in text.splitlines() if line[:1] == "|"
+        }
+        assert len(widths) == 1
+
+
+UNSEEN = "a\0b\x1bc\x85d\u202ee\u2066f\ud800g\u2028h"
+SEEN = "a[U+0000]b[U+001B]c[U+0085]d[U+202E]e[U+2066]f[U+D800]g[U+2028]h"
+
+
+def test_what_cannot_be_seen_is_shown_by_its_number(one_seed: ReportInput) -> None:
+    assert escapes.visible(UNSEEN) == SEEN
+    assert escapes.latex(UNSEEN) == SEEN
+    assert _shown(escapes.markdown(UNSEEN)) == SEEN
+    assert escapes.html(f"<{UNSEEN}>") == f"&lt;{SEEN}&gt;"
+    svg = Svg(10, 10, UNSEEN, UNSEEN)
+    svg.text(0, 0, UNSEEN, tip=UNSEEN)
+    svg.path("M0 0", UNSEEN, tip=UNSEEN)
+    root = ElementTree.fromstring(svg.render(standalone=True))
+    assert "".join(root.itertext()).count(SEEN) == 5
+
+
+def test_a_page_can_be_written_whatever_names_there_are(one_seed: ReportInput) -> None:
+    record = one_seed.record
+    question = record.question.model_copy(update={"library": UNSEEN, "system": f"<{UNSEEN}"})
+    changed = record.model_copy(update={"question": question})
+    page = report_page(type(one_seed)(**{**vars(one_seed), "record": changed}))
+    page.encode()
+    assert SEEN in page
+    assert f"&lt;{SEEN}" in page
+    assert "\x1b" not in page
+
+
+def test_the_frame_escapes_what_is_text_and_keeps_what_is_markup() -> None:
+    assert html_module.unescape(escapes.html(NASTY)) == NASTY
+    with pytest.raises(Exception, match="undefined"):
+        render("report.html.j2", (), ())
