@@ -36,6 +36,33 @@ def namespace(array: Array) -> Any:
     return found
 
 
+def is_array(value: Any) -> bool:
+    """Return whether `value` is an array of a namespace that `array_api_compat` knows."""
+    return bool(_COMPAT.is_array_api_obj(value)) and isinstance(
+        getattr(value, "shape", None), tuple
+    )
+
+
+def device_kind(array: Array) -> str:
+    """Return `cpu`, `cuda`, `meta` or the like."""
+    return "cpu" if isinstance(array, np.ndarray) else str(_COMPAT.device(array)).partition(":")[0]
+
+
+def read_only(array: Array) -> Array:
+    """Return a NumPy array as a view that nobody can write to, and any other array as it is.
+
+    The array itself stays as writeable as it was: its owner may go on using it.
+    """
+    if not isinstance(array, np.ndarray):
+        return array
+    host = cast(HostArray, array)
+    if not host.flags.writeable:
+        return host
+    view = host.view()
+    view.setflags(write=False)
+    return view
+
+
 def copy(array: Array) -> Array:
     """Return a copy that no later write to `array` can reach."""
     return namespace(array).asarray(array, copy=True)

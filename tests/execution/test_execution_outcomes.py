@@ -10,6 +10,7 @@ from toy_study import SCENES, study
 from toy_system import ToySystem
 
 from faultpath.execution import WrongOutcomes, run_study
+from faultpath.taps import Reading
 from faultpath.trials import Status, load_system
 
 HERE = Path(__file__)
@@ -94,3 +95,52 @@ def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
     failed = {(row.variant, row.path) for row in result.outcomes.failed()}
     assert failed == {(v, p) for v in ("calibrated", "blind") for p in ("controller", "shared")}
     assert "terminal_distance_m is nan" in result.failures[0].error
+
+
+class Holey(ToySystem):
+    """Its mass is not a number in scene s05."""
+
+    def run(self, variant, scenes, taps, seed):
+        taps.deliver("mass", "planner.thrust", self._mass(scenes), 0)
+        return super().run(variant, scenes, taps, seed)
+
+    def _mass(self, scenes):
+        value = np.array([math.nan if scene == "s05" else 1.0 for scene in scenes])
+        return Reading(value, "mass", 0)
+
+
+class Scribbler(ToySystem):
+    """Writes into what its tap gave it."""
+
+    def run(self, variant, scenes, taps, seed):
+        mass = Reading(np.ones(len(scenes)), "mass", 0)
+        got = taps.deliver("mass", "planner.thrust", mass, 0)
+        got *= 2.0
+        return super().run(variant, scenes, taps, seed)
+
+
+def holey(**options: str) -> Holey:
+    return Holey(**options)
+
+
+def scribbler(**options: str) -> Scribbler:
+    return Scribbler(**options)
+
+
+def _one_row(factory: str):
+    asked = study(SCENES[4:8])
+    system = asked.system.model_copy(update={"name": f"{HERE}:{factory}"})
+    return asked.model_copy(update={"system": system, "rows": asked.rows[:1]})
+
+
+def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
+    result = run_study(_one_row("holey"), tmp_path, workers=0)
+    (failure,) = result.failures
+    assert failure.scene == "s05"
+    assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
+
+
+def test_a_consumer_that_writes_is_told_to_copy(tmp_path):
+    result = run_study(_one_row("scribbler"), tmp_path, workers=0)
+    assert len(result.failures) == 4
+    assert "what a tap delivers cannot be written to" in result.failures[0].error

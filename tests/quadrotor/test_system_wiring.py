@@ -19,13 +19,13 @@ def _short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 class _NoWind:
-    """Sensors whose true wind is a hole; who reads it shows."""
+    """Sensors whose true wind is a storm; who reads it shows."""
 
     @classmethod
     def read(cls, world, depth=None):
         sensors = Sensors.read(world)
-        hole = torch.full_like(sensors.true_wind.value, torch.nan)
-        return replace(sensors, true_wind=Reading(hole, "true_wind", sensors.true_wind.step))
+        storm = torch.full_like(sensors.true_wind.value, 99.0)
+        return replace(sensors, true_wind=Reading(storm, "true_wind", sensors.true_wind.step))
 
 
 class _NoPhysics:
@@ -33,8 +33,8 @@ class _NoPhysics:
     def read(cls, world, depth=None):
         sensors = Sensors.read(world)
         old = sensors.readings["physics"]
-        hole = Reading(torch.full_like(old.value, torch.nan), old.source, old.step)
-        return replace(sensors, readings=sensors.readings | {"physics": hole})
+        wrong = Reading(3.0 * old.value, old.source, old.step)
+        return replace(sensors, readings=sensors.readings | {"physics": wrong})
 
 
 @pytest.mark.parametrize("variant", VARIANTS)

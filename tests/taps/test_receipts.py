@@ -66,9 +66,10 @@ def test_struck_is_not_yet_altered(to: Any) -> None:
 @LIBRARIES
 def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
     taps = make([Fault(channel="mass", intervention=Scale(factor=2.0))])
-    reading = Reading(to(np.array([np.nan, 1.0])), "scale", 0)
-    taps.deliver("mass", "observer.model", reading, 0)
-    assert taps.receipts().steps_altered.tolist() == [0, 1]
+    for step, lost in enumerate((0.0, np.nan)):
+        reading = Reading(to(np.array([lost, 1.0])), "scale", step)
+        taps.deliver("mass", "observer.model", reading, step)
+    assert taps.receipts().steps_altered.tolist() == [0, 2]
 
 
 @LIBRARIES

@@ -66,8 +66,16 @@ def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | 
     except _WRONG as error:
         return Wrong(error)
     except Exception as error:
-        return Raised(f"{type(error).__name__}: {error}", traceback.format_exc())
+        return Raised(_said(error), traceback.format_exc())
     return Done(outcomes, taps, time.perf_counter() - started)
+
+
+def _said(error: BaseException) -> str:
+    """Return the last line of the traceback, with a hint where the taps know better."""
+    text = f"{type(error).__name__}: {error}"
+    if isinstance(error, ValueError) and "read-only" in text:
+        text += " (what a tap delivers cannot be written to: copy it first)"
+    return text
 
 
 def limit_threads() -> None:

@@ -6,6 +6,7 @@ correlation) are recorded; a gap is one of fidelity (an estimate replaces the tr
 availability (a channel that the trained module expects is missing).
 """
 
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Self
 
@@ -138,6 +139,20 @@ class Interface(_Frozen):
                 return source
         known = (source.name for source in self.sources)
         raise UserError(f"interface {self.name}: {unknown('source', name, known)}")
+
+    def shaped(self, shapes: Mapping[str, tuple[int, ...]]) -> "Interface":
+        """Return the interface with other shapes of some sources, by name.
+
+        For what a setting decides: how many candidates a planner draws, how many windows are laid
+        out as one scene. Raises `UserError` for an unknown source.
+        """
+        for name in shapes:
+            self.source(name)
+        sources = (
+            source.model_copy(update={"shape": shapes.get(source.name, source.shape)})
+            for source in self.sources
+        )
+        return self.model_copy(update={"sources": tuple(sources)})
 
     def channel(self, name: str) -> Channel:
         """Return the channel called `name`; raises `UserError` with the known names."""

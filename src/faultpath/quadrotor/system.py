@@ -67,8 +67,11 @@ class Quadrotor(System):
 
     @property
     def interface(self) -> Interface:
-        """See `System.interface`."""
-        return quadrotor_interface()
+        """See `System.interface`; the clearance is asked for along the planner's candidates."""
+        shape = (self.options.settings.sampler.horizon, self.options.candidates)
+        return quadrotor_interface().shaped(
+            dict.fromkeys(("estimated_clearance", "true_clearance"), shape)
+        )
 
     @property
     def variants(self) -> Mapping[str, Variant]:

@@ -5,9 +5,11 @@ from faultpath.taps.errors import (
     IllegalRead,
     MalformedReading,
     NotDelivered,
+    NotFinite,
     StruckElsewhere,
     TapError,
     UndeclaredReader,
+    WrittenTo,
 )
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
@@ -20,6 +22,7 @@ __all__ = [
     "Missed",
     "ModuleTaps",
     "NotDelivered",
+    "NotFinite",
     "Reading",
     "Receipt",
     "Receipts",
@@ -30,6 +33,7 @@ __all__ = [
     "TapError",
     "Taps",
     "UndeclaredReader",
+    "WrittenTo",
     "added",
     "check_delivered",
 ]

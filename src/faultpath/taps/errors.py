@@ -14,7 +14,16 @@ class IllegalRead(TapError):
 
 
 class MalformedReading(TapError):
-    """A reading does not have one row a scene, or steps ran backwards."""
+    """A reading is not what its source declares, or steps ran backwards."""
+
+
+class NotFinite(Exception):
+    """The first reading at a tap is not finite. It costs its trial and not the study, because a
+    fault further up may have brought it about."""
+
+
+class WrittenTo(TapError):
+    """A consumer wrote into what a tap gave it, and others may have read that."""
 
 
 class NotDelivered(TapError):

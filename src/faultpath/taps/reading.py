@@ -7,7 +7,7 @@ from faultpath.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a source says; nobody writes to `value` once it is part of a reading."""
+    """What a source says. A consumer cannot write to it; its owner may once the step is over."""
 
     value: Array
     """`[B, ...]`, one row a scene, in the source's unit."""

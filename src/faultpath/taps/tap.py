@@ -10,6 +10,7 @@ from faultpath.arrays import Array
 from faultpath.errors import UserError
 from faultpath.interface import Interface, Provenance
 from faultpath.interface.words import unknown
+from faultpath.taps.guard import Watch
 from faultpath.taps.receipts import Receipt, StrikeReceipt
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Tally
@@ -38,24 +39,38 @@ class Tap:
         "channel",
         "consumer",
         "deliveries",
+        "finite",
         "first_step",
+        "given",
         "last_step",
         "legal",
+        "shape",
         "source",
         "strikes",
         "struck",
+        "watch",
     )
 
-    def __init__(self, channel: str, consumer: str, source: str, legal: bool) -> None:
+    def __init__(
+        self, channel: str, consumer: str, source: str, legal: bool, shape: tuple[int, ...]
+    ) -> None:
         self.channel = channel
         self.consumer = consumer
         self.source = source
         self.legal = legal
+        self.shape = shape
+        """Of every reading, scenes first."""
         self.strikes: tuple[Strike, ...] = ()
         self.deliveries = 0
         self.first_step = -1
         self.last_step = -1
+        self.given: Array = None
+        """The value of the step's reading."""
         self.cached: Array = None
+        """What the consumer got of it."""
+        self.finite: Array = None
+        """Where the first reading was finite, until that has been looked at."""
+        self.watch: Watch | None = None
         self.struck = Tally()
         self.altered = Tally()
 
@@ -106,6 +121,7 @@ def wire(
     bindings: Mapping[str, str],
     consumers: Collection[str] | None,
     privileged: Collection[str],
+    n_scenes: int,
 ) -> dict[tuple[str, str], Tap]:
     """Return the taps of a variant by channel and consumer; raises `UserError` for wrong names."""
     for name in bindings:
@@ -122,9 +138,11 @@ def wire(
         if bound not in channel.sources:
             said = unknown("source", bound, channel.sources)
             raise UserError(f"channel '{channel.name}' cannot be bound: {said}")
-        secret = interface.source(bound).provenance is Provenance.PRIVILEGED
+        source = interface.source(bound)
+        secret = source.provenance is Provenance.PRIVILEGED
+        shape = (n_scenes, *source.shape)
         for name in channel.consumers:
             if consumers is None or name in consumers:
                 legal = bound in privileged or not secret
-                taps[channel.name, name] = Tap(channel.name, name, bound, legal)
+                taps[channel.name, name] = Tap(channel.name, name, bound, legal, shape)
     return taps

@@ -7,12 +7,14 @@ from types import MappingProxyType
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.arrays import Array, differs
+from faultpath.arrays import Array, differs, read_only
 from faultpath.errors import UserError
 from faultpath.faults import Coupled, Draws, Fault
 from faultpath.interface import Interface, modules
 from faultpath.interface.words import listed, unknown
-from faultpath.taps.errors import IllegalRead, MalformedReading, UndeclaredReader
+from faultpath.taps.checks import check_finite, check_first, check_same, check_shape
+from faultpath.taps.errors import IllegalRead, MalformedReading, UndeclaredReader, WrittenTo
+from faultpath.taps.guard import Watch
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipts, check_delivered
 from faultpath.taps.strike import Strike
@@ -41,6 +43,8 @@ class Taps:
         bindings: Channel to the source that feeds it here; the rest keep their first source.
         consumers: Consumers that this variant has; `None`: all that are declared.
         privileged: Privileged sources that this arm may read.
+        guard: Give every consumer a copy of its own and let `verify` tell who wrote into it. NumPy
+            readings cannot be written to in any case.
 
     Raises:
         UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
@@ -57,13 +61,18 @@ class Taps:
         bindings: Mapping[str, str] | None = None,
         consumers: Collection[str] | None = None,
         privileged: Collection[str] = (),
+        guard: bool = False,
     ) -> None:
         self._interface = interface
         self._scenes = tuple(scenes)
         self._running = Running(None)
         self._struck, self._altered = Tally(), Tally()
+        self._open: Array = None
+        self._closed: Array = None
         self._absent: list[tuple[str, str]] = []
-        self._taps = wire(interface, bindings or {}, consumers, privileged)
+        self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
+        for tap in self._taps.values() if guard else ():
+            tap.watch = Watch()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self._bindings = MappingProxyType(first | dict(bindings or {}))
         self._strike(tuple(faults), dt_s, seed)
@@ -98,19 +107,26 @@ class Taps:
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
         """Return what `consumer` gets of `channel` at control step `step`.
 
-        Without a fault on this tap that is `reading.value` itself, uncopied. A second delivery in
-        one step returns what the first did.
+        Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array comes
+        as a view that cannot be written to. A second delivery in one step returns what the first
+        did, with a fault or without.
 
         Raises:
             UndeclaredReader: This variant has no such consumer of the channel.
             IllegalRead: The reading is not of the bound source, is privileged, or of the future.
-            MalformedReading: It has not one row a scene, or `step` is before the last one.
+            MalformedReading: It is no reading or not as declared, differs from that of the step's
+                first delivery, or `step` is before the last one.
+            NotFinite: The first reading at this tap is not finite.
         """
         tap = self._taps.get((channel, consumer))
         if tap is None:
             raise self._undeclared(channel, consumer)
-        if reading.source != tap.source or not tap.legal or reading.step > step:
-            raise self._illegal(tap, reading, step)
+        try:
+            value = reading.value
+            if reading.source != tap.source or not tap.legal or reading.step > step:
+                raise self._illegal(tap, reading, step)
+        except AttributeError:
+            raise self._no_reading(tap, reading) from None
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
@@ -118,18 +134,26 @@ class Taps:
                     "new taps"
                 )
             if tap.first_step < 0:
+                check_first(tap, value, self._scenes)
                 tap.first_step = step
             tap.last_step = step
             tap.deliveries += 1
+            tap.given = value
             if tap.strikes:
-                tap.cached = self._struck_value(tap, reading.value, step)
-        return tap.cached if tap.strikes else reading.value
+                value = self._struck_value(tap, value, step)
+            if isinstance(value, np.ndarray):
+                if value is not self._open:  # consumers of one array share the view of it
+                    self._open, self._closed = value, read_only(value)
+                value = self._closed
+            elif tap.watch is not None:
+                value = tap.watch.hand_out(value)
+            tap.cached = value
+        elif value is not tap.given:
+            check_same(tap, value, step)
+        return tap.cached
 
     def _struck_value(self, tap: Tap, reading: Array, step: int) -> Array:
-        if reading.shape[0] != len(self._scenes):
-            raise MalformedReading(
-                f"tap {tap}: the reading has {reading.shape[0]} rows for {len(self._scenes)} scenes"
-            )
+        check_shape(tap, reading)
         value, struck = reading, False
         for strike in tap.strikes:
             value, in_force = strike.act(value, step)
@@ -174,8 +198,16 @@ class Taps:
         """Check that each fault reached the consumers that it names, and nobody else.
 
         `last_step`: the last control step at which each scene ran, `[B]` or one for all. Returns
-        the scenes that a fault missed; raises as `check_delivered`.
+        the scenes that a fault missed; raises as `check_delivered`, `NotFinite` for a first reading
+        on an accelerator, and `WrittenTo` of a guarded consumer that wrote.
         """
+        for tap in self._taps.values():
+            check_finite(tap, self._scenes)
+            if tap.watch is not None and tap.watch.written():
+                raise WrittenTo(
+                    f"tap {tap}: the consumer wrote into the reading, which others may read too; "
+                    "copy it before writing"
+                )
         struck = frozenset(name for name, tap in self._taps.items() if tap.strikes)
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
         return check_delivered(self.receipts(), struck, last)
@@ -195,6 +227,12 @@ class Taps:
         return UndeclaredReader(
             f"tap {channel} -> {consumer}: the channel does not declare this consumer; add it to "
             f"the interface, declared: {listed(declared)}"
+        )
+
+    def _no_reading(self, tap: Tap, given: object) -> MalformedReading:
+        return MalformedReading(
+            f"tap {tap}: deliver() was given a {type(given).__name__}; wrap it: "
+            f"Reading(value, '{tap.source}', step)"
         )
 
     def _illegal(self, tap: Tap, reading: Reading, step: int) -> IllegalRead:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import torch
@@ -118,9 +118,14 @@ class Subject:
                 )
         return by_window, by_recording
 
-    def _taps(self, rows: tuple[str, ...], faults: Sequence[AnyFault]) -> Taps:
+    def _taps(
+        self,
+        rows: tuple[str, ...],
+        faults: Sequence[AnyFault],
+        shapes: Mapping[str, tuple[int, ...]] | None = None,
+    ) -> Taps:
         return Taps(
-            self.system.interface,
+            self.system.interface.shaped(shapes or {}),
             faults,
             scenes=rows,
             dt_s=self.system.control_dt_s,
@@ -167,7 +172,6 @@ class Subject:
         permutes a scene's own reading, and so exchanges the codes of windows: each is one that the
         predictor meets in flight, but of another history.
         """
-        taps = self._taps((recording,), faults)
         if "history" not in self.predictor.reads:
             return None
         codes = [
@@ -181,7 +185,9 @@ class Subject:
             for index in torch.arange(len(wide)).split(BATCH)
         ]
         code = torch.cat([each for each in codes if each is not None], 1)[:, :count]
-        reading = Reading(code.T[None], taps.bindings["history_code"], 0)
+        (source,) = self.system.interface.channel("history_code").sources
+        taps = self._taps((recording,), faults, {source: tuple(code.T.shape)})
+        reading = Reading(code.T[None], source, 0)
         delivered = taps.deliver("history_code", "predictor.latent", reading, 0)
         taps.verify(last_step=0)
         return delivered[0].T
