@@ -1,16 +1,7 @@
 """Outcome arrays in, estimates and intervals out; no plots and no files."""
 
-from faultpath.statistics.bootstrap import (
-    Effect,
-    difference_of_effects,
-    mean_effect,
-    mean_value,
-    percentile_interval,
-    reversal,
-    success_effect,
-    success_rate,
-)
-from faultpath.statistics.breakeven import break_even, break_even_point
+from faultpath.statistics.bootstrap import mean_effect, mean_value, success_effect, success_rate
+from faultpath.statistics.breakeven import break_even, break_even_point, mixture_curve
 from faultpath.statistics.clustered import (
     WindowQuantiles,
     quantile_difference,
@@ -19,17 +10,30 @@ from faultpath.statistics.clustered import (
     quantile_ratio,
 )
 from faultpath.statistics.correlation import spearman
+from faultpath.statistics.decisions import (
+    Comparison,
+    Decision,
+    compare,
+    decide_family,
+    fewest_scenes,
+    turn,
+)
+from faultpath.statistics.detectable import detectable, detectable_effect
+from faultpath.statistics.effect import (
+    Effect,
+    difference_of_effects,
+    percentile_interval,
+    weighted_sum,
+)
 from faultpath.statistics.estimate import (
     SCENES,
     SCENES_AND_SEEDS,
     BreakEven,
     Correlation,
     Detectable,
-    Direction,
-    DirectionShares,
     Discordant,
     Estimate,
-    Reversal,
+    Region,
     SeedCounts,
     TestResult,
 )
@@ -38,63 +42,62 @@ from faultpath.statistics.medians import median_effect
 from faultpath.statistics.paired import (
     discordant,
     discordant_by_seed,
+    distinct_seeds,
     mcnemar_exact,
     mcnemar_mid_p,
     sign_counts,
     sign_test,
     success_test,
 )
-from faultpath.statistics.power import (
-    detectable,
-    detectable_by_sign_test,
-    detectable_by_standard_error,
-    detectable_success,
-    mcnemar_power,
-)
+from faultpath.statistics.power import rule_power
 from faultpath.statistics.resamples import Resamples
 
 __all__ = [
     "SCENES",
     "SCENES_AND_SEEDS",
     "BreakEven",
+    "Comparison",
     "Correlation",
+    "Decision",
     "Detectable",
-    "Direction",
-    "DirectionShares",
     "Discordant",
     "Effect",
     "Estimate",
+    "Region",
     "Resamples",
-    "Reversal",
     "SeedCounts",
     "TestResult",
     "WindowQuantiles",
     "against_each_seed",
     "break_even",
     "break_even_point",
+    "compare",
+    "decide_family",
     "detectable",
-    "detectable_by_sign_test",
-    "detectable_by_standard_error",
-    "detectable_success",
+    "detectable_effect",
     "difference_of_effects",
     "discordant",
     "discordant_by_seed",
+    "distinct_seeds",
+    "fewest_scenes",
     "mcnemar_exact",
     "mcnemar_mid_p",
-    "mcnemar_power",
     "mean_effect",
     "mean_value",
     "median_effect",
+    "mixture_curve",
     "percentile_interval",
     "quantile_difference",
     "quantile_estimate",
     "quantile_log_ratio",
     "quantile_ratio",
-    "reversal",
+    "rule_power",
     "sign_counts",
     "sign_test",
     "spearman",
     "success_effect",
     "success_rate",
     "success_test",
+    "turn",
+    "weighted_sum",
 ]

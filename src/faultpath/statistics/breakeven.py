@@ -1,85 +1,191 @@
 """The fault frequency from which on a repair pays (paper, Table V and its footnote).
 
 In a mixture that meets the fault with probability p the expected difference is
-``(1 - p) * delta_0 + p * delta_f``.
+``(1 - p) * delta_0 + p * delta_f``. Frequencies at which it is not told from 0 are a confidence
+set for the break-even frequency (Fieller, Journal of the Royal Statistical Society B 16:175, 1954).
 """
+
+from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.bootstrap import Effect, check_joint, percentile_interval
-from faultpath.statistics.estimate import BreakEven, Direction, DirectionShares
+from faultpath.statistics.effect import Effect, check_joint, percentile_interval
+from faultpath.statistics.estimate import BreakEven, Region
 from faultpath.statistics.inputs import Floats
+from faultpath.statistics.score import interval, quantile, rejects
 
-_DIRECTIONS: tuple[Direction, ...] = ("above", "below", "always", "never")
+_GRID = 400
+_HALVINGS = 40
+_DIGITS = 9
+"""Of a mixture's values, so that values which cancel leave exactly 0."""
+Bools = NDArray[np.bool_]
+Piece = tuple[float, float]
 
 
-def break_even_point(delta_0: float, delta_f: float) -> tuple[float | None, Direction]:
-    """Return (p*, direction) for one pair of effects, under correct inputs and under the fault.
+def break_even_point(delta_0: float, delta_f: float) -> float | None:
+    """Return where ``(1 - p) delta_0 + p delta_f`` is 0, or None when it is nowhere or everywhere.
 
-    ``delta_0 < 0 < delta_f``: favoured above ``p* = -delta_0 / (delta_f - delta_0)``.
-    ``delta_0 > 0 > delta_f``: favoured below the same expression. Nonnegative at both ends:
-    always, with p* = 0. Otherwise (negative somewhere, positive nowhere): never, without p*.
+    ``p* = -delta_0 / (delta_f - delta_0)``, when that lies between 0 and 1.
     """
-    frequency, kind = _crossings(np.array([delta_0]), np.array([delta_f]))
-    direction = _DIRECTIONS[int(kind[0])]
-    return (None if direction == "never" else float(frequency[0])), direction
+    if delta_0 == delta_f or delta_0 * delta_f > 0.0:
+        return None
+    return delta_0 / (delta_0 - delta_f) + 0.0
 
 
 def break_even(correct: Effect, faulty: Effect, level: float = 0.95) -> BreakEven:
-    """Return p* with a joint bootstrap interval; both effects must share their resamples.
+    """Return at which fault frequencies who is ahead is decided, and at which it is not.
 
-    Each resample is read in the direction of the estimate. Favoured above p*: a resample that is
-    favoured always counts as 0, one favoured never, or only below, as 1. Favoured below p*:
-    always counts as 1, and never, or only above, as 0. An estimate of "always" is read as above.
-    An estimate of "never" has no interval; its shares say how firm it is.
+    ``correct`` and ``faulty`` are effects on the same scenes, without and with the fault. At every
+    frequency the test is that of the effects' own intervals, on the mixture: the picture's band
+    (`mixture_curve`) touches 0 exactly where a frequency is in the set.
     """
-    check_joint(correct, faulty)
-    p_star, direction = break_even_point(correct.value, faulty.value)
-    frequency, kind = _crossings(correct.draws, faulty.draws)
-    above, below, always, never = (float((kind == k).mean()) for k in range(len(_DIRECTIONS)))
-    low = high = None
-    if direction != "never":
-        favoured_above = direction != "below"
-        own, whole, empty = ("above", 0.0, 1.0) if favoured_above else ("below", 1.0, 0.0)
-        read = np.where(kind == _DIRECTIONS.index(own), frequency, empty)
-        read = np.where(kind == _DIRECTIONS.index("always"), whole, read)
-        low, high = percentile_interval(read, level)
+    mixture = _Mixture(correct, faulty, level)
+    p_star = break_even_point(correct.value, faulty.value)
+    pieces = _pieces(mixture, p_star)
+    regions = _regions(pieces, mixture)
+    kind: Literal["interval", "empty", "whole", "two pieces"] = "interval"
+    if len(pieces) != 1:
+        kind = "two pieces" if pieces else "empty"
+    elif not regions:
+        kind = "whole"
     return BreakEven(
         p_star=p_star,
-        low=low,
-        high=high,
+        pieces=pieces,
+        kind=kind,
+        regions=regions,
         level=level,
-        direction=direction,
-        share_without_crossing=always + never,
-        shares=DirectionShares(above=above, below=below, always=always, never=never),
-        words=_words(p_star, direction, correct.value == faulty.value == 0.0),
-        method=f"joint {correct.method}, {correct.resamples.n_resamples} resamples",
+        words=_words(regions),
+        method=f"inverted {correct.method}, mixture of both conditions",
         estimand=correct.estimand,
     )
 
 
-def _crossings(delta_0: Floats, delta_f: Floats) -> tuple[Floats, NDArray[np.intp]]:
-    """Return p* (0 where there is none) and the index of the direction, elementwise."""
-    above = (delta_0 < 0) & (delta_f > 0)
-    below = (delta_0 > 0) & (delta_f < 0)
-    always = (delta_0 >= 0) & (delta_f >= 0)
-    kind = np.select([above, below, always], [0, 1, 2], default=3)
-    crosses = above | below
-    frequency = np.zeros_like(delta_0, dtype=np.float64)
-    np.divide(delta_0, delta_0 - delta_f, out=frequency, where=crosses)
-    return frequency, kind.astype(np.intp)
+def mixture_curve(
+    correct: Effect, faulty: Effect, points: int = 41, level: float = 0.95
+) -> tuple[tuple[float, float, float, float], ...]:
+    """Return ``(p, expected difference, low, high)`` at evenly spaced fault frequencies p."""
+    mixture = _Mixture(correct, faulty, level)
+    p = np.linspace(0.0, 1.0, points)
+    ends = zip(*(end.tolist() for end in mixture.intervals(p)), strict=True)
+    return tuple(
+        (at, mixture.value(at), low + 0.0, high + 0.0)
+        for at, (low, high) in zip(p.tolist(), ends, strict=True)
+    )
 
 
-def _words(p_star: float | None, direction: Direction, identical: bool) -> str:
-    if p_star is None:
-        return "never favoured"
-    if direction == "always":
-        return "no difference at any fault frequency" if identical else "always favoured"
-    return f"favoured {direction} {_percent(p_star)} fault frequency"
+class _Mixture:
+    """What is known of the difference at fault frequencies."""
+
+    def __init__(self, correct: Effect, faulty: Effect, level: float) -> None:
+        check_joint(correct, faulty)
+        self.ends = correct, faulty
+        self.level = level
+        self.scenes = None
+        first, second = correct.scenes, faulty.scenes
+        if first is not None and second is not None:
+            both = np.stack([first.scale * first.values, second.scale * second.values])
+            unique, counts = np.unique(both, axis=1, return_counts=True)
+            self.scenes = unique, counts, first.scale * first.far, second.scale * second.far
+
+    def value(self, p: float) -> float:
+        """Return the expected difference at a frequency."""
+        return (1.0 - p) * self.ends[0].value + p * self.ends[1].value + 0.0
+
+    def undecided(self, p: Floats) -> Bools:
+        """Return [frequencies]: whether the difference at each is not told from 0."""
+        if self.scenes is not None:
+            values, counts, far = self._mixed(p)
+            return ~rejects(values, counts, 0.0, far, quantile(self.level))
+        low, high = self.intervals(p)
+        return (low <= 0.0) & (high >= 0.0)
+
+    def intervals(self, p: Floats) -> tuple[Floats, Floats]:
+        """Return both ends [frequencies] of the difference's interval at each."""
+        if self.scenes is not None:
+            return interval(*self._mixed(p), quantile(self.level))
+        first, second = (end.draws for end in self.ends)
+        drawn = [
+            percentile_interval((1.0 - each) * first + each * second, self.level)
+            for each in p.tolist()
+        ]
+        low, high = np.array(drawn).T
+        return low, high
+
+    def _mixed(self, p: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return values and counts [frequencies, kinds of scene] and the reach [frequencies]."""
+        assert self.scenes is not None
+        (first, second), counts, far_0, far_f = self.scenes
+        share = p[:, np.newaxis]
+        values = np.round((1.0 - share) * first + share * second, _DIGITS)
+        often = np.broadcast_to(counts.astype(np.float64), values.shape)
+        return values, often, (1.0 - p) * far_0 + p * far_f
+
+
+def _pieces(mixture: _Mixture, p_star: float | None) -> tuple[Piece, ...]:
+    """Return the frequencies that are not decided, as intervals."""
+    grid = np.linspace(0.0, 1.0, _GRID + 1)
+    if p_star is not None:
+        grid = np.unique(np.append(grid, p_star))
+    inside = mixture.undecided(grid)
+    edges = _edges(mixture, grid, inside)
+    if inside[0]:
+        edges = [0.0, *edges]
+    if inside[-1]:
+        edges = [*edges, 1.0]
+    pieces = list(zip(edges[::2], edges[1::2], strict=True))
+    while len(pieces) > 2:  # not known to happen; closing a gap only claims less
+        gaps = [after[0] - before[1] for before, after in pairwise(pieces)]
+        least = int(np.argmin(gaps))
+        pieces[least : least + 2] = [(pieces[least][0], pieces[least + 1][1])]
+    return tuple(pieces)
+
+
+def _edges(mixture: _Mixture, grid: Floats, inside: Bools) -> list[float]:
+    """Return where the set begins and ends between neighbouring points of the grid, in order."""
+    at = np.flatnonzero(inside[1:] != inside[:-1])
+    if not len(at):
+        return []
+    low, high, state = grid[at], grid[at + 1], inside[at]
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        same = mixture.undecided(middle) == state
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.where(state, low, high).tolist()
+
+
+def _regions(pieces: tuple[Piece, ...], mixture: _Mixture) -> tuple[Region, ...]:
+    edges = [0.0, *(edge for piece in pieces for edge in piece), 1.0]
+    spans = [(low, high) for low, high in zip(edges[::2], edges[1::2], strict=True) if low < high]
+    return tuple(
+        Region(low=low, high=high, sign=1 if mixture.value(0.5 * (low + high)) > 0 else -1)
+        for low, high in spans
+    )
+
+
+def _words(regions: tuple[Region, ...]) -> str:
+    if not regions:
+        return "is neither ahead nor behind at any fault frequency, as far as can be decided"
+    if len(regions) == 1 and (regions[0].low, regions[0].high) == (0.0, 1.0):
+        return f"is {_side(regions[0])} at every fault frequency"
+    clauses = [f"{_side(region)} {_span(region)}" for region in regions]
+    return f"is {' and '.join(clauses)} fault frequency; elsewhere it is not decided"
+
+
+def _side(region: Region) -> str:
+    return "ahead" if region.sign > 0 else "behind"
+
+
+def _span(region: Region) -> str:
+    low, high = _percent(region.low), _percent(region.high)
+    if region.low == 0.0:
+        return f"below {high}"
+    return f"above {low}" if region.high == 1.0 else f"between {low} and {high}"
 
 
 def _percent(share: float) -> str:
-    if 0.0 < share < 0.005:
-        return f"{100.0 * share:.1g} %"
-    return f"{100.0 * share:.0f} %"
+    percent = 100.0 * share
+    if 0.0 < percent < 0.5:
+        return f"{percent:.1g} %"
+    return f"{percent:.1f} %" if 99.5 <= percent < 100.0 else f"{percent:.0f} %"

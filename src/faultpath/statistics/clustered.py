@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.bootstrap import Effect
+from faultpath.statistics.effect import Effect
 from faultpath.statistics.estimate import SCENES, Estimate
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.statistics.resamples import Resamples

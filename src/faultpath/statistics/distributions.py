@@ -49,6 +49,31 @@ def sign_mid_p_value(first: int, second: int) -> float:
     return min(1.0, float(below + upto)) if total else 1.0
 
 
+def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
+    """Return the two-sided p of Student's t test that ``values`` [n] have mean 0; 1 if all are 0.
+
+    Their variance is taken to be ``least_variance`` at least.
+    """
+    from scipy import special
+
+    mean = float(values.mean())
+    if mean == 0.0 or len(values) < 2:
+        return 1.0
+    error = np.sqrt(max(float(values.var(ddof=1)), least_variance) / len(values))
+    if error == 0.0:
+        return 0.0
+    return min(1.0, 2.0 * float(special.stdtr(len(values) - 1.0, -abs(mean) / error)))
+
+
+def t_power(n: int, shift: float, alpha: float) -> float:
+    """Return the power of the two-sided t test of ``n`` values, ``shift`` standard errors off 0."""
+    from scipy import special
+
+    critical = float(special.stdtrit(n - 1.0, 1.0 - alpha / 2.0))
+    below, above = special.nctdtr(n - 1.0, shift, np.array([-critical, critical]))
+    return float(below + 1.0 - above)
+
+
 def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> float:
     """Return the upper end of the two-sided Clopper-Pearson interval."""
     from scipy import special

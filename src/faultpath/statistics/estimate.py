@@ -152,63 +152,32 @@ class TestResult(FrozenResult):
         return self.p_value <= alpha
 
 
-class Reversal(FrozenResult):
-    """Whether an effect changes sign between condition A and condition B.
+class Region(FrozenResult):
+    """Fault frequencies at which it is decided who is ahead; ``sign`` 1: the first arm."""
 
-    Detected when the interval of B minus A excludes 0 and the two effects differ in sign.
-    ``in_every_seed``: each seed alone shows the same two signs.
-    """
-
-    effect_a: Estimate
-    effect_b: Estimate
-    change: Estimate
-    detected: bool
-    in_every_seed: bool
-
-
-Direction = Literal["above", "below", "always", "never"]
-
-
-class DirectionShares(FrozenResult):
-    """Share of the bootstrap resamples in each direction; the four add up to 1."""
-
-    above: float = Field(ge=0.0, le=1.0)
-    below: float = Field(ge=0.0, le=1.0)
-    always: float = Field(ge=0.0, le=1.0)
-    never: float = Field(ge=0.0, le=1.0)
+    low: float = Field(ge=0.0, le=1.0)
+    high: float = Field(ge=0.0, le=1.0)
+    sign: Literal[-1, 1]
 
 
 class BreakEven(FrozenResult):
     """Fault frequency at which a repair's gain under faults offsets its cost without (Table V).
 
-    ``direction`` says on which side of ``p_star`` the repair is favoured. ``never`` has no
-    ``p_star`` and no interval (the paper's "no crossing"); ``always`` has ``p_star`` 0.
-    ``share_without_crossing`` is the share of resamples that are favoured always or never.
+    ``pieces`` are the frequencies at which the expected difference is not told from 0, a confidence
+    set for the break-even frequency: one interval, none at all, the whole range or two pieces.
+    ``regions`` are what is left of the range, where it is decided who is ahead. ``p_star`` is where
+    the point estimates cross, None where they do not; it decides nothing.
     """
 
     p_star: float | None = Field(ge=0.0, le=1.0)
-    low: float | None = Field(default=None, ge=0.0, le=1.0)
-    high: float | None = Field(default=None, ge=0.0, le=1.0)
+    pieces: tuple[tuple[float, float], ...] = Field(max_length=2)
+    kind: Literal["interval", "empty", "whole", "two pieces"]
+    regions: tuple[Region, ...]
     level: float = Field(default=0.95, gt=0.0, lt=1.0)
-    direction: Direction
-    share_without_crossing: float | None = Field(default=None, ge=0.0, le=1.0)
-    shares: DirectionShares | None = None
     words: str
+    """What is decided, from the regions alone; it goes on after the name of the first arm."""
     method: str
     estimand: str
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Self:
-        if (self.p_star is None) != (self.direction == "never"):
-            raise ValueError("p_star is None exactly when the direction is never")
-        if (self.low is None) != (self.high is None):
-            raise ValueError("an interval needs both ends or neither")
-        return self
-
-    @property
-    def interval(self) -> tuple[float, float] | None:
-        """Return (low, high), or None without an interval."""
-        return None if self.low is None or self.high is None else (self.low, self.high)
 
 
 class Detectable(FrozenResult):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.bootstrap import Effect, check_scenes
+from faultpath.statistics.effect import Effect, check_scenes
 from faultpath.statistics.estimate import SCENES
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.statistics.resamples import Resamples

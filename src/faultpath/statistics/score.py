@@ -1,0 +1,143 @@
+"""The score test of a mean of bounded scene values, and the interval that inverts it.
+
+Scenes are the sample; each has one value between ``-bound`` and ``bound``. Under the null that the
+mean is ``d``, the most likely distribution with that mean puts ``w = 1 / (n (1 + a (y - d)))`` on
+every observed value ``y``, and what is left over on one end of the support, observed or not. With
+the variance ``V`` of that distribution ``z^2 = n (mean - d)^2 / V``, which is ``n a (mean - d)``.
+
+For one seed of binary outcomes this is Tango's score test (Statistics in Medicine 17:891, 1998):
+the values are -1, 0 and 1, and ``V`` is his restricted estimate. For several seeds the values are
+means over the seeds of a scene, so that seeds may depend on each other in any way. No interval has
+width zero, because what was not observed in n scenes may still exist.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.distributions import normal_quantile
+from faultpath.statistics.inputs import Floats
+
+_HALVINGS = 60
+_DIGITS = 9
+"""Of a combined value, so that values which cancel leave exactly 0."""
+PRIOR = 3.0
+"""Scenes of the largest possible difference that `reach` mixes to those which differed."""
+
+
+@dataclass(frozen=True, eq=False)
+class SceneValues:
+    """One value a scene, ``values`` [scenes], none further from 0 than ``bound``.
+
+    ``far`` is how far from 0 a value is taken to lie that was not observed. ``scale`` and
+    ``centre`` lead to the unit of the effect: ``scale * (value + centre)``.
+    """
+
+    values: Floats = field(repr=False)
+    bound: float
+    far: float
+    scale: float = 1.0
+    centre: float = 0.0
+
+    @classmethod
+    def paired(cls, values: Floats, bound: float, scale: float = 1.0) -> "SceneValues":
+        """Return differences between two arms; what was not observed lies within `reach`."""
+        far = float(reach(values, np.ones_like(values), bound))
+        return cls(values=values, bound=bound, far=far, scale=scale)
+
+    def interval(self, level: float = 0.95) -> tuple[float, float]:
+        """Return the score interval of the mean, in the unit of the effect."""
+        values, counts = np.unique(self.values, return_counts=True)
+        ends = interval(values, counts.astype(np.float64), np.asarray(self.far), quantile(level))
+        low, high = (self.scale * (float(end) + self.centre) for end in ends)
+        return low + 0.0, high + 0.0  # never -0.0
+
+
+def combined(weights: Sequence[float], parts: Sequence[SceneValues]) -> SceneValues:
+    """Return the weighted sum of paired values, scene by scene, in the first one's scale."""
+    relative = [w * part.scale / parts[0].scale for w, part in zip(weights, parts, strict=True)]
+    values = np.sum([w * part.values for w, part in zip(relative, parts, strict=True)], axis=0)
+    bound, far = (
+        float(np.abs(relative) @ np.array([getattr(part, name) for part in parts]))
+        for name in ("bound", "far")
+    )
+    return SceneValues(np.round(values, _DIGITS), bound, far, parts[0].scale)
+
+
+def quantile(level: float) -> float:
+    """Return the ``z`` of a central interval at ``level``."""
+    if not 0.0 < level < 1.0:
+        raise ValueError(f"the level of an interval lies between 0 and 1, not at {level}")
+    return normal_quantile((1.0 + level) / 2.0)
+
+
+def reach(values: Floats, counts: Floats, bound: Floats | float) -> Floats:
+    """Return [...]: how far from 0 a value that was not observed is taken to lie.
+
+    ``values`` and ``counts`` are [..., values]. With one seed a scene differs wholly or not, and
+    this is ``bound``. With several it lies nearer to the size of the differing scenes that were
+    seen, never below the largest of them: the mean size, each scene weighted by its size, after
+    `PRIOR` scenes of the largest possible size.
+    """
+    size = np.abs(values)
+    seen = (counts * size).sum(axis=-1)
+    squares = (counts * size * size).sum(axis=-1)
+    shrunk = (squares + PRIOR * np.square(bound)) / (seen + PRIOR * np.asarray(bound))
+    largest = np.where(counts > 0, size, 0.0).max(axis=-1)
+    return np.asarray(np.clip(shrunk, largest, bound), dtype=np.float64)
+
+
+def rejects(
+    values: Floats, counts: Floats, null: Floats | float, far: Floats | float, z: float
+) -> NDArray[np.bool_]:
+    """Return [...]: whether the score of "the mean is ``null``" is beyond ``z`` on either side.
+
+    ``counts`` [..., values] says how often each of ``values`` occurred; ``far`` [...] is the
+    support's reach on either side of 0. One look a sample, so fit for simulations.
+    """
+    total = counts.sum(axis=-1)
+    share = counts / total[..., np.newaxis]
+    off = values - np.asarray(null, dtype=np.float64)[..., np.newaxis]
+    mean = (share * off).sum(axis=-1)
+    side = np.where(mean < 0.0, -1.0, 1.0)
+    # z^2 = n a |mean| exceeds its level when `a` exceeds `tilt`; the support's end limits `a`.
+    beyond = np.abs(mean) > z * z / total * (np.asarray(far) + side * null)
+    tilt = np.zeros_like(mean)
+    np.divide(z * z / total, np.abs(mean), out=tilt, where=beyond)
+    off = np.where(counts > 0, side[..., np.newaxis] * off, 0.0)
+    inside = (share * off / (1.0 + tilt[..., np.newaxis] * off)).sum(axis=-1) > 0.0
+    return np.asarray(beyond & inside, dtype=np.bool_)
+
+
+def interval(values: Floats, counts: Floats, far: Floats, z: float) -> tuple[Floats, Floats]:
+    """Return both ends [...]: between them lie the means that `rejects` does not reject.
+
+    The upper end is the mirrored lower end of the negated values: with ascending ``values``,
+    swapping the arms mirrors the interval to the bit.
+    """
+    mirrored = _low(-values[..., ::-1], counts[..., ::-1], far, z)
+    return _low(values, counts, far, z), 0.0 - mirrored
+
+
+def _low(values: Floats, counts: Floats, far: Floats, z: float) -> Floats:
+    """Return the lower end: the mean less the ``m`` at which ``n a m = z^2``.
+
+    Put ``a = z^2 / (n m)`` into the equation that defines ``a``; what is left rises in ``m``.
+    """
+    total = counts.sum(axis=-1)
+    share = counts / total[..., np.newaxis]
+    level = z * z / total
+    mean = (share * values).sum(axis=-1)
+    off = np.where(counts > 0, values - mean[..., np.newaxis], 0.0)
+    short = level * (far + mean) / (1.0 + level)  # the support's end limits `a`
+    long = np.maximum(short, -off.min(axis=-1))
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (short + long)
+        weight = ((1.0 + level) * middle)[..., np.newaxis] + level[..., np.newaxis] * off
+        term = np.zeros_like(weight)
+        np.divide(share * (off + middle[..., np.newaxis]), weight, out=term, where=weight > 0)
+        further = term.sum(axis=-1) < 0.0
+        short, long = np.where(further, middle, short), np.where(further, long, middle)
+    return np.asarray(mean - long, dtype=np.float64)
