@@ -1,8 +1,8 @@
-"""Break-even frequencies: the formula, its edges, and resamples that do not cross."""
+"""Break-even frequencies: the set of undecided frequencies, what it says and what it never says."""
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from faultpath.statistics import (
@@ -10,11 +10,14 @@ from faultpath.statistics import (
     Resamples,
     break_even,
     break_even_point,
+    mean_effect,
+    mixture_curve,
     success_effect,
+    weighted_sum,
 )
 
-N = 40
-RESAMPLES = Resamples.draw("break-even", N, n_resamples=2000)
+N = 100
+RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)
 DELTA = st.floats(-100, 100).filter(lambda delta: delta == 0 or abs(delta) > 1e-3)
 
 
@@ -27,113 +30,154 @@ def effect(wins, losses, first_scene=0):
 @pytest.mark.parametrize(
     ("delta_0", "delta_f", "expected"),
     [
-        (-10.0, 30.0, (0.25, "above")),
-        (10.0, -30.0, (0.25, "below")),
-        (1.0, 2.0, (0.0, "always")),
-        (0.0, 2.0, (0.0, "always")),
-        (1.0, 0.0, (0.0, "always")),
-        (0.0, 0.0, (0.0, "always")),
-        (-1.0, -2.0, (None, "never")),
-        (0.0, -2.0, (None, "never")),
-        (-1.0, 0.0, (None, "never")),
+        (-10.0, 30.0, 0.25),
+        (10.0, -30.0, 0.25),
+        (0.0, 2.0, 0.0),
+        (-1.0, 0.0, 1.0),
+        (1.0, 2.0, None),
+        (-1.0, -2.0, None),
+        (0.0, 0.0, None),
     ],
 )
-def test_every_combination_of_signs(delta_0, delta_f, expected):
+def test_the_point_is_where_the_estimates_cross(delta_0, delta_f, expected):
     assert break_even_point(delta_0, delta_f) == expected
 
 
 @settings(deadline=None)
-@given(DELTA, DELTA, st.floats(0, 1))
-def test_the_mixture_is_positive_exactly_on_the_favoured_side(delta_0, delta_f, p):
-    p_star, direction = break_even_point(delta_0, delta_f)
-    mixture = (1 - p) * delta_0 + p * delta_f
-    if direction in ("always", "never"):
-        assert mixture >= 0 if direction == "always" else mixture <= 0
-    else:
-        assume(abs(p - p_star) > 1e-9)
-        assert (mixture > 0) == (p > p_star if direction == "above" else p < p_star)
-
-
-@settings(deadline=None)
 @given(DELTA, DELTA)
-def test_swapping_the_arms_favours_the_other_side_of_the_same_frequency(delta_0, delta_f):
-    p_star, direction = break_even_point(delta_0, delta_f)
-    assume(direction in ("above", "below"))
-    other = "below" if direction == "above" else "above"
-    assert break_even_point(-delta_0, -delta_f) == (p_star, other)
+def test_the_mixture_is_zero_at_the_point_and_nowhere_without_one(delta_0, delta_f):
+    p = break_even_point(delta_0, delta_f)
+    if p is None:
+        assert delta_0 * delta_f > 0 or delta_0 == delta_f
+    else:
+        assert 0 <= p <= 1
+        assert (1 - p) * delta_0 + p * delta_f == pytest.approx(0, abs=1e-9)
+        assert break_even_point(-delta_0, -delta_f) == p
 
 
 def test_a_clear_crossing():
-    result = break_even(effect(2, 10), effect(20, 2))
-    assert result.p_star == pytest.approx(8 / 26)
-    assert result.words == "favoured above 31 % fault frequency"
-    assert 0 < result.low < result.p_star < result.high < 1
-    assert result.shares.above > 0.95
-    assert result.share_without_crossing == result.shares.always + result.shares.never
+    result = break_even(effect(2, 30), effect(60, 2))
+    ((low, high),) = result.pieces
+    assert result.kind == "interval"
+    assert 0 < low < result.p_star < high < 1
+    assert result.p_star == pytest.approx(28 / 86)
+    assert [(r.low, r.high, r.sign) for r in result.regions] == [(0, low, -1), (high, 1, 1)]
+    assert result.words == (
+        f"is behind below {100 * low:.0f} % and ahead above {100 * high:.0f} % fault frequency; "
+        "elsewhere it is not decided"
+    )
 
 
-def test_the_interval_is_joint_on_the_same_resamples():
-    """Where fault gain and nominal cost fall on the same scenes, p* hardly varies."""
-    result = break_even(effect(0, 10), effect(10, 0))
-    assert (result.p_star, result.interval) == (0.5, (0.5, 0.5))
-    apart = break_even(effect(0, 10), effect(10, 0, first_scene=20))
-    assert apart.high - apart.low > 0.2
+def test_a_repair_that_pays_without_the_fault_and_costs_with_it():
+    result = break_even(effect(30, 2), effect(2, 60))
+    assert [r.sign for r in result.regions] == [1, -1]
+    mirrored = break_even(effect(2, 30), effect(60, 2))
+    assert result.p_star == mirrored.p_star
 
 
-def test_favoured_below_mirrors_favoured_above():
-    above = break_even(effect(2, 10), effect(20, 2))
-    below = break_even(effect(10, 2), effect(2, 20))
-    # Mirrored arms: wins and losses sit on other scenes, so only the point is the same.
-    assert (below.p_star, below.direction) == (above.p_star, "below")
-    assert below.words == "favoured below 31 % fault frequency"
-    assert 0 < below.low < below.p_star < below.high < 1
+def test_ahead_at_both_ends_leaves_no_frequency_undecided():
+    result = break_even(effect(30, 2), effect(40, 1))
+    assert (result.kind, result.pieces, result.p_star) == ("empty", (), None)
+    assert result.words == "is ahead at every fault frequency"
+    behind = break_even(effect(2, 30), effect(1, 40))
+    assert behind.words == "is behind at every fault frequency"
 
 
-def test_resamples_without_crossing_count_as_the_nearer_end():
-    """Cost of one scene: about 37 % of the resamples miss it and are favoured always, p* = 0."""
-    result = break_even(effect(0, 1), effect(20, 0, first_scene=10))
-    assert result.low == 0.0 < result.p_star < result.high
-    assert result.shares.always == pytest.approx((1 - 1 / N) ** N, abs=0.04)
-    # A gain of one scene: as many resamples are favoured never, p* = 1.
-    rare = break_even(effect(0, 20, first_scene=10), effect(1, 0))
-    assert rare.low < rare.p_star < rare.high == 1.0
-    assert rare.shares.never == pytest.approx((1 - 1 / N) ** N, abs=0.04)
-    # And read from below: gains at p = 0, a rare loss at p = 1.
-    mirrored = break_even(effect(20, 0, first_scene=10), effect(0, 1))
-    assert mirrored.low < mirrored.p_star < mirrored.high == 1.0
-    assert mirrored.shares.always == rare.shares.never
-    # A rare gain at p = 0 that most losses at p = 1 outweigh: never favoured counts as 0.
-    lost = break_even(effect(1, 0), effect(0, 20, first_scene=10))
-    assert (lost.direction, lost.low) == ("below", 0.0)
-    assert lost.high < 0.5
-    assert lost.shares.never == rare.shares.never
+def test_no_difference_anywhere_decides_nothing():
+    result = break_even(effect(0, 0), effect(0, 0))
+    assert (result.kind, result.pieces, result.regions) == ("whole", ((0.0, 1.0),), ())
+    assert result.p_star is None
+    assert result.words == (
+        "is neither ahead nor behind at any fault frequency, as far as can be decided"
+    )
 
 
-def test_always_never_and_no_difference():
-    always = break_even(effect(10, 0), effect(12, 0))
-    assert (always.p_star, always.interval, always.words) == (0.0, (0.0, 0.0), "always favoured")
-    never = break_even(effect(0, 10), effect(0, 12))
-    assert (never.p_star, never.interval, never.words) == (None, None, "never favoured")
-    assert (never.share_without_crossing, never.shares.never) == (1.0, 1.0)
-    same = break_even(effect(0, 0), effect(0, 0))
-    assert same.words == "no difference at any fault frequency"
+def test_no_cost_observed_is_not_a_repair_that_always_pays():
+    """Point estimates 0 and +30: formerly "always favoured"; how rare a fault may be is open."""
+    result = break_even(effect(0, 0), effect(30, 0))
+    ((low, high),) = result.pieces
+    assert (low, result.p_star) == (0.0, 0.0)
+    assert 0.05 < high < 0.3
+    assert [region.sign for region in result.regions] == [1]
 
 
-def test_tiny_frequencies_are_not_printed_as_zero():
-    effects = [effect(0, 1), effect(20, 0, first_scene=10)]
-    effects[1] = type(effects[1])(**{**vars(effects[1]), "value": 1000.0})
-    assert break_even(*effects).words == "favoured above 0.2 % fault frequency"
+def test_opposite_effects_that_cancel_in_the_middle_leave_two_decided_ends():
+    """Cost and gain on the same scenes: the mixture is exactly 0 at one half, in no other place."""
+    result = break_even(effect(0, 40), effect(40, 0))
+    ((low, high),) = result.pieces
+    assert result.p_star == 0.5
+    assert low < 0.5 < high
+    assert [region.sign for region in result.regions] == [-1, 1]
+
+
+def test_two_pieces_are_named_as_such():
+    """6 pp on other scenes at either end: only their mixture has the scenes to decide."""
+    result = break_even(effect(9, 3), effect(9, 3, first_scene=50))
+    assert result.kind == "two pieces"
+    (middle,) = result.regions
+    assert middle.sign == 1
+    assert 0 < middle.low < 0.5 < middle.high < 1
+    assert result.words.startswith("is ahead between ")
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.lists(st.integers(0, 20), min_size=4, max_size=4), st.integers(0, N))
+def test_the_curves_band_holds_0_exactly_where_the_set_is(counts, shift):
+    correct, faulty = effect(*counts[:2]), effect(*counts[2:], first_scene=shift)
+    result = break_even(correct, faulty)
+    for p, value, low, high in mixture_curve(correct, faulty):
+        inside = any(a <= p <= b for a, b in result.pieces)
+        near = any(abs(p - edge) < 1e-9 for piece in result.pieces for edge in piece)
+        assert near or inside == (low <= 0 <= high)
+        assert low <= value <= high
+        for region in result.regions:
+            if region.low < p < region.high:
+                assert np.sign(value) == region.sign
+    first, *_, last = mixture_curve(correct, faulty)
+    assert first[2:] == pytest.approx(correct.interval(), abs=1e-6)
+    assert last[2:] == pytest.approx(faulty.interval(), abs=1e-6)
+
+
+def test_the_set_is_that_of_single_mixtures():
+    correct, faulty = effect(2, 20), effect(25, 3, first_scene=30)
+    ((low, high),) = break_even(correct, faulty).pieces
+    for p, held in ((low - 1e-3, False), (low + 1e-3, True), (high - 1e-3, True)):
+        ends = weighted_sum((1 - p, p), (correct, faulty)).interval()
+        assert (ends[0] <= 0 <= ends[1]) is held
+
+
+def test_unbounded_outcomes_use_the_bootstrap():
+    rng = np.random.default_rng(0)
+    correct, faulty = (
+        mean_effect(rng.normal(mean, 1, N), np.zeros(N), RESAMPLES, "m") for mean in (-1.0, 2.0)
+    )
+    result = break_even(correct, faulty)
+    ((low, high),) = result.pieces
+    assert 0.2 < low < result.p_star < high < 0.5
+    assert [region.sign for region in result.regions] == [-1, 1]
+    _, _, *ends = mixture_curve(correct, faulty, points=2)[0]
+    assert tuple(ends) == correct.interval()
+
+
+@pytest.mark.parametrize(
+    ("regions", "said"),
+    [(0.002, "ahead above 0.2 % fault"), (0.997, "ahead above 99.7 % fault")],
+)
+def test_frequencies_near_the_ends_are_not_printed_as_the_ends(regions, said):
+    from faultpath.statistics.breakeven import _words
+    from faultpath.statistics.estimate import Region
+
+    assert said in _words((Region(low=regions, high=1.0, sign=1),))
 
 
 def test_effects_on_other_resamples_are_refused():
-    other = Resamples.draw("elsewhere", N, n_resamples=2000)
+    other = Resamples.draw("elsewhere", N, n_resamples=400)
     with pytest.raises(ValueError, match="same resamples"):
         break_even(effect(1, 2), success_effect(np.ones(N), np.zeros(N), other))
 
 
-def test_a_break_even_result_must_be_consistent():
-    base = {"words": "w", "method": "m", "estimand": "e"}
-    with pytest.raises(ValueError, match="exactly when the direction is never"):
-        BreakEven(p_star=None, direction="above", **base)
-    with pytest.raises(ValueError, match="both ends or neither"):
-        BreakEven(p_star=0.5, low=0.1, direction="above", **base)
+def test_a_result_holds_no_frequency_outside_0_and_1():
+    with pytest.raises(ValueError, match="less than or equal to 1"):
+        BreakEven(
+            p_star=1.2, pieces=(), kind="empty", regions=(), words="", method="m", estimand="e"
+        )

@@ -4,16 +4,19 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import beta, binom, binomtest, norm
+from scipy.stats import beta, binom, binomtest, nct, norm
+from scipy.stats import t as student
 
 from faultpath.statistics import (
     Detectable,
-    Discordant,
+    Resamples,
+    compare,
     detectable,
-    detectable_by_sign_test,
-    detectable_by_standard_error,
-    detectable_success,
-    mcnemar_power,
+    detectable_effect,
+    difference_of_effects,
+    mean_effect,
+    rule_power,
+    success_effect,
 )
 from faultpath.statistics.distributions import (
     binomial_cdf,
@@ -24,7 +27,13 @@ from faultpath.statistics.distributions import (
 
 
 def counted(first_only, second_only, n_pairs=100):
-    return Discordant(first_only=first_only, second_only=second_only, n_pairs=n_pairs)
+    """Arms of one seed with these counts."""
+    scene = np.arange(n_pairs)
+    return scene < first_only, (scene >= first_only) & (scene < first_only + second_only)
+
+
+def found(counts, **how):
+    return detectable(*counted(*counts), **how)
 
 
 @settings(deadline=None)
@@ -41,96 +50,117 @@ def test_distributions_agree_with_scipy(n, k, p):
 @settings(max_examples=15, deadline=None)
 @given(st.integers(1, 14), st.floats(0.05, 1.0), st.floats(-1, 1), st.sampled_from([0.05, 0.3]))
 def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
+    """Both have to find it: the exact test, and the 95 % interval on the same side."""
     difference = lean * rate
     p_first, p_second = (rate + difference) / 2, (rate - difference) / 2
-    expected = sum(
-        binom.pmf(first + second, n, rate)
-        * binom.pmf(first, first + second, p_first / (p_first + p_second))
-        for first in range(n + 1)
-        for second in range(n + 1 - first)
-        if first + second and binomtest(first, first + second).pvalue <= alpha
-    )
-    assert mcnemar_power(n, rate, difference, alpha) == pytest.approx(expected, abs=1e-10)
+    resamples = Resamples.draw("power", n, n_resamples=1)
+    expected = 0.0
+    for first in range(n + 1):
+        for second in range(n + 1 - first):
+            both = compare(success_effect(*counted(first, second, n), resamples))
+            if both.agreed and both.test.rejects(alpha):
+                assert binomtest(first, first + second).pvalue <= alpha
+                expected += binom.pmf(first + second, n, rate) * binom.pmf(
+                    first, first + second, p_first / (p_first + p_second)
+                )
+    assert rule_power(n, rate, difference, alpha) == pytest.approx(expected, abs=1e-10)
 
 
 @settings(deadline=None)
 @given(st.integers(6, 200), st.floats(0, 1))
-def test_the_test_never_exceeds_its_level(n, rate):
-    assert mcnemar_power(n, rate, 0.0) <= 0.05
+def test_the_rule_never_exceeds_its_level(n, rate):
+    assert rule_power(n, rate, 0.0) <= 0.05
 
 
-@settings(deadline=None)
-@given(st.integers(0, 50), st.integers(0, 50))
-def test_power_is_80_percent_at_the_detectable_difference_and_less_just_below(first, second):
-    found = detectable_success(counted(first, second))
-    difference, rate = found.value / 100, found.discordant_rate
-    assert mcnemar_power(100, rate, difference) == pytest.approx(0.8, abs=1e-3)
+@settings(deadline=None, max_examples=30)
+@given(st.integers(0, 50), st.integers(0, 50), st.sampled_from([0.05, 0.05 / 7]))
+def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, second, alpha):
+    least = found((first, second), alpha=alpha)
+    difference, observed = least.value / 100, (first + second) / 100
+    assert observed == least.discordant_rate or not observed
+    rate = max(least.discordant_rate, difference)
+    assert rule_power(100, rate, difference, alpha) == pytest.approx(0.8, abs=2e-3)
     below = difference - 0.005
-    observed = (first + second) / 100
-    assert mcnemar_power(100, max(observed, below), below) < 0.8
-    assert detectable_success(counted(second, first)).value == found.value
+    assert rule_power(100, max(observed, below), below, alpha) < 0.8
+    assert found((second, first), alpha=alpha).value == least.value
 
 
-def test_more_scenes_detect_less_and_more_discordance_hides_more():
-    assert detectable_success(counted(4, 30, 200)).value < detectable_success(counted(2, 15)).value
-    assert detectable_success(counted(20, 20)).value > detectable_success(counted(8, 9)).value
+def test_more_scenes_detect_less_and_a_stricter_level_more():
+    assert found((4, 30, 200)).value < found((2, 15)).value
+    assert found((20, 20)).value > found((8, 9)).value
+    assert found((8, 9), alpha=0.01).value > found((8, 9)).value
 
 
 def test_without_discordant_pairs_an_upper_bound_stands_in():
-    found = detectable_success(counted(0, 0))
-    assert "at most 3.6 % (Clopper-Pearson)" in found.note
+    least = found((0, 0))
+    assert "at most 3.6 % do (Clopper-Pearson)" in least.note
     # Fewer than six discordants never reject, so at least six of 100 must be expected.
-    assert found.value > 6
+    assert least.value > 6
     # Twelve scenes: the bound, 26 %, is still below what one-sided discordance needs.
-    assert detectable_success(counted(0, 0, 12)).value > 26
+    assert found((0, 0, 12)).value > 26
 
 
 def test_too_few_scenes_give_a_reason():
-    found = detectable_success(counted(1, 1, 5))
-    assert found.value is None
-    assert found.reason == (
-        "with 5 scenes exact McNemar cannot reject at 0.05 with power 0.8, whatever the difference"
+    least = found((1, 1, 5))
+    assert least.value is None
+    assert least.reason == (
+        "with 5 scenes the test cannot reject at 0.05 with power 0.8, whatever the difference"
     )
-    assert detectable_success(counted(1, 1, 6)).value is not None
+    assert found((1, 1, 6)).value is not None
+    assert found((1, 1, 6), alpha=0.05 / 7).value is None
 
 
-def test_standard_error_version_is_2_80_standard_errors():
+@pytest.mark.parametrize("n_seeds", [1, 3])
+def test_copying_a_seed_does_not_shrink_it(n_seeds):
     rng = np.random.default_rng(0)
-    first, second = rng.normal(size=(2, 50, 3))
-    found = detectable_by_standard_error(first, second, "m")
-    error = (first - second).mean(axis=1).std(ddof=1) / np.sqrt(50)
-    assert found.value == pytest.approx(2.8016 * error, rel=1e-4)
-    assert found.method == "normal approximation, 2.80 x standard error of scene means"
-    assert (found.unit, found.n_seeds) == ("m", 3)
-    copied = detectable_by_standard_error(np.tile(first, 2), np.tile(second, 2), "m")
-    assert copied.value == pytest.approx(found.value)
+    first, second = rng.random((2, 60, n_seeds)) < [[[0.6]], [[0.5]]]
+    once = detectable(first, second)
+    copied = detectable(np.tile(first, 3), np.tile(second, 3))
+    assert copied.value == once.value
 
 
-@pytest.mark.parametrize("n_scenes", [1, 10])
-def test_standard_error_version_says_why_there_is_none(n_scenes):
-    same = np.ones((n_scenes, 3))
-    found = detectable_by_standard_error(same, 0 * same, "m")
-    assert (found.value, "do not vary" in found.reason) == (None, True)
-
-
-def test_several_seeds_fall_back_to_the_sign_test_where_few_scenes_differ():
+def test_seeds_that_differ_alone_are_smaller_differences():
     first, second = np.zeros((2, 100, 3))
-    assert detectable(first, second).value == detectable_success(counted(0, 0)).value
+    assert detectable(first, second).value == found((0, 0)).value
     first[:9, 0] = 1
     few = detectable(first, second)
-    assert few == detectable_by_sign_test(first, second)
-    assert few.value == pytest.approx(detectable_success(counted(9, 0)).value / 3)
     assert few.note.startswith("a differing scene differs by 33 pp on average")
-    first[:10, 0] = 1
-    assert detectable(first, second).method.startswith("normal approximation")
-    assert detectable(first[:, :1], second[:, :1]) == detectable_success(counted(10, 0))
+    assert few.method == "power of the sign test and the score interval, simulated"
+    assert few.value < found((9, 0)).value
+    assert detectable(first, second) == few
+
+
+def test_a_difference_of_effects_has_one_too():
+    rng = np.random.default_rng(1)
+    arms = rng.random((4, 80)) < 0.5
+    resamples = Resamples.draw("change", 80, n_resamples=10)
+    one, two = (success_effect(*pair, resamples) for pair in (arms[:2], arms[2:]))
+    least = detectable_effect(difference_of_effects(one, two))
+    assert 20 < least.value < 60
+    assert detectable_effect(one) == detectable(*arms[:2])
+    with pytest.raises(ValueError, match="has no test"):
+        detectable_effect(mean_effect(np.ones(80), np.zeros(80), resamples, "m"))
+
+
+def test_newly_trained_models_need_a_difference_that_the_t_test_sees():
+    rng = np.random.default_rng(2)
+    first, second = rng.random((2, 80, 5)) < 0.5
+    resamples = Resamples.draw("models", 80, n_resamples=10)
+    effect = success_effect(first, second, resamples, resample_seeds=True)
+    least = detectable_effect(effect)
+    error = np.std(effect.per_seed, ddof=1) / np.sqrt(5)
+    critical = student.ppf(0.975, 4)
+    power = nct.sf(critical, 4, least.value / error) + nct.cdf(-critical, 4, least.value / error)
+    assert power == pytest.approx(0.8, abs=1e-3)
+    same = success_effect(
+        first[:, :1].repeat(2, 1), 0 * first[:, :2], resamples, resample_seeds=True
+    )
+    assert detectable_effect(same).reason == "the seeds' effects do not vary"
 
 
 def test_wrong_input_is_refused():
-    with pytest.raises(ValueError, match="needs n_pairs"):
-        detectable_success(Discordant(first_only=1, second_only=2))
     with pytest.raises(ValueError, match="need 0 <="):
-        mcnemar_power(100, 0.1, 0.2)
+        rule_power(100, 0.1, 0.2)
     with pytest.raises(ValueError, match="only 0 and 1"):
         detectable(np.full((4, 2), 0.5), np.ones((4, 2)))
     with pytest.raises(ValueError, match="either a value or a reason"):

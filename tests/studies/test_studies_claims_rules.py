@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from faultpath.statistics import (
-    DirectionShares,
     Discordant,
     Effect,
     Resamples,
     TestResult,
     mean_effect,
+    weighted_sum,
 )
-from faultpath.studies.claims.differences import weighted
 from faultpath.studies.claims.found import MULTIPLE, POINT_SCENES, Found, of_effect
 from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
 from faultpath.studies.claims.reversals import Turn, TurnsDown
@@ -217,35 +216,38 @@ def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(shown: Turn, a
     assert TurnsDown().judge(shown).answer == answer
 
 
-def crossing(value: float | None, shares: tuple[float, float, float, float]) -> Crossing:
-    above, below, always, never = shares
+def crossing(
+    value: float | None, *, ahead: bool = False, behind: bool = False, never: bool = False
+) -> Crossing:
     return Crossing(
         value=value,
         interval=None if value is None else (max(0.0, value - 10), value + 10),
         unit="percent",
         n_scenes=100,
-        shares=DirectionShares(above=above, below=below, always=always, never=never),
-        never=value is None and never >= below,
+        ahead=ahead,
+        behind=behind,
+        never=never,
     )
 
 
 @pytest.mark.parametrize(
     ("rule", "shown", "answer"),
     [
-        (PaysFrom(less_than(15)), crossing(5, (1, 0, 0, 0)), "confirmed"),
-        (PaysFrom(less_than(15)), crossing(20, (1, 0, 0, 0)), "undecided"),
-        (PaysFrom(less_than(15)), crossing(40, (1, 0, 0, 0)), "refuted"),
-        (PaysFrom(less_than(15)), crossing(0, (0, 0, 1, 0)), "confirmed"),
-        (PaysFrom(more_than(30)), crossing(0, (0, 0, 1, 0)), "refuted"),
-        (PaysFrom(more_than(30)), crossing(None, (0.02, 0, 0, 0.98)), "refuted"),
-        (PaysFrom(more_than(30)), crossing(None, (0.03, 0, 0, 0.97)), "undecided"),
-        (PaysFrom(less_than(15)), crossing(None, (0, 0.9, 0.1, 0)), "undecided"),
-        (NeverPays(), crossing(None, (0.4, 0, 0, 0.6)), "confirmed"),
-        (NeverPays(), crossing(40, (0.6, 0, 0, 0.4)), "undecided"),
-        (NeverPays(), crossing(40, (0.98, 0, 0, 0.02)), "refuted"),
+        (PaysFrom(less_than(15)), crossing(5, ahead=True), "confirmed"),
+        (PaysFrom(less_than(15)), crossing(20, ahead=True), "undecided"),
+        (PaysFrom(less_than(15)), crossing(40, ahead=True), "refuted"),
+        (PaysFrom(less_than(15)), crossing(0, ahead=True), "confirmed"),
+        (PaysFrom(more_than(30)), crossing(0, ahead=True), "refuted"),
+        (PaysFrom(more_than(30)), crossing(None, behind=True, never=True), "refuted"),
+        (PaysFrom(more_than(30)), crossing(None, never=True), "undecided"),
+        (PaysFrom(less_than(15)), crossing(None), "undecided"),
+        (NeverPays(), crossing(None, never=True), "confirmed"),
+        (NeverPays(), crossing(None, never=True, behind=True), "confirmed"),
+        (NeverPays(), crossing(40), "undecided"),
+        (NeverPays(), crossing(40, ahead=True), "refuted"),
     ],
 )
-def test_a_break_even_frequency_is_judged_with_the_resamples_that_have_none(
+def test_a_break_even_frequency_is_judged_by_what_is_decided(
     rule: PaysFrom | NeverPays, shown: Crossing, answer: str
 ) -> None:
     assert rule.judge(shown).answer == answer
@@ -273,6 +275,6 @@ def test_what_does_not_vary_detects_nothing() -> None:
 
 def test_effects_that_cancel_leave_exactly_nothing() -> None:
     one = effect([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6])
-    gone = weighted([0.1, 0.2, -0.3], [one, one, one])
+    gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])
     assert gone.value == 0
     assert not gone.draws.any()

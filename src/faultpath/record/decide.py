@@ -1,9 +1,7 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from statistics import median
-
-import numpy as np
 
 from faultpath.errors import UserError
 from faultpath.record.model import (
@@ -16,25 +14,29 @@ from faultpath.record.model import (
     Reversal,
 )
 from faultpath.record.words import CORRECT, SHARED, effect_words, reversal_words, verdict
-from faultpath.statistics import Effect as Draws
 from faultpath.statistics import (
+    Comparison,
+    Decision,
     Estimate,
     Resamples,
     break_even,
+    compare,
+    decide_family,
     detectable,
+    difference_of_effects,
     discordant_by_seed,
     mcnemar_mid_p,
     mean_effect,
     median_effect,
-    reversal,
+    mixture_curve,
     success_effect,
-    success_test,
+    turn,
 )
+from faultpath.statistics import Effect as Draws
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import Bools, Floats, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
-CURVE_POINTS = 41
 MIN_JOINT_SCENES = 6
 """Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
 
@@ -65,14 +67,23 @@ def decide(
         name: success_effect(each.first.success, each.second.success, resamples)
         for name, each in pairs.items()
     }
+    found = {f"effect/{name}": compare(effect) for name, effect in draws.items()} | {
+        f"change/{name}": compare(difference_of_effects(draws[name], draws[SHARED]))
+        for name in draws
+        if name not in (CORRECT, SHARED) and SHARED in draws
+    }
+    decided = decide_family(found)
     effects = {
-        name: _effect(question, name, each, draws[name], resamples) for name, each in pairs.items()
+        name: _effect(
+            question, name, each, found[f"effect/{name}"], decided[f"effect/{name}"], resamples
+        )
+        for name, each in pairs.items()
     }
     breaks = [_break_even(name, draws) for name in draws if name != CORRECT]
     turns = [
-        _reversal(question, effects[name], effects[SHARED], draws[name], draws[SHARED])
-        for name in effects
-        if name not in (CORRECT, SHARED) and SHARED in effects
+        _reversal(question, effects[name], effects[SHARED], found[f"change/{name}"], decided)
+        for name in draws
+        if f"change/{name}" in found
     ]
     ordered = tuple(effects.values())
     return DecisionRecord(
@@ -103,27 +114,30 @@ def _common(pairs: dict[str, Pairs]) -> dict[str, Pairs]:
 
 
 def _effect(
-    question: Question, path: str, pairs: Pairs, draws: Draws, resamples: Resamples
+    question: Question,
+    path: str,
+    pairs: Pairs,
+    found: Comparison,
+    decision: Decision,
+    resamples: Resamples,
 ) -> Effect:
     first, second = pairs.first, pairs.second
     counts = discordant_by_seed(first.success, second.success).per_seed
-    test = success_test(first.success, second.success)
-    estimate = draws.estimate()
     joint = first.success & second.success
-    # Both the paper's test and the interval have to agree before a difference counts as found.
-    detected = estimate.detected_sign != 0 and test.rejects()
     effect = Effect(
         path=path,
-        success=estimate,
-        pairs=first.success.size,
+        success=found.estimate,
+        pairs=len(first.success),
         void_pairs=pairs.void,
         wins=tuple(count.first_only for count in counts),
         losses=tuple(count.second_only for count in counts),
-        test=test.name,
-        p_value=test.p_value,
+        test=found.test.name,
+        p_value=found.test.p_value,
         mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
-        minimum_detectable_pp=detectable(first.success, second.success).value,
-        detected=detected,
+        minimum_detectable_pp=detectable(
+            first.success, second.success, alpha=decision.critical_p
+        ).value,
+        detected=decision.sign != 0,
         time_s=_time(pairs, joint, resamples),
         joint_successes=int(joint.sum()),
         terminal_distance_m=_mean(first.terminal_distance_m, second.terminal_distance_m, resamples),
@@ -157,21 +171,29 @@ def _mean(first: Floats | None, second: Floats | None, resamples: Resamples) -> 
 
 def _break_even(path: str, draws: dict[str, Draws]) -> PathBreakEven:
     correct, faulty = draws[CORRECT], draws[path]
-    curve: list[tuple[float, float, float, float]] = []
-    for p in np.linspace(0, 1, CURVE_POINTS).tolist():
-        low, high = np.quantile((1 - p) * correct.draws + p * faulty.draws, [0.025, 0.975])
-        curve.append((p, (1 - p) * correct.value + p * faulty.value, float(low), float(high)))
-    return PathBreakEven(path=path, result=break_even(correct, faulty), curve=tuple(curve))
+    return PathBreakEven(
+        path=path, result=break_even(correct, faulty), curve=mixture_curve(correct, faulty)
+    )
 
 
-def _reversal(question: Question, isolated: Effect, shared: Effect, a: Draws, b: Draws) -> Reversal:
-    result = reversal(a, b)
+def _reversal(
+    question: Question,
+    isolated: Effect,
+    shared: Effect,
+    change: Comparison,
+    decided: Mapping[str, Decision],
+) -> Reversal:
+    kind = turn(
+        decided[f"effect/{isolated.path}"],
+        decided[f"effect/{shared.path}"],
+        decided[f"change/{isolated.path}"],
+    )
     return Reversal(
         isolated=isolated.path,
         shared=shared.path,
-        change=result.change,
-        reversed=result.detected,
-        words=reversal_words(question, isolated, shared, result.detected),
+        change=change.estimate,
+        reversed=kind == "reversal",
+        words=reversal_words(question, isolated, shared, kind == "reversal"),
     )
 
 

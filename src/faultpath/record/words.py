@@ -19,7 +19,7 @@ def effect_words(question: Question, effect: Effect) -> str:
         return f"{where}, no difference is detected ({shown})."
     return (
         f"{where}, no difference is detected ({shown}); a true one of "
-        f"{effect.minimum_detectable_pp:.0f} pp would be, in four audits of five."
+        f"{effect.minimum_detectable_pp:.0f} pp would be, with 80 % power."
     )
 
 
@@ -38,9 +38,9 @@ def reversal_words(question: Question, isolated: Effect, shared: Effect, turned:
         if isolated.success.value < 0:
             first, second = second, first
         return (
-            f"Sharing the fault turns the point estimate round: {first} is ahead when only the "
-            f"{isolated.path} is struck, {second} when the fault is shared ({change}); the change "
-            "is detected."
+            f"Sharing the fault turns the answer round: {first} is ahead when only the "
+            f"{isolated.path} is struck, {second} when the fault is shared ({change}); both "
+            "are detected."
         )
     return (
         f"Sharing the fault does not turn the verdict on the {isolated.path}-only fault round "
@@ -57,8 +57,8 @@ def verdict(
     """Put the answer into words."""
     sentences = [effect.words for effect in effects]
     if break_even:
-        clauses = [f"{item.result.words} {_under(item.path)}" for item in break_even]
-        sentences.append(f"{question.repair}, on the point estimates: {'; '.join(clauses)}.")
+        clauses = [f"{_under(item.path)} it {item.result.words}" for item in break_even]
+        sentences.append(f"{question.repair} by fault frequency: {'; '.join(clauses)}.")
     sentences += [item.words for item in reversals]
     return Verdict(
         headline=_headline(question, effects, reversals),
@@ -122,21 +122,11 @@ def _would_change(
     question: Question, effects: Sequence[Effect], break_even: Sequence[PathBreakEven]
 ) -> list[str]:
     lines = [
-        f"A true difference below {effect.minimum_detectable_pp:.0f} pp {_under(effect.path)}: "
-        f"{question.n_scenes} scenes cannot tell it from none."
+        f"More scenes: one of {effect.minimum_detectable_pp:.0f} pp {_under(effect.path)} would be "
+        f"detected with 80 % power, and smaller ones more rarely."
         for effect in effects
         if not effect.detected and effect.minimum_detectable_pp is not None
     ]
-    for item in break_even:
-        shares = item.result.shares
-        if shares is None:
-            continue
-        firm = getattr(shares, item.result.direction)
-        if firm < 0.975:
-            lines.append(
-                f"Other scenes: {100 * (1 - firm):.0f} % of the resampled libraries give another "
-                f"answer than '{item.result.words}' {_under(item.path)}."
-            )
     lines.append(
         "Another size or sign of the fault, another library or another wiring of the system: the "
         "record speaks of the one that was run."

@@ -55,24 +55,15 @@ def percent(fraction: float) -> str:
 
 
 def break_even(result: BreakEven) -> str:
-    """Return `59 % [33, 80]`, or in words that there is no crossing."""
-    if result.p_star is None:
-        return "no crossing"
-    text = f"{percent(result.p_star)} %"
-    if result.low is not None and result.high is not None:
-        text += f" [{percent(result.low)}, {percent(result.high)}]"
-    return text
+    """Return `59 % [33, 80]`: where the estimates cross, and the frequencies not decided."""
+    point = "no crossing" if result.p_star is None else f"{percent(result.p_star)} %"
+    pieces = " or ".join(f"[{percent(low)}, {percent(high)}]" for low, high in result.pieces)
+    return f"{point} {pieces}".rstrip()
 
 
 def break_even_sentence(result: BreakEven) -> str:
     """Return what the break-even means, short enough to stand under a picture's title."""
-    match result.direction:
-        case "always":
-            return "repair favoured at every frequency"
-        case "never":
-            return "no crossing: baseline favoured throughout"
-        case "above" | "below":
-            return f"repair favoured {result.direction} {break_even(result)}"
+    return f"repair {result.words}"
 
 
 def typeset(text: str) -> str:

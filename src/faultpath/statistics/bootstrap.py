@@ -18,9 +18,8 @@ def success_effect(
     one, two = paired(first, second)
     scenes = None
     if not resample_seeds:
-        # Whole numbers: sums of binary outcomes over seeds, so that 0 is exactly 0.
-        n_seeds = one.shape[1]
-        scenes = SceneValues.paired((one - two).sum(axis=1), n_seeds, 100.0 / n_seeds)
+        # Summed first, so that wins and losses of a scene cancel exactly.
+        scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0)
     return _effect(one, two, resamples, "pp", 100.0, resample_seeds, counts, scenes)
 
 
@@ -46,11 +45,8 @@ def success_rate(
     values = binary(by_scene_and_seed(outcomes), "outcomes")
     scenes = None
     if not resample_seeds:
-        n_seeds = values.shape[1]
-        half = n_seeds / 2.0
-        scenes = SceneValues(
-            values.sum(axis=1) - half, bound=half, far=half, scale=100.0 / n_seeds, centre=half
-        )
+        means = values.sum(axis=1) / values.shape[1]
+        scenes = SceneValues(means - 0.5, bound=0.5, far=0.5, scale=100.0, centre=0.5)
     none = np.zeros_like(values)
     return _effect(values, none, resamples, "percent", 100.0, resample_seeds, None, scenes)
 

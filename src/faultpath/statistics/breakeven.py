@@ -118,7 +118,8 @@ class _Mixture:
         assert self.scenes is not None
         (first, second), counts, far_0, far_f = self.scenes
         share = p[:, np.newaxis]
-        values = np.round((1.0 - share) * first + share * second, _DIGITS)
+        mixed: Floats = (1.0 - share) * first + share * second
+        values = mixed.round(_DIGITS)
         often = np.broadcast_to(counts.astype(np.float64), values.shape)
         return values, often, (1.0 - p) * far_0 + p * far_f
 

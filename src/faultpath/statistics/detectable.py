@@ -24,7 +24,7 @@ def detectable(
     """Return the detectable difference in success (pp) of binary arms [scenes, seeds]."""
     one, two = paired_binary(first, second)
     n_seeds = one.shape[1]
-    scenes = SceneValues.paired((one - two).sum(axis=1), n_seeds, 100.0 / n_seeds)
+    scenes = SceneValues.paired((one - two).sum(axis=1) / n_seeds, 1.0, 100.0)
     return _detectable(scenes, n_seeds, alpha, power)
 
 

@@ -44,7 +44,8 @@ class SceneValues:
     @classmethod
     def paired(cls, values: Floats, bound: float, scale: float = 1.0) -> "SceneValues":
         """Return differences between two arms; what was not observed lies within `reach`."""
-        far = float(reach(values, np.ones_like(values), bound))
+        kinds, counts = np.unique(values, return_counts=True)
+        far = float(reach(kinds, counts.astype(np.float64), bound))
         return cls(values=values, bound=bound, far=far, scale=scale)
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
@@ -56,14 +57,12 @@ class SceneValues:
 
 
 def combined(weights: Sequence[float], parts: Sequence[SceneValues]) -> SceneValues:
-    """Return the weighted sum of paired values, scene by scene, in the first one's scale."""
-    relative = [w * part.scale / parts[0].scale for w, part in zip(weights, parts, strict=True)]
-    values = np.sum([w * part.values for w, part in zip(relative, parts, strict=True)], axis=0)
-    bound, far = (
-        float(np.abs(relative) @ np.array([getattr(part, name) for part in parts]))
-        for name in ("bound", "far")
-    )
-    return SceneValues(np.round(values, _DIGITS), bound, far, parts[0].scale)
+    """Return the weighted sum of paired values of one scale, scene by scene."""
+    values: Floats = np.dot(weights, np.stack([part.values for part in parts])).round(_DIGITS)
+    size = np.abs(np.array(weights))
+    bound = float(size @ np.array([part.bound for part in parts]))
+    far = float(size @ np.array([part.far for part in parts]))
+    return SceneValues(values, bound, far, parts[0].scale)
 
 
 def quantile(level: float) -> float:
@@ -131,13 +130,14 @@ def _low(values: Floats, counts: Floats, far: Floats, z: float) -> Floats:
     level = z * z / total
     mean = (share * values).sum(axis=-1)
     off = np.where(counts > 0, values - mean[..., np.newaxis], 0.0)
-    short = level * (far + mean) / (1.0 + level)  # the support's end limits `a`
-    long = np.maximum(short, -off.min(axis=-1))
+    # The support's end limits `a`, hence the width from below.
+    short: Floats = np.asarray(level * (far + mean) / (1.0 + level), dtype=np.float64)
+    long: Floats = np.maximum(short, -off.min(axis=-1))
     for _ in range(_HALVINGS):
         middle = 0.5 * (short + long)
         weight = ((1.0 + level) * middle)[..., np.newaxis] + level[..., np.newaxis] * off
-        term = np.zeros_like(weight)
+        term: Floats = np.zeros_like(weight)
         np.divide(share * (off + middle[..., np.newaxis]), weight, out=term, where=weight > 0)
-        further = term.sum(axis=-1) < 0.0
+        further: NDArray[np.bool_] = term.sum(axis=-1) < 0.0
         short, long = np.where(further, middle, short), np.where(further, long, middle)
     return np.asarray(mean - long, dtype=np.float64)

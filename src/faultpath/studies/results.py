@@ -8,19 +8,20 @@ import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
 from faultpath.statistics import (
+    Comparison,
     Detectable,
     Effect,
     Estimate,
     Resamples,
     SeedCounts,
     TestResult,
+    compare,
     detectable,
     discordant_by_seed,
     mean_effect,
     median_effect,
     success_effect,
     success_rate,
-    success_test,
 )
 from faultpath.studies.cells import Cell
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
@@ -43,9 +44,14 @@ class Contrast:
         return success_effect(self.pairs.first.success, self.pairs.second.success, self.resamples)
 
     @cached_property
+    def comparison(self) -> Comparison:
+        """Difference in success with its interval and the paper's test."""
+        return compare(self.draws)
+
+    @property
     def success(self) -> Estimate:
         """Difference in success, percentage points."""
-        return self.draws.estimate()
+        return self.comparison.estimate
 
     @property
     def counts(self) -> SeedCounts:
@@ -55,7 +61,7 @@ class Contrast:
     @property
     def test(self) -> TestResult:
         """The paper's test: exact McNemar for one seed, else the sign test on scene means."""
-        return success_test(self.pairs.first.success, self.pairs.second.success)
+        return self.comparison.test
 
     @property
     def detectable(self) -> Detectable:
@@ -65,7 +71,7 @@ class Contrast:
     @property
     def detected_sign(self) -> int:
         """Side of 0 on which interval and test agree that the difference lies; 0 for neither."""
-        return self.success.detected_sign if self.test.rejects() else 0
+        return self.comparison.side
 
     def terminal_distance(self) -> Effect:
         """Mean difference in the distance to the goal at the end, metres, all paired scenes."""

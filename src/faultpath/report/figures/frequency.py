@@ -20,8 +20,8 @@ def shared_range(paths: Sequence[PathBreakEven]) -> Axis:
 def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     """Return the expected success difference over the fault frequency for one path.
 
-    The band is the record's joint bootstrap. The ring on the zero line is the break-even
-    frequency, the thick line through it its interval.
+    The band is the record's interval at each frequency. The thick line on the zero line is where
+    the band holds 0: there it is not decided who is ahead. The ring is the point estimate.
     """
     words = wording.break_even_sentence(path.result)
     svg = Svg(290, 250, f"{title}: expected success difference against fault frequency", words)
@@ -76,8 +76,8 @@ def _side(piece: Sequence[Point]) -> str:
 
 def _star(svg: Svg, path: PathBreakEven, x: Axis, y: Axis) -> None:
     result = path.result
-    if result.p_star is None or result.direction == "always":
+    for low, high in result.pieces:
+        svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
+    if result.p_star is None:
         return
-    if result.low is not None and result.high is not None:
-        svg.line((x(result.low), y(0)), (x(result.high), y(0)), "star-range")
     svg.circle((x(result.p_star), y(0)), 5, "star", tip=wording.break_even_sentence(result))

@@ -15,6 +15,7 @@ from faultpath.statistics import (
     median_effect,
     success_effect,
     success_test,
+    weighted_sum,
 )
 from faultpath.studies.cells import Cell
 from faultpath.studies.claims.found import Found, Quantity, of_effect
@@ -26,7 +27,6 @@ from faultpath.trials.pairing import Trials
 Pair: TypeAlias = tuple[Cell, Cell]
 Bools: TypeAlias = NDArray[np.bool_]
 
-DIGITS = 9
 TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
 
@@ -80,7 +80,7 @@ def combined(
     def found(results: Results) -> Found:
         contrasts = together(results, *(pair for _, pair in terms))
         weights = [weight for weight, _ in terms]
-        return of_effect(weighted(weights, [effect(contrast) for contrast in contrasts]))
+        return of_effect(weighted_sum(weights, [effect(contrast) for contrast in contrasts]))
 
     return found
 
@@ -94,21 +94,6 @@ def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
     if not seeds:
         raise NotRun(f"a seed that {results.named(pairs[0][0])} and all it is compared with share")
     return joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
-
-
-def weighted(weights: list[float], effects: list[Effect]) -> Effect:
-    """Return a weighted sum of effects, draw by draw; they share their resamples."""
-    assert all(effect.resamples.same_as(effects[0].resamples) for effect in effects)
-    alike = len({len(effect.per_seed) for effect in effects}) == 1
-    by_seed = zip(*(effect.per_seed for effect in effects), strict=True) if alike else ()
-    return replace(
-        effects[0],
-        # Rounded, so that effects that cancel leave exactly 0.
-        value=round(sum(w * e.value for w, e in zip(weights, effects, strict=True)), DIGITS),
-        draws=np.dot(weights, [effect.draws for effect in effects]).round(DIGITS),
-        per_seed=tuple(sum(np.multiply(weights, each).tolist()) for each in by_seed),
-        counts=None,
-    )
 
 
 def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:

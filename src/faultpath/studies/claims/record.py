@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import DirectionShares, break_even
+from faultpath.statistics import BreakEven, break_even
 from faultpath.studies.claims.differences import together
 from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
@@ -21,16 +21,15 @@ from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.pages import table_5
 from faultpath.studies.results import Results
 
-RARE = 0.025
-"""Share of resamples beyond one end of a 95 % interval."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Crossing(Found):
     """A break-even frequency in percent, where the repair pays above it or always."""
 
-    shares: DirectionShares
-    """Share of the resamples in each direction."""
+    ahead: bool
+    """Whether it is decided at some frequency that the repair is ahead."""
+    behind: bool
+    """Whether it is decided to be behind where every episode has the fault."""
     never: bool
     """Whether the estimates favour the repair at no frequency."""
 
@@ -46,16 +45,12 @@ class PaysFrom:
         return self.bound.words(subject)
 
     def judge(self, found: Crossing) -> Judged:
-        """Answer by the bound; without such a frequency refute when resamples rarely have one."""
+        """Answer by the bound; refute a repair that ends up behind."""
         if not found.enough:
             return FEW_SCENES
         if found.value is not None:
             return self.bound.judge(found)
-        # Resamples in which neither arm is ahead speak for no direction.
-        not_paying = found.shares.below + found.shares.never
-        if not_paying >= 1 - RARE:
-            return REFUTED
-        return Judged("undecided", "pays from no frequency on")
+        return REFUTED if found.behind else Judged("undecided", "pays from no frequency on")
 
 
 @dataclass(frozen=True)
@@ -67,15 +62,16 @@ class NeverPays:
         return f"{subject} does not exist: the repair pays at none"
 
     def judge(self, found: Crossing) -> Judged:
-        """Confirm by the estimate of a run that is large enough; refute when resamples disagree."""
+        """Confirm by the estimate of a run that is large enough; refute where it is ahead."""
         if not found.enough:
             return FEW_SCENES
+        if found.ahead:
+            return REFUTED
         if found.never:
             return CONFIRMED if found.speaks_by_estimate else FEW_FOR_POINTS
         if found.value is not None and found.range is None:
             return FEW_FOR_POINTS
-        paying = found.shares.above + found.shares.below + found.shares.always
-        return REFUTED if paying >= 1 - RARE else Judged("undecided")
+        return Judged("undecided")
 
 
 def frequency(repair: str) -> Callable[[Results], Crossing]:
@@ -85,23 +81,32 @@ def frequency(repair: str) -> Callable[[Results], Crossing]:
     def found(results: Results) -> Crossing:
         nominal, struck = together(results, (correct_repair, correct), (faulty_repair, faulty))
         even = break_even(nominal.draws, struck.draws)
-        value = interval = None
-        if even.direction in ("above", "always") and even.p_star is not None:
-            value, interval = 100 * even.p_star, even.interval
+        start, end = nominal.draws.value, struck.draws.value
+        value = 100 * even.p_star if even.p_star is not None and start <= 0 < end else None
+        if min(start, end) >= 0 < max(start, end):
+            value = 0.0
         n_scenes = len(nominal.pairs.scenes)
-        assert even.shares is not None
         return Crossing(
             value=value,
-            interval=(100 * interval[0], 100 * interval[1])
-            if interval and n_scenes >= MIN_SCENES
-            else None,
+            interval=_from(even) if value is not None and n_scenes >= MIN_SCENES else None,
             unit="percent",
             n_scenes=n_scenes,
-            shares=even.shares,
-            never=even.direction == "never",
+            ahead=any(region.sign > 0 for region in even.regions),
+            behind=any(region.sign < 0 and region.high == 1.0 for region in even.regions),
+            never=max(start, end) <= 0 and min(start, end) < 0,
         )
 
     return found
+
+
+def _from(even: BreakEven) -> tuple[float, float]:
+    """Return the frequencies, in percent, from which on the repair may begin to pay.
+
+    They begin where it is no longer decided to be behind, and end where it is decided to be ahead.
+    """
+    low = max((r.high for r in even.regions if r.sign < 0 and r.low == 0.0), default=0.0)
+    high = min((r.low for r in even.regions if r.sign > 0 and r.high == 1.0), default=1.0)
+    return 100 * low, 100 * high
 
 
 def _pays_from(repair: str, name: str, bound: Bound) -> Statement[Crossing]:

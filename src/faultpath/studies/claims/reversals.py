@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import difference_of_effects, reversal
+from faultpath.statistics import compare, decide_family, difference_of_effects
 from faultpath.studies.claims.differences import Pair, together
 from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
@@ -21,12 +21,13 @@ class Turn(Found):
     """Side of 0 on which the effect is detected in the first condition."""
     after: int
     turned: bool
-    """Whether the change is detected, and the estimates are above 0 before and below 0 after."""
+    """Whether the effect is detected above 0 before and below 0 after, the change among the family
+    that is decided together."""
 
 
 @dataclass(frozen=True)
 class TurnsDown:
-    """The effect is above 0 before and below 0 after, and the change is detected."""
+    """The effect is detected above 0 before and below 0 after."""
 
     def words(self, subject: str) -> str:
         """Return the statement."""
@@ -40,7 +41,7 @@ class TurnsDown:
             return REFUTED
         if found.turned:
             return CONFIRMED
-        why = "the estimates do not differ in sign as claimed" if found.detected else ""
+        why = "the change is detected, but not both effects" if found.detected else ""
         return Judged("undecided", why)
 
 
@@ -49,7 +50,10 @@ def turn(before: Pair, after: Pair) -> Callable[[Results], Turn]:
 
     def found(results: Results) -> Turn:
         one, two = together(results, before, after)
-        change = of_effect(difference_of_effects(one.draws, two.draws))
+        difference = difference_of_effects(one.draws, two.draws)
+        change = of_effect(difference)
+        family = {"before": one.comparison, "after": two.comparison, "change": compare(difference)}
+        decided = decide_family(family)
         return Turn(
             value=change.value,
             interval=change.interval,
@@ -59,7 +63,7 @@ def turn(before: Pair, after: Pair) -> Callable[[Results], Turn]:
             counts=f"{one.counts}, then {two.counts}",
             before=one.detected_sign,
             after=two.detected_sign,
-            turned=reversal(one.draws, two.draws).detected and one.draws.value > 0,
+            turned=decided["before"].sign > 0 > decided["after"].sign,
         )
 
     return found

@@ -8,8 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
-from faultpath.statistics import Effect, WindowQuantiles
-from faultpath.studies.claims.differences import weighted
+from faultpath.statistics import Effect, WindowQuantiles, weighted_sum
 from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.results import NotRun, Results
 
@@ -25,7 +24,7 @@ def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> 
 
     def found(results: Results) -> Found:
         one, two = quantiles(results, q, first, second)
-        return of_effect(weighted([1, -1], [one, two]), TELLING_SHARE * two.value)
+        return of_effect(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
 
     return found
 
@@ -40,10 +39,10 @@ def difference_of_changes(
 
     def found(results: Results) -> Found:
         ends = quantiles(results, 0.5, *first, *second)
-        changes = [weighted([-1, 1], ends[:2]), weighted([-1, 1], ends[2:])]
+        changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
         if size:
             changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
-        return of_effect(weighted([1, -1], changes))
+        return of_effect(weighted_sum([1, -1], changes))
 
     return found
 
@@ -109,7 +108,7 @@ def _check_windows(results: Results, measurements: list[Measurement]) -> None:
 def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Effect:
     """Return the mean over seeds of a quantile; a claim asks for the same one many times."""
     effects = [_quantile(evidence, measurement, q) for measurement in subject]
-    mean = weighted([1 / len(effects)] * len(effects), effects)
+    mean = weighted_sum([1 / len(effects)] * len(effects), effects)
     per_seed = tuple(effect.value for effect in effects)
     return replace(mean, per_seed=per_seed, n_seeds=len(effects))
 

@@ -51,9 +51,10 @@ def build(results: Results) -> Built:
         notes=(
             flown(results, CELLS),
             "Success of the repair minus that of its baseline, under correct inputs (Δ0) and under "
-            "e = +0.1 (Δf). The repair is favoured above the fault frequency p* = −Δ0/(Δf − Δ0), "
-            "unless the entry says below; 0: at every frequency; no crossing: at none.",
-            "Predictors without wind, GRU at wind L3. p* resamples both effects together.",
+            "e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency at which the estimates break "
+            "even; no crossing: at none. In brackets: frequencies at which it is not decided who "
+            "is ahead.",
+            "Predictors without wind, GRU at wind L3.",
             INTERVALS,
         ),
     )
@@ -83,15 +84,11 @@ def _difference(contrast: Contrast) -> Entry:
 
 
 def _frequency(result: BreakEven) -> str:
-    if result.p_star is None or result.low is None or result.high is None:
-        return NO_CROSSING
-    text = " ".join(
-        (
-            wording.percent(result.p_star),
-            f"[{wording.percent(result.low)}, {wording.percent(result.high)}]",
-        )
+    point = NO_CROSSING if result.p_star is None else wording.percent(result.p_star)
+    pieces = " or ".join(
+        f"[{wording.percent(low)}, {wording.percent(high)}]" for low, high in result.pieces
     )
-    return f"below {text}" if result.direction == "below" else text
+    return f"{point} {pieces}".rstrip()
 
 
 def _published_frequency(paper: dict[str, Any]) -> str:

@@ -1,0 +1,148 @@
+"""The score interval: Tango's for one seed, its laws for several, and never a width of zero."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from scipy.optimize import brentq
+from scipy.stats import norm
+from statsmodels.stats.proportion import proportion_confint
+
+from faultpath.statistics import Resamples, difference_of_effects, success_effect, success_rate
+from faultpath.statistics.score import SceneValues, interval, reach, rejects
+
+Z = float(norm.ppf(0.975))
+N = 30
+RESAMPLES = Resamples.draw("score", N, n_resamples=10)
+ARMS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 4)))
+laws = settings(max_examples=60, deadline=None)
+
+
+def tango(first_only, second_only, n):
+    """Tango's closed form (1998, equations 8 and 10), inverted with a root finder."""
+    b, c = first_only, second_only
+
+    def score(d):
+        linear = -b - c + (2 * n - b + c) * d
+        root = (np.sqrt(linear**2 + 8 * n * c * d * (1 - d)) - linear) / (4 * n)
+        return (b - c - n * d) / np.sqrt(max(n * (2 * root + d * (1 - d)), 1e-300))
+
+    at, edge = (b - c) / n, 1e-13
+    low = -1.0 if at == -1 else brentq(lambda d: score(d) - Z, -1 + edge, at - edge, xtol=1e-14)
+    high = 1.0 if at == 1 else brentq(lambda d: score(d) + Z, at + edge, 1 - edge, xtol=1e-14)
+    return low, high
+
+
+@pytest.mark.parametrize("n", [3, 10, 25, 100])
+def test_one_seed_gives_tangos_interval(n):
+    step = max(1, n // 10)
+    for b in range(0, n + 1, step):
+        for c in range(0, n - b + 1, step):
+            values = np.concatenate([np.ones(b), -np.ones(c), np.zeros(n - b - c)])
+            found = SceneValues.paired(values, 1.0).interval()
+            assert found == pytest.approx(tango(b, c, n), abs=1e-9), (b, c)
+
+
+@pytest.mark.parametrize(("n", "n_seeds"), [(100, 1), (100, 3), (25, 5)])
+def test_no_discordance_has_an_interval_with_width(n, n_seeds):
+    """0 of 100 used to print [0.0, 0.0]; that no scene in n differs bounds how many may."""
+    none = np.zeros((n, n_seeds))
+    estimate = success_effect(none, none, Resamples.draw("none", n, n_resamples=10)).estimate()
+    expected = 100 * Z**2 / (n + Z**2)
+    assert estimate.interval == pytest.approx((-expected, expected))
+    assert estimate.text().startswith("0.0 pp [-")
+    everything = np.concatenate([np.ones(n)])
+    whole = success_effect(everything, 0 * everything, Resamples.draw("w", n, n_resamples=10))
+    assert whole.estimate().high == 100.0
+    assert whole.estimate().low == pytest.approx(100 - 2 * expected)
+
+
+@laws
+@given(ARMS)
+def test_swapping_the_arms_mirrors_the_interval_to_the_bit(arms):
+    forward, backward = (success_effect(*pair, RESAMPLES) for pair in (arms, arms[::-1]))
+    assert backward.estimate() == forward.estimate().swapped()
+
+
+@laws
+@given(ARMS, st.integers(2, 3), st.randoms(use_true_random=False))
+def test_copies_of_seeds_and_the_order_of_scenes_change_nothing(arms, times, random):
+    once = success_effect(*arms, RESAMPLES).estimate()
+    copied = success_effect(*(np.tile(arm, times) for arm in arms), RESAMPLES).estimate()
+    assert (copied.value, copied.interval) == (once.value, once.interval)
+    order = random.sample(range(N), N)
+    assert success_effect(*(arm[order] for arm in arms), RESAMPLES).estimate() == once
+
+
+@laws
+@given(ARMS)
+def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(arms):
+    values = (arms[0].astype(float) - arms[1]).mean(axis=1)
+    scenes = SceneValues.paired(values, 1.0)
+    low, high = scenes.interval()
+    assert -1 <= low < high <= 1
+    assert low <= values.mean() <= high
+    nulls = np.linspace(-1, 1, 101)
+    kinds, counts = np.unique(values, return_counts=True)
+    often = np.broadcast_to(counts.astype(float), (len(nulls), len(counts)))
+    rejected = rejects(np.broadcast_to(kinds, often.shape), often, nulls, scenes.far, Z)
+    outside = (nulls < low - 1e-9) | (nulls > high + 1e-9)
+    inside = (nulls > low + 1e-9) & (nulls < high - 1e-9)
+    assert rejected[outside].all()
+    assert not rejected[inside].any()
+
+
+@laws
+@given(ARMS, st.floats(0.5, 0.99), st.floats(0.0, 0.009))
+def test_a_higher_level_is_wider(arms, level, more):
+    effect = success_effect(*arms, RESAMPLES)
+    narrow, wide = effect.interval(level), effect.interval(level + more)
+    assert wide[0] <= narrow[0] + 1e-9
+    assert wide[1] >= narrow[1] - 1e-9
+
+
+def test_what_was_not_seen_is_assumed_larger_than_what_was():
+    size = np.array([[1.0, 3.0]])
+    assert reach(size, np.array([[0.0, 0.0]]), 3.0) == 3.0
+    alone = reach(size, np.array([[40.0, 0.0]]), 3.0)
+    assert 1.0 < alone < 2.0
+    assert reach(size, np.array([[40.0, 1.0]]), 3.0) == 3.0
+    assert reach(size, np.array([[400.0, 0.0]]), 3.0) < alone
+
+
+def test_a_difference_of_effects_is_bounded_by_the_sum_of_both_bounds():
+    none = np.zeros(N)
+    one = success_effect(none, none, RESAMPLES)
+    both = difference_of_effects(one, one)
+    assert both.scenes.far == 2.0
+    assert both.interval()[1] == pytest.approx(2 * one.interval()[1])
+    assert both.estimate().method == "score on scene differences (Tango's, cluster-robust)"
+
+
+@pytest.mark.parametrize("successes", [0, 1, 15, 30])
+def test_one_arms_rate_has_wilsons_interval(successes):
+    outcomes = np.arange(N) < successes
+    found = success_rate(outcomes, RESAMPLES).estimate()
+    low, high = proportion_confint(successes, N, method="wilson")
+    assert found.interval == pytest.approx((100 * low, 100 * high), abs=1e-9)
+    assert found.method == "score (Wilson)"
+    seeds = success_rate(np.tile(outcomes[:, None], 3), RESAMPLES).estimate()
+    assert seeds.interval == pytest.approx(found.interval)
+
+
+def test_batches_agree_with_single_samples():
+    rng = np.random.default_rng(0)
+    counts = rng.integers(0, 20, size=(50, 7)).astype(float)
+    kinds = np.arange(-3.0, 4.0)
+    values = np.broadcast_to(kinds, counts.shape)
+    low, high = interval(values, counts, reach(values, counts, 3.0), Z)
+    for row, *ends in zip(counts, low, high, strict=True):
+        scenes = SceneValues.paired(np.repeat(kinds, row.astype(int)), 3.0)
+        assert scenes.interval() == pytest.approx(ends, abs=1e-12)
+
+
+@pytest.mark.parametrize("level", [0.0, 1.0, 95.0])
+def test_a_level_outside_0_and_1_is_refused(level):
+    with pytest.raises(ValueError, match="level of an interval"):
+        SceneValues.paired(np.zeros(3), 1.0).interval(level)
