@@ -200,8 +200,12 @@ def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: R
     assert found.parts == answers[claim.id].parts
 
 
-def test_ten_scenes_that_all_end_alike_answer_nothing() -> None:
-    """No arm is ahead of another anywhere, and ten scenes could have missed much."""
+def test_ten_scenes_that_all_end_alike_answer_only_what_is_far_off() -> None:
+    """No arm is ahead of another anywhere, and ten scenes could have missed much, but no 28 pp."""
+    far_off = {
+        "success of WM-A lost at e = +0.1 is at least 30 and detected",
+        "percentage of scenes that succeed in all eight configurations is at least 50",
+    }
     for status in (Status.SUCCESS, Status.CRASH):
         alike = Results(outcomes(lambda *_, s=status: s, scenes=10, slower_s=0.0), None, "toy")
         parts = [part for claim in evaluate(alike) for part in claim.parts if not part.not_run]
@@ -211,7 +215,7 @@ def test_ten_scenes_that_all_end_alike_answer_nothing() -> None:
             if part.answer != "undecided" and not part.words.startswith("reported")
         ]
         assert len(parts) > 50
-        assert not answered
+        assert set(answered) <= far_off
 
 
 def test_ten_scenes_refute_no_claim_about_point_estimates() -> None:

@@ -249,4 +249,4 @@ def test_detection_sensitivity_gives_the_least_detectable_difference() -> None:
     least = results.contrast(table_1.DKI, table_1.WM_A).detectable.value
     assert least is not None
     shown = line(table["detection-sensitivity"], "DKI minus WM-A, seed 0")
-    assert texts(shown) == ["0.0", "[0.0, 0.0]", "0:0", "1.000", f"{least:.1f}"]
+    assert texts(shown) == ["0.0", "[−16.1, 16.1]", "0:0", "1.000", f"{least:.1f}"]
