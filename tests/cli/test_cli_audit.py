@@ -218,6 +218,26 @@ def test_without_a_folder_the_run_is_called_after_its_question(tmp_path):
     assert len(list((tmp_path / "runs").iterdir())) == 2
 
 
+def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
+    system = tmp_path / "mine" / "toy.py"
+    system.parent.mkdir()
+    shutil.copy(ROOT / "examples" / "toy.py", system)
+    assert "has changed" not in audit(system=f"{system}:create").out
+    (before,) = (tmp_path / "runs").iterdir()
+    outcomes = (before / "outcomes.parquet").read_bytes()
+    assert "Kept 36 of 36 trials, from 20" in audit(system=f"{system}:create").out
+
+    system.write_text(
+        system.read_text().replace("TOLERANCE_M = 0.1, 100, 0.25", "TOLERANCE_M = 0.1, 100, 9.0")
+    )
+    ended = audit(system=f"{system}:create")
+    (after,) = {*(tmp_path / "runs").iterdir()} - {before}
+    assert f"The code has changed since runs/{before.name} (toy.py): that run is kept" in ended.out
+    assert (before / "outcomes.parquet").read_bytes() == outcomes
+    assert (after / "outcomes.parquet").read_bytes() != outcomes
+    assert read_record(after).cells != read_record(before).cells
+
+
 def test_brackets_in_names_are_no_markup(tmp_path):
     ended = audit(out=tmp_path / "[bold]run[/red]")
     assert (ended.status, ended.err) == (0, "")

@@ -1,7 +1,10 @@
 """Where a run comes from."""
 
+import hashlib
 import subprocess
+import sys
 
+from stale_toys import Mine
 from toy_study import UNITS, study
 
 from faultpath.execution import Stopwatch, run_provenance, run_study
@@ -42,3 +45,28 @@ def test_provenance_tells_the_run(tmp_path):
     assert told.processor
     assert 0 < told.wall_s < 60
     assert told.started <= told.finished
+
+
+def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    mine = Mine(tmp_path / "mine")
+
+    def told(name: str):
+        result = run_study(mine.study(), tmp_path / name, workers=1)
+        return run_provenance(result, Stopwatch(), ["faultpath"], workers=1)
+
+    assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
+    _git(tmp_path / "mine", "init", "-q")
+    _git(tmp_path / "mine", "add", ".")
+    _git(tmp_path / "mine", "commit", "-qm", "one")
+    clean = told("clean")
+    assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
+    assert clean.system_dirty is False
+    assert {"my.py", mine.helper.name, "faultpath/taps/taps.py"} <= clean.sources.keys()
+    assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
+    assert clean.data.keys() == {"push.txt"}
+    assert "pydantic-core" in clean.packages
+    (tmp_path / "mine" / "notes").write_text("beside what flies")
+    assert told("notes").system_dirty is False
+    mine.data.write_text("1.0")
+    assert told("dirty").system_dirty is True

@@ -46,7 +46,7 @@ def command(
         list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
     ] = None,
     out: Annotated[
-        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>.")
+        Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
     ] = None,
     workers: Annotated[
         int | None,
@@ -59,7 +59,9 @@ def command(
     alone, and under the shared fault."""
     from faultpath.audit import plan_audit
     from faultpath.faults import parse_fault
+    from faultpath.store.earlier import keyed
     from faultpath.trials import SystemSpec, load_system
+    from faultpath.trials.state import system_code
 
     named = {
         "wind": wind,
@@ -83,12 +85,13 @@ def command(
         scenes=scenes,
         seeds=numbers(seeds, "--seeds"),
     )
-    folder = out or Path("runs") / _name(audit.study.name, fault, library, scenes, seeds, options)
+    name = _name(audit.study.name, fault, library, scenes, seeds, options)
+    folder, other = (out, "") if out else keyed(Path("runs"), name, system_code(built, spec).state)
     count = _workers(options) if workers is None else workers
 
     from faultpath.cli.run import run_audit  # pages and workers; no mistake so far waits for them
 
-    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]))
+    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other)
     return FAILED_TRIALS if failed else 0
 
 

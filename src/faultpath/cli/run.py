@@ -20,15 +20,24 @@ from faultpath.trials import System, system_shown
 
 
 def run_audit(
-    system: System, audit: Audit, folder: Path, workers: int, command: Sequence[str]
+    system: System,
+    audit: Audit,
+    folder: Path,
+    workers: int,
+    command: Sequence[str],
+    first: str = "",
 ) -> int:
     """Run, decide and write the run folder; return the number of trials that failed.
+
+    `first` is a sentence to print before all others.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
     """
     console = Console()
     stopwatch = Stopwatch()
+    if first:
+        console.print(first, markup=False, soft_wrap=True)
     if system.backend:
         console.print(f"Computing with {system.backend}.", markup=False, soft_wrap=True)
     asked = audit.question

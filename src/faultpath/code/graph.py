@@ -23,11 +23,10 @@ class Root:
     """Whether its package belongs to the system, so that it is entered even where installed."""
 
     @property
-    def folder(self) -> Path | None:
-        """Where the module lies, if it lies anywhere."""
+    def path(self) -> Path | None:
+        """The module's file, if there is one."""
         spec = locate(self.module) if self.file is None else None
-        path = self.file if spec is None else file_of(spec)
-        return None if path is None else path.parent
+        return self.file if spec is None else file_of(spec)
 
 
 class Graph:

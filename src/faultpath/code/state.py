@@ -71,6 +71,8 @@ class Code:
     state: CodeState
     sources: Mapping[str, Path]
     data: Mapping[str, Path]
+    main: Path | None = None
+    """The file of the first module that it was followed from."""
 
     def unread(self) -> Watch:
         """Watch what this process may still read: data files, and modules not imported yet."""
@@ -91,7 +93,7 @@ def read_code(
 
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
-    graph = Graph()
+    graph, roots = Graph(), tuple(roots)
     with _no_collection():
         for root in roots:
             graph.add(root)
@@ -104,7 +106,7 @@ def read_code(
         python=platform.python_version(),
         given=given,
     )
-    return Code(state, _paths(sources), _paths(files))
+    return Code(state, _paths(sources), _paths(files), roots[0].path if roots else None)
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import faultpath
+from faultpath.code import Code
 from faultpath.execution.runner import RunResult
 from faultpath.record.provenance import RunProvenance
 
@@ -37,13 +38,14 @@ def run_provenance(
 ) -> RunProvenance:
     """Describe the run that has just finished; `files` are digests of what it wrote, by name."""
     commit, dirty = checkout(Path(faultpath.__file__).parent)
+    system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
     return RunProvenance(
         faultpath_version=faultpath.__version__,
         commit=commit,
         dirty=dirty,
         command=tuple(command),
         python=platform.python_version(),
-        packages=packages(),
+        packages=packages() | _imported(result.code),
         platform=platform.platform(),
         processor=processor(),
         backend=backend,
@@ -54,6 +56,10 @@ def run_provenance(
         blocks_computed=result.blocks_computed,
         blocks_kept=result.blocks_kept,
         system_fingerprint=result.system_fingerprint,
+        system_commit=system_commit,
+        system_dirty=system_dirty,
+        sources={name: found for code in result.code for name, found in code.state.files.items()},
+        data={name: found for code in result.code for name, found in code.state.data.items()},
         library_hash=result.library_hash,
         outcomes_sha256=result.outcomes_sha256,
         files=dict(files or {}),
@@ -72,6 +78,25 @@ def checkout(package: Path) -> tuple[str | None, bool | None]:
     return _git(package, "rev-parse", "HEAD"), None if changes is None else bool(changes)
 
 
+def repository(code: Code) -> tuple[str | None, bool | None]:
+    """Return the commit of the repository that tracks a system, and whether what flew differs.
+
+    `(None, None)` where its file is in none, or not tracked there. Of the files that flew and the
+    data files those in the repository are compared, whether they are tracked or not.
+    """
+    main = code.main
+    if main is None or _git(main.parent, "ls-files", "--error-unmatch", "--", main.name) is None:
+        return None, None
+    top = Path(_git(main.parent, "rev-parse", "--show-toplevel") or main.parent)
+    inside = [
+        str(path)
+        for path in (*code.sources.values(), *code.data.values())
+        if path.resolve().is_relative_to(top)
+    ]
+    changes = _git(top, "status", "--porcelain", "--untracked-files=all", "--", *inside)
+    return _git(top, "rev-parse", "HEAD"), None if changes is None else bool(changes)
+
+
 def packages() -> dict[str, str]:
     """Return the versions of the packages that numbers depend on, of those installed."""
     found: dict[str, str] = {}
@@ -81,6 +106,14 @@ def packages() -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
+
+
+def _imported(codes: Sequence[Code]) -> dict[str, str]:
+    return {
+        name.replace("_", "-"): found
+        for code in codes
+        for name, found in code.state.packages.items()
+    }
 
 
 def processor() -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import faultpath
-from faultpath.code import CodeState, Watch
+from faultpath.code import Code, Watch
 from faultpath.errors import UserError
 from faultpath.execution.attempt import attempt, limit_threads
 from faultpath.execution.changes import kept_trials, watched
@@ -65,8 +65,8 @@ class RunResult:
     outcomes_sha256: str
     system_fingerprint: str
     """Of `code`, shortened; for several runs together, of all of them."""
-    code: tuple[CodeState, ...]
-    """Of the runs that this is made of."""
+    code: tuple[Code, ...]
+    """What flew, of each run that this is made of."""
     library_hash: str
 
 
@@ -138,7 +138,7 @@ def run_study(
         failures=_failures(ledger, run),
         outcomes_sha256=digest,
         system_fingerprint=fingerprint,
-        code=(code.state,),
+        code=(code,),
         library_hash=library.content_hash,
     )
 

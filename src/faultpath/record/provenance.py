@@ -31,6 +31,15 @@ class RunProvenance(BaseModel):
     blocks_computed: int
     blocks_kept: int
     system_fingerprint: str
+    """Hash of the sources, data files and packages that flew, and of what the system says."""
+    system_commit: str | None = None
+    """Of the repository in which the system's file is tracked."""
+    system_dirty: bool | None = None
+    """Whether a file that flew differs from that commit."""
+    sources: dict[str, str] = Field(default_factory=dict[str, str])
+    """SHA-256 of each source file that flew, by module."""
+    data: dict[str, str] = Field(default_factory=dict[str, str])
+    """SHA-256 of each data file that the system names."""
     library_hash: str
     outcomes_sha256: str
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])

@@ -204,7 +204,7 @@ def save(
         failures=tuple(failure for result in flown.results for failure in result.failures),
         outcomes_sha256=digest,
         system_fingerprint=flown.fingerprint,
-        code=tuple(state for result in flown.results for state in result.code),
+        code=tuple(code for result in flown.results for code in result.code),
         library_hash=results.library_hash,
     )
 

@@ -22,7 +22,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     return read_code(
         (root, *_classes(system, root), _FLIES),
         data=map(Path, system.data_files),
-        base=root.folder,
+        base=None if root.path is None else root.path.parent,
         given=str(system.fingerprint()),
     )
 
