@@ -60,9 +60,6 @@ class Dock(System):
         scenes = tuple(SceneRef(f"floors/{i:03d}", i) for i in range(100))
         return Library(name, scenes, content_hash="floors-1")
 
-    def fingerprint(self) -> str:
-        return "dock-1"
-
     # --- run ---
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
         draws = [generator("dock/floor", scene, 0).uniform(size=3) for scene in scenes]

@@ -58,9 +58,6 @@ class Toy(System):
         scenes = tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))
         return Library(name, scenes, "carts-1")
 
-    def fingerprint(self) -> str:
-        return "toy-1"
-
     def run(self, variant, scenes, taps: Taps, seed):
         draws = [generator("toy/cart", scene, 0).uniform(size=3) for scene in scenes]
         gain, slope, goal = (np.array(draws) * [0.8, 4.0, 4.0] + [0.6, -2.0, 3.0]).T

@@ -12,10 +12,12 @@ import pytest
 
 from faultpath.audit import Audit, plan_audit
 from faultpath.execution import run_study
+from faultpath.execution.provenance import packages, processor
 from faultpath.faults import parse_fault
 from faultpath.record import DecisionRecord, RunProvenance, decide
 from faultpath.store import read_outcomes
-from faultpath.trials import SystemSpec, load_system
+from faultpath.store.tables import encode_outcomes
+from faultpath.trials import OutcomeTable, SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
@@ -71,7 +73,39 @@ def test_the_examples_still_give_their_reference(name: str, tmp_path: Path) -> N
     assert numbers(audit.conclude(done.outcomes, done.deliveries)) == numbers(record)
 
 
-def plan(record: DecisionRecord) -> Audit:
+@pytest.mark.parametrize(
+    ("name", "scenes"),
+    [*((name, None) for name in QUICK), pytest.param("quadrotor-L3", 2, marks=pytest.mark.slow)],
+)
+def test_the_code_that_is_here_gives_the_outcomes_of_the_reference(
+    name: str, scenes: int | None, tmp_path: Path
+) -> None:
+    """The README's runs are those of this code: flown again, they end the same to the last bit."""
+    made = RunProvenance.model_validate_json((REFERENCE / name / "provenance.json").read_bytes())
+    if scenes and not same_arithmetic(made):
+        pytest.skip("this machine's last bits are not the reference's")
+    audit = plan(record_of(name), scenes)
+    done = run_study(audit.study, tmp_path, workers=0)
+    kept = set(audit.study.scenes)
+    rows = read_outcomes(REFERENCE / name / "outcomes.parquet").rows
+    reference = OutcomeTable(tuple(row for row in rows if row.outcome.scene in kept))
+    assert encode_outcomes(done.outcomes) == encode_outcomes(reference)
+    if scenes is None:
+        assert (tmp_path / "outcomes.parquet").read_bytes() == encode_outcomes(reference)
+
+
+def same_arithmetic(made: RunProvenance) -> bool:
+    from faultpath.quadrotor import native
+
+    fused = any(name in made.backend for name in ("avx512", "avx2"))
+    return (
+        fused == (native.numerics() == "fused")
+        and made.processor.partition(" ")[0] == processor().partition(" ")[0]
+        and made.packages["torch"].partition("+")[0] == packages()["torch"].partition("+")[0]
+    )
+
+
+def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
     asked = record.question
     place = asked.system if ".py:" not in asked.system else str(ROOT / asked.system)
     spec = SystemSpec(name=place, options=asked.options)
@@ -84,7 +118,7 @@ def plan(record: DecisionRecord) -> Audit:
         fault=parse_fault(asked.fault, system.interface, system.fault_presets, system.control_dt_s),
         fault_text=asked.fault,
         library=system.library(asked.library),
-        scenes=asked.n_scenes,
+        scenes=scenes or asked.n_scenes,
         seeds=asked.seeds,
     )
 
