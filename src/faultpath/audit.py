@@ -40,8 +40,8 @@ class Audit:
         paths = [
             path.model_copy(
                 update={
-                    "struck": _struck_taps(deliveries.at(asked.repair, path.name)),
-                    "baseline_struck": _struck_taps(deliveries.at(asked.baseline, path.name)),
+                    "struck": struck_taps(deliveries.at(asked.repair, path.name)),
+                    "baseline_struck": struck_taps(deliveries.at(asked.baseline, path.name)),
                 }
             )
             for path in self.paths
@@ -49,7 +49,8 @@ class Audit:
         return decide(asked, paths, table)
 
 
-def _struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
+def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
+    """Return the taps at which receipts show a fault in force."""
     return tuple(
         StruckTap(
             channel=tap.channel,

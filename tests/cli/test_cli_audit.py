@@ -91,6 +91,16 @@ def test_files_of_a_run_agree_with_each_other(toy_run):
     assert provenance["library_hash"] == record.question.library_hash
 
 
+def test_the_page_draws_what_receipts_show_in_either_variant(toy_run):
+    page = (toy_run / "report.html").read_text()
+    for words in (
+        "Controller only: struck 1 tap in both variants",
+        "Observer only: struck 1 tap in the baseline alone",
+        "Shared fault: struck 1 tap in both variants, 1 tap in the baseline alone",
+    ):
+        assert f">{words}<" in page
+
+
 def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):
     monkeypatch.chdir(ROOT)
     before = {name: (run / name).read_bytes() for name in ("report.html", "table.tex", "table.md")}

@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from faultpath.interface import Interface, read_interface
-from faultpath.record import Path, Question, decide
+from faultpath.record import Path, Question, StruckTap, decide
 from faultpath.record.provenance import RunProvenance
 from faultpath.report import OUTCOME_COLUMNS, ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
@@ -168,24 +168,37 @@ def _variant(name: str) -> VariantShown:
     )
 
 
+def _struck(*consumers: str) -> tuple[StruckTap, ...]:
+    """Return the taps of a fault on the calibration at these consumers, as receipts name them."""
+    return tuple(
+        StruckTap(channel=channel.name, consumer=consumer, struck_steps=9, altered_steps=9)
+        for channel in interface().channels
+        if channel.name in ("mass", "thrust_scale")
+        for consumer in channel.consumers
+        if consumer in consumers
+    )
+
+
 def _paths() -> tuple[Path, ...]:
     predictor = ("predictor.dynamics", "predictor.wind_map", "predictor.trim")
-    both = (*predictor, "reconstruction.head")
+    head = ("reconstruction.head",)
     return (
         Path(name="correct", title="Correct inputs", consumers=(), baseline_consumers=()),
-        Path(
-            name="predictor",
-            title="Predictor only",
-            consumers=predictor,
-            baseline_consumers=predictor,
-        ),
-        Path(
-            name="reconstruction",
-            title="Reconstruction only",
-            consumers=("reconstruction.head",),
-            baseline_consumers=("reconstruction.head",),
-        ),
-        Path(name="shared", title="Shared fault", consumers=both, baseline_consumers=both),
+        _path("predictor", "Predictor only", predictor),
+        _path("reconstruction", "Reconstruction only", head),
+        _path("shared", "Shared fault", (*predictor, *head)),
+    )
+
+
+def _path(name: str, title: str, consumers: tuple[str, ...]) -> Path:
+    struck = _struck(*consumers)
+    return Path(
+        name=name,
+        title=title,
+        consumers=consumers,
+        baseline_consumers=consumers,
+        struck=struck,
+        baseline_struck=struck,
     )
 
 

@@ -147,6 +147,7 @@ def source(report: ReportInput) -> ReproductionInput:
         reproduction=reproduction(report),
         provenance=report.provenance,
         interface=report.interface,
+        variants=report.variants,
         decision=report.record,
         outcomes=OutcomeTable(tuple(map(_row, report.outcomes.to_pylist()))),
         traces=report.traces,

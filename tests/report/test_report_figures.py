@@ -37,18 +37,17 @@ def test_every_read_is_one_tap(drawn_interface: Interface) -> None:
 
 
 def test_struck_taps_follow_the_fault(one_seed: ReportInput) -> None:
-    struck = {p.name: p.taps for p in struck_paths(one_seed.interface, one_seed.record)}
-    assert set(struck) == {"predictor", "reconstruction", "shared"}
+    predictor, reconstruction, shared = struck_paths(one_seed.record)
     head = {("mass", "reconstruction.head"), ("thrust_scale", "reconstruction.head")}
-    assert struck["reconstruction"] == head
+    assert reconstruction.taps == head
     # The wind map also reads the wind, which the fault on the calibration leaves alone.
-    assert ("wind", "predictor.wind_map") not in struck["predictor"]
-    assert struck["shared"] == struck["predictor"] | struck["reconstruction"]
+    assert ("wind", "predictor.wind_map") not in predictor.taps
+    assert shared.taps == predictor.taps | reconstruction.taps
 
 
 def test_standalone_drawing_is_xml_with_every_name(one_seed: ReportInput) -> None:
-    struck = struck_paths(one_seed.interface, one_seed.record)
-    root = ElementTree.fromstring(draw_interface(one_seed.interface, struck, standalone=True))
+    struck = struck_paths(one_seed.record)
+    root = ElementTree.fromstring(draw_interface(one_seed.interface, struck, one_seed.variants))
     words = [t.text or "" for t in root.iter(f"{SVG}text")]
     for source in one_seed.interface.sources:
         assert source.name in words

@@ -195,6 +195,7 @@ def test_page_without_audit_flights_tables_and_provenance(toy: ReproductionInput
         reproduction=found,
         provenance=None,
         interface=toy.interface,
+        variants=(),
         decision=None,
         outcomes=OutcomeTable(()),
         traces=Traces({}, dt_s=0.05),

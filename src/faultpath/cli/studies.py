@@ -126,16 +126,22 @@ def _bar(console: Console, what: str, unit: str) -> Generator[Show]:
 def _write_pages(
     place: Path, plan: Plan, found: Reproduction, provenance: RunProvenance, flown: Flown
 ) -> None:
-    leg = next((leg for leg in flown.legs if leg.setting == table_4.WINDY), None)
+    windy = next((i for i, leg in enumerate(flown.legs) if leg.setting == table_4.WINDY), None)
     asked = reversal.audited(flown.outcomes)
     flights = {(at.variant, at.path, at.seed, at.scene): t for at, t in traces_of(asked).items()}
     system = plan.system
+    decision, variants = None, ()
+    if windy is not None and reversal.whole(asked):
+        leg = flown.legs[windy]
+        decision = reversal.decision(asked, leg, flown.results[windy].deliveries)
+        variants = reversal.wired(leg)
     source = ReproductionInput(
         reproduction=found,
         provenance=provenance,
         interface=system.interface,
+        variants=variants,
         outcomes=asked,
-        decision=reversal.decision(asked, leg) if leg and reversal.whole(asked) else None,
+        decision=decision,
         traces=Traces(flights, system.control_dt_s),
         plans={
             scene: drawn

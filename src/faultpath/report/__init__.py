@@ -2,8 +2,9 @@
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Traces
-from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
+from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_terminal import interface_table
+from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.tables import latex_table, markdown_table
 from faultpath.report.terminal import decision, effect_table, success_table
 from faultpath.report.write import write_report

@@ -8,7 +8,8 @@ from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.report import figures, wording
 from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
-from faultpath.report.interface_drawing import draw_interface, struck_paths
+from faultpath.report.interface_drawing import draw_interface
+from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
 from faultpath.report.viewer import choose, viewer_data
 
@@ -30,7 +31,7 @@ def report_page(source: ReportInput) -> str:
         paths=_path_titles(source.record),
         tiles=_tiles(source.record),
         pictures=_pictures(source, pairs),
-        struck=struck_paths(source.interface, source.record),
+        struck=struck_paths(source.record),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
         n_void=sum(effect.void_pairs for effect in source.record.effects),
         n_pairs=len(pairs),
@@ -71,9 +72,11 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
     titles, asked = _path_titles(record), record.question
     rows = figures.effect_rows(record)
     axis = figures.shared_range(record.break_even)
-    struck = struck_paths(source.interface, record)
+    drawing = draw_interface(
+        source.interface, struck_paths(record), source.variants, standalone=False
+    )
     return {
-        "interface": Markup(draw_interface(source.interface, struck, standalone=False)),
+        "interface": Markup(drawing),
         "forest": Markup(figures.forest(rows, asked.baseline, asked.repair)),
         "forest_narrow": Markup(figures.forest(rows, asked.baseline, asked.repair, narrow=True)),
         "frequency": [

@@ -1,10 +1,8 @@
 """The information interface as a picture: who reads what, from where, and what a fault strikes."""
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from faultpath.interface import Channel, Gap, Interface, Source
-from faultpath.record.model import DecisionRecord
 from faultpath.report.interface_layout import (
     CHANNEL_HEIGHT,
     SOURCE_HEIGHT,
@@ -13,8 +11,10 @@ from faultpath.report.interface_layout import (
     Tap,
     lay_out,
 )
+from faultpath.report.interface_wiring import StruckPath, Who, Wiring, hits
 from faultpath.report.provenance_glyphs import draw_gap, draw_provenance
 from faultpath.report.svg import Svg, shortened, text_width
+from faultpath.trials.shown import VariantShown
 
 _SOURCE_X, _SOURCE_W = 46.0, 214.0
 _CHANNEL_X, _CHANNEL_W = 332.0, 142.0
@@ -23,69 +23,60 @@ _PLACE_X, _READS_X = 16.0, 148.0
 _LANE = 12.0
 
 
-@dataclass(frozen=True)
-class StruckPath:
-    """One path of a fault and the taps that it strikes."""
-
-    name: str
-    title: str
-    taps: frozenset[Tap]
-
-
-def struck_paths(interface: Interface, record: DecisionRecord) -> tuple[StruckPath, ...]:
-    """Return the paths of a record that strike something, with their taps.
-
-    A record names consumers, `module.place`, or taps, `channel:module.place`. A bare consumer
-    counts for the channels that the fault's words name (directly or by correlation group), and
-    for every channel that it reads where they name none.
-    """
-    named = _channels_in(interface, record.question.fault)
-    return tuple(
-        StruckPath(path.name, path.title, frozenset(_taps_of(interface, path.consumers, named)))
-        for path in record.paths
-        if path.consumers
-    )
-
-
 def draw_interface(
-    interface: Interface, struck: Sequence[StruckPath] = (), standalone: bool = True
+    interface: Interface,
+    struck: Sequence[StruckPath] = (),
+    variants: tuple[VariantShown, ...] = (),
+    standalone: bool = True,
 ) -> str:
     """Return the drawing as SVG markup: a file of its own, or a part of a page with its styles.
 
-    Every struck tap carries the numbers of the paths that strike it; the key stands below.
+    `variants` are baseline and repair: what only one of them uses carries its letter, what neither
+    uses is dashed. Every struck tap carries the numbers of the paths that strike it, with a letter
+    where one variant alone was struck; the key stands below.
     """
-    layout = lay_out(interface)
+    layout, wiring = lay_out(interface), Wiring(variants)
     lanes = len(interface.reconstructs)
     key_top = layout.bottom + 18 + _LANE * lanes + (12 if lanes else 0)
     width = _TAP_X + _BLOCK_W + 14 + _LANE * max(lanes, 1)
-    svg = Svg(width, key_top + 28 + 20 * len(struck), *_told(interface, struck))
+    height = key_top + 28 + 20 * (len(struck) + bool(variants))
+    svg = Svg(width, height, *_told(interface, struck, wiring))
     for x, words in ((_SOURCE_X, "Sources"), (_CHANNEL_X, "Channels"), (_TAP_X, "Taps, by module")):
         svg.text(x, 18, words, "head")
     for block in layout.modules:
         svg.rect(_TAP_X - 14, block.top, _BLOCK_W + 14, block.bottom - block.top, "module", 4)
-    _source_wires(svg, interface, layout)
-    _tap_wires(svg, layout, struck)
+    _source_wires(svg, interface, layout, wiring)
+    _tap_wires(svg, layout, struck, wiring)
     _groups(svg, interface, layout)
     for source in interface.sources:
         _source(svg, source, layout.sources[source.name])
     for channel in interface.channels:
         _channel(svg, channel, layout.channels[channel.name])
     for block in layout.modules:
-        _module(svg, block, struck)
-    _reconstructions(svg, interface, layout)
-    _key(svg, key_top, struck, lanes > 0)
+        _module(svg, block, struck, wiring)
+    _reconstructions(svg, interface, layout, wiring)
+    _key(svg, key_top, struck, variants, lanes > 0)
     return svg.render(standalone)
 
 
-def _told(interface: Interface, struck: Sequence[StruckPath]) -> tuple[str, str]:
+def _told(interface: Interface, struck: Sequence[StruckPath], wiring: Wiring) -> tuple[str, str]:
+    def fed(channel: Channel) -> str:
+        feeding = [(s, wiring.feeds(channel, s)) for s in channel.sources]
+        used = [f"{s}{by.words}" for s, by in feeding if by is not Who.NEITHER]
+        return " and ".join(used) or "nothing"
+
     reads = "; ".join(
-        f"{c.name} from {c.sources[0]} to {', '.join(c.consumers)}" for c in interface.channels
+        f"{channel.name} from {fed(channel)} to "
+        + ", ".join(f"{c}{wiring.tap((channel.name, c)).words}" for c in channel.consumers)
+        for channel in interface.channels
     )
-    hits = "".join(
-        f" {path.title} strikes {', '.join(f'{c} at {x}' for c, x in sorted(path.taps))}."
+    told = "".join(
+        f" {path.words}"
+        + "".join(f", {t[0]} at {t[1]}{path.who(t).words}" for t in sorted(path.taps))
+        + "."
         for path in struck
     )
-    return f"Information interface of {interface.name}", f"{reads}.{hits}"
+    return f"Information interface of {interface.name}", f"{reads}.{told}"
 
 
 def _source(svg: Svg, source: Source, y: float) -> None:
@@ -113,26 +104,39 @@ def _channel(svg: Svg, channel: Channel, y: float) -> None:
         svg.text(_CHANNEL_X + 36, y + 12, gap, "small soft")
 
 
-def _source_wires(svg: Svg, interface: Interface, layout: Layout) -> None:
+def _source_wires(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring) -> None:
     for channel in interface.channels:
-        for i, name in enumerate(channel.sources):
+        for name in channel.sources:
             start = (_SOURCE_X + _SOURCE_W, layout.sources[name])
             end = (_CHANNEL_X, layout.channels[channel.name])
-            svg.path(_curve(start, end), "wire other" if i else "wire")
+            by = wiring.feeds(channel, name)
+            svg.path(_curve(start, end), _wire(by))
+            middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2 + 4)
+            _letter(svg, by, middle, f"{name} feeds {channel.name}{by.words}")
 
 
-def _tap_wires(svg: Svg, layout: Layout, struck: Sequence[StruckPath]) -> None:
-    ordered = sorted(layout.taps.items(), key=lambda item: bool(_hits(item[0], struck)))
+def _tap_wires(svg: Svg, layout: Layout, struck: Sequence[StruckPath], wiring: Wiring) -> None:
+    ordered = sorted(layout.taps.items(), key=lambda item: bool(hits(item[0], struck)))
     for tap, y in ordered:
         d = _curve((_CHANNEL_X + _CHANNEL_W, layout.channels[tap[0]]), (_TAP_X, y))
-        hits = _hits(tap, struck)
-        if hits:
-            svg.path(d, "wire hit", data_hit=" ".join(map(str, hits)))
+        found = hits(tap, struck)
+        if found:
+            svg.path(d, "wire hit", data_hit=" ".join(str(number) for number, _ in found))
         else:
-            svg.path(d, "wire")
+            svg.path(d, _wire(wiring.tap(tap)))
 
 
-def _module(svg: Svg, block: ModuleBlock, struck: Sequence[StruckPath]) -> None:
+def _wire(by: Who) -> str:
+    return "wire other" if by is Who.NEITHER else "wire"
+
+
+def _letter(svg: Svg, by: Who, at: tuple[float, float], tip: str) -> None:
+    """Write whose alone something is; nothing where it is everybody's or nobody's."""
+    if by in (Who.BASELINE, Who.REPAIR):
+        svg.text(*at, by.value, f"bold halo {by.name.lower()}", "middle", tip=tip)
+
+
+def _module(svg: Svg, block: ModuleBlock, struck: Sequence[StruckPath], wiring: Wiring) -> None:
     svg.text(_TAP_X, block.top + 18, shortened(block.name, _BLOCK_W - 10, 12), "bold")
     place_before = ""
     for tap, y in block.rows:
@@ -142,24 +146,40 @@ def _module(svg: Svg, block: ModuleBlock, struck: Sequence[StruckPath]) -> None:
             label = shortened(place, _READS_X - _PLACE_X - 8, 12)
             svg.text(_TAP_X + _PLACE_X, y + 4, label, tip=consumer)
         place_before = place
-        hits = _hits(tap, struck)
-        room = _BLOCK_W - _READS_X - 14 - 17 * len(hits)
+        found, by = hits(tap, struck), wiring.tap(tap)
+        room = _BLOCK_W - _READS_X - 14 - sum(_tag_width(*hit) + 2 for hit in found)
         svg.text(_TAP_X + _READS_X, y + 4, shortened(channel, room, 11), "small soft")
-        _tap(svg, tap, y, hits)
+        _letter(svg, by, (_TAP_X + _READS_X - 10, y + 4), f"{channel} at {consumer}{by.words}")
+        _tap(svg, tap, y, found, by)
 
 
-def _tap(svg: Svg, tap: Tap, y: float, hits: Sequence[int]) -> None:
-    if not hits:
-        svg.circle((_TAP_X, y), 3.5, "tap", tip=f"{tap[0]} at {tap[1]}")
+def _tap(svg: Svg, tap: Tap, y: float, found: Sequence[tuple[int, Who]], by: Who) -> None:
+    tip = f"{tap[0]} at {tap[1]}{by.words}"
+    if not found:
+        svg.circle((_TAP_X, y), 3.5, "tap unread" if by is Who.NEITHER else "tap", tip=tip)
         return
-    x = _TAP_X
-    with svg.group("struck-tap", data_hit=" ".join(map(str, hits))):
-        svg.polygon([(x - 6.5, y), (x, y - 6.5), (x + 6.5, y), (x, y + 6.5)], "tap hit")
-        for k, hit in enumerate(hits):
-            centre = _TAP_X + _BLOCK_W - 14 - 17 * (len(hits) - 1 - k)
-            with svg.group("tag-mark", data_hit=str(hit)):
-                svg.circle((centre, y), 7.5, "tag")
-                svg.text(centre, y + 3.5, str(hit), "on-tag", "middle")
+    with svg.group("struck-tap", data_hit=" ".join(str(number) for number, _ in found)):
+        _diamond(svg, _TAP_X, y, tip)
+        right = _TAP_X + _BLOCK_W - 6
+        for number, struck_in in reversed(found):
+            width = _tag_width(number, struck_in)
+            with svg.group("tag-mark", data_hit=str(number)):
+                _tag(svg, right - width / 2, y, number, struck_in)
+            right -= width + 2
+
+
+def _diamond(svg: Svg, x: float, y: float, tip: str | None = None) -> None:
+    svg.polygon([(x - 6.5, y), (x, y - 6.5), (x + 6.5, y), (x, y + 6.5)], "tap hit", tip)
+
+
+def _tag(svg: Svg, x: float, y: float, number: int, by: Who) -> None:
+    width = _tag_width(number, by)
+    svg.rect(x - width / 2, y - 7.5, width, 15, "tag", 7.5)
+    svg.text(x, y + 3.5, f"{number}{by.value}", "on-tag", "middle")
+
+
+def _tag_width(number: int, by: Who) -> float:
+    return max(15.0, text_width(f"{number}{by.value}", 10) + 8)
 
 
 def _groups(svg: Svg, interface: Interface, layout: Layout) -> None:
@@ -181,7 +201,7 @@ def _groups(svg: Svg, interface: Interface, layout: Layout) -> None:
             svg.text(0, 0, label, "small soft", "middle")
 
 
-def _reconstructions(svg: Svg, interface: Interface, layout: Layout) -> None:
+def _reconstructions(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring) -> None:
     """Lead what a module reconstructs round the drawing, back to the source it makes."""
     tops = {block.name: block.top for block in layout.modules}
     for lane, (module, source) in enumerate(interface.reconstructs.items()):
@@ -196,61 +216,45 @@ def _reconstructions(svg: Svg, interface: Interface, layout: Layout) -> None:
         svg.polygon(
             [(_SOURCE_X - 1, end), (_SOURCE_X - 9, end - 4), (_SOURCE_X - 9, end + 4)], "arrow"
         )
-        words = f"{module} reconstructs {source}"
+        words = f"{module} reconstructs {source}{wiring.module(module).words}"
         room = text_width(words, 11)
         middle = _CHANNEL_X + _CHANNEL_W / 2
         svg.rect(middle - room / 2 - 4, below - 8, room + 8, 16, "paper")
         svg.text(middle, below + 4, words, "small", "middle")
 
 
-def _key(svg: Svg, top: float, struck: Sequence[StruckPath], reconstructs: bool) -> None:
+def _key(
+    svg: Svg,
+    top: float,
+    struck: Sequence[StruckPath],
+    variants: tuple[VariantShown, ...],
+    reconstructs: bool,
+) -> None:
     x, y = _SOURCE_X, top + 12
     svg.circle((x + 4, y - 4), 3.5, "tap")
     svg.text(x + 16, y, "tap", "small soft")
     svg.path(f"M{x + 56} {y - 4}h24", "wire other")
-    svg.text(x + 86, y, "other source that may feed the channel", "small soft")
+    other = "used by neither variant" if variants else "other source that may feed the channel"
+    svg.text(x + 86, y, other, "small soft")
     if reconstructs:
         svg.path(f"M{x + 322} {y - 4}h26", "back")
         svg.text(x + 354, y, "reconstruction", "small soft")
+    if variants:
+        y += 20
+        for left, by, variant in zip(
+            (x, x + 420), (Who.BASELINE, Who.REPAIR), variants, strict=True
+        ):
+            svg.text(left + 4, y, by.value, f"bold {by.name.lower()}", "middle")
+            words = f"the {by.name.lower()} alone, {variant.name}"
+            svg.text(left + 16, y, shortened(words, 380, 11), "small soft", tip=variant.description)
     for number, path in enumerate(struck, 1):
         y += 20
-        svg.polygon([(x - 2, y - 4), (x + 4, y - 10), (x + 10, y - 4), (x + 4, y + 2)], "tap hit")
-        svg.circle((x + 24, y - 4), 7.5, "tag")
-        svg.text(x + 24, y - 0.5, str(number), "on-tag", "middle")
-        words = f"{path.title}: strikes {len(path.taps)} taps"
-        svg.text(x + 40, y, shortened(words, 780, 12), tip=path.title)
-
-
-def _hits(tap: Tap, struck: Sequence[StruckPath]) -> list[int]:
-    return [number for number, path in enumerate(struck, 1) if tap in path.taps]
+        _diamond(svg, x + 4, y - 4)
+        _tag(svg, x + 24, y - 4, number, Who.BOTH)
+        svg.text(x + 40, y, shortened(path.words, 780, 12), tip=path.title)
 
 
 def _curve(start: tuple[float, float], end: tuple[float, float]) -> str:
     (x0, y0), (x1, y1) = start, end
     bend = 0.5 * (x1 - x0)
     return f"M{x0:.1f} {y0:.1f}C{x0 + bend:.1f} {y0:.1f} {x1 - bend:.1f} {y1:.1f} {x1:.1f} {y1:.1f}"
-
-
-def _channels_in(interface: Interface, words: str) -> frozenset[str]:
-    """Return the channels that a fault's words name, themselves or by their sources' group."""
-    asked = {"".join(c if c.isalnum() or c == "_" else " " for c in words)}
-    tokens = {token for text in asked for token in text.split()}
-    group = {source.name: source.correlation_group for source in interface.sources}
-    return frozenset(
-        channel.name
-        for channel in interface.channels
-        if channel.name in tokens or any(group[s] in tokens for s in channel.sources)
-    )
-
-
-def _taps_of(interface: Interface, names: Iterable[str], channels: frozenset[str]) -> set[Tap]:
-    found: set[Tap] = set()
-    for name in names:
-        channel_name, _, consumer = name.rpartition(":")
-        readers = [c.name for c in interface.channels if consumer in c.consumers]
-        if channel_name:
-            readers = [c for c in readers if c == channel_name]
-        elif channels.intersection(readers):
-            readers = [c for c in readers if c in channels]
-        found.update((channel, consumer) for channel in readers)
-    return found

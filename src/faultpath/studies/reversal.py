@@ -5,11 +5,12 @@ Its decision record and its flights are what a report shows of the reversal.
 
 from dataclasses import replace
 
+from faultpath.audit import struck_taps
 from faultpath.faults import Fault
 from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
 from faultpath.studies.flights import SYSTEM, Leg
 from faultpath.studies.pages import table_4
-from faultpath.trials import OutcomeTable, TrialRow
+from faultpath.trials import Deliveries, OutcomeTable, TrialRow, VariantShown, variant_shown
 
 BASELINE, REPAIR = "gru", "gru+dcc"
 NAMES = {"correct": CORRECT, "reconstruction-only": "reconstruction", "shared": SHARED}
@@ -37,8 +38,11 @@ def whole(audited: OutcomeTable) -> bool:
     return all(audited.seeds(v, p) for v in (BASELINE, REPAIR) for p in NAMES.values())
 
 
-def decision(outcomes: OutcomeTable, leg: Leg) -> DecisionRecord:
-    """Return the decision record over trials that `audited` returned, flown in `leg`."""
+def decision(outcomes: OutcomeTable, leg: Leg, deliveries: Deliveries) -> DecisionRecord:
+    """Return the decision record over trials that `audited` returned, flown in `leg`.
+
+    `deliveries` say what the taps did there.
+    """
     study = leg.study
     question = Question(
         system=SYSTEM,
@@ -57,10 +61,17 @@ def decision(outcomes: OutcomeTable, leg: Leg) -> DecisionRecord:
             title=TITLES[NAMES[path]],
             consumers=_struck(leg, REPAIR, path),
             baseline_consumers=_struck(leg, BASELINE, path),
+            struck=struck_taps(deliveries.at(REPAIR, table_4.cell(REPAIR, path).path)),
+            baseline_struck=struck_taps(deliveries.at(BASELINE, table_4.cell(BASELINE, path).path)),
         )
         for path in table_4.PATHS
     ]
     return decide(question, paths, outcomes)
+
+
+def wired(leg: Leg) -> tuple[VariantShown, ...]:
+    """Return how baseline and repair are wired."""
+    return tuple(variant_shown(leg.system.variants[name]) for name in (BASELINE, REPAIR))
 
 
 def _struck(leg: Leg, variant: str, path: str) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
 from faultpath.trials.registry import load_measurer, load_system
-from faultpath.trials.shown import SystemShown, VariantShown, system_shown
+from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
 from faultpath.trials.system import Library, SceneRef, System, Variant
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -39,4 +39,5 @@ __all__ = [
     "mismatch_words",
     "pair",
     "system_shown",
+    "variant_shown",
 ]

@@ -71,7 +71,7 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
             {
                 "control_dt_s": system.control_dt_s,
                 "interface": system.interface,
-                "variants": [_variant(system.variants[name]) for name in variants],
+                "variants": [variant_shown(system.variants[name]) for name in variants],
                 # As plain data: what is a `FloorPlan` already would not be looked into.
                 "plans": {scene: asdict(plan) for scene, plan in plans.items()},
             }
@@ -86,7 +86,8 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
         ) from error
 
 
-def _variant(variant: Variant) -> VariantShown:
+def variant_shown(variant: Variant) -> VariantShown:
+    """Return what a report shows of a variant."""
     return VariantShown(
         name=variant.name,
         description=variant.description,

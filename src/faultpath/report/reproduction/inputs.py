@@ -7,7 +7,7 @@ from faultpath.interface import Interface
 from faultpath.record import DecisionRecord, Reproduction
 from faultpath.record.provenance import RunProvenance
 from faultpath.report.inputs import Traces
-from faultpath.trials import FloorPlan, OutcomeTable
+from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 
 @dataclass(frozen=True)
@@ -17,6 +17,8 @@ class ReproductionInput:
     reproduction: Reproduction
     provenance: RunProvenance | None
     interface: Interface
+    variants: tuple[VariantShown, ...]
+    """How baseline and repair of `decision` are wired; empty without one."""
     decision: DecisionRecord | None
     """The audit behind the reversal; `None` where the run does not hold its arms."""
     outcomes: OutcomeTable

@@ -12,7 +12,8 @@ from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
 from faultpath.report.inputs import Traces
-from faultpath.report.interface_drawing import StruckPath, draw_interface, struck_paths
+from faultpath.report.interface_drawing import draw_interface
+from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
@@ -46,7 +47,7 @@ class _Audit:
 def reproduction_page(source: ReproductionInput) -> str:
     """Return the whole page as HTML: styles, scripts, pictures and data inside."""
     reproduction, decision = source.reproduction, source.decision
-    struck = struck_paths(source.interface, decision) if decision else ()
+    struck = struck_paths(decision) if decision else ()
     return render(
         "reproduction.html.j2",
         _STYLES,
@@ -101,7 +102,7 @@ def _gallery(source: ReproductionInput) -> list[Markup]:
 
 
 def _reversal(source: ReproductionInput, struck: tuple[StruckPath, ...]) -> Mapping[str, object]:
-    drawing = Markup(draw_interface(source.interface, struck, standalone=False))
+    drawing = Markup(draw_interface(source.interface, struck, source.variants, standalone=False))
     if source.decision is None:
         return {"interface": drawing, "forest": None}
     rows, asked = figures.effect_rows(source.decision), source.decision.question
