@@ -6,3 +6,18 @@ class UserError(Exception):
 
     The command line prints the sentence without a traceback and exits with status 2.
     """
+
+
+class Stopped(UserError):
+    """Ctrl-C ended the command; the sentence says what is kept and how to go on."""
+
+
+class SystemMistake(UserError):
+    """A mistake in the code of a system of one's own."""
+
+    place: str = ""
+    """File and line of that code, once they are known; `faultpath.blame` finds them."""
+
+    def __str__(self) -> str:
+        said = super().__str__()
+        return f"{self.place}: {said}" if self.place else said

@@ -60,7 +60,7 @@ def command(
     from faultpath.audit import plan_audit
     from faultpath.faults import parse_fault
     from faultpath.store.earlier import keyed
-    from faultpath.trials import SystemSpec, load_system
+    from faultpath.trials import SystemSpec, library_of, load_system
     from faultpath.trials.state import system_code
 
     named = {
@@ -81,7 +81,7 @@ def command(
         repair=repair,
         fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
         fault_text=fault,
-        library=built.library(library),
+        library=library_of(built, library),
         scenes=scenes,
         seeds=numbers(seeds, "--seeds"),
     )

@@ -15,8 +15,7 @@ from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedCo
 from rich.table import Table
 from rich.text import Text
 
-from faultpath.cli.options import Stopped
-from faultpath.store import make_folder
+from faultpath.errors import Stopped
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.training.card import ModelCard
@@ -57,6 +56,7 @@ def train(wishes: Wishes) -> int:
     and data that cannot be collected.
     """
     from faultpath.quadrotor.training.catalogue import choose, stages
+    from faultpath.store import make_folder
 
     console = Console()
     failed = 0

@@ -1,66 +1,134 @@
-"""Entry point of the `faultpath` command.
+"""Entry point of the `faultpath` command: what becomes of errors.
 
-Nothing heavy is imported here: torch and the statistics load when a verb needs them, so that
-`--help` answers at once.
+It imports next to nothing itself, so that Ctrl-C while the rest loads ends in a sentence as well.
 """
 
+import os
+import signal
 import sys
-from typing import NoReturn
+from collections.abc import Sequence
+from traceback import format_exception
+from types import FrameType
+from typing import TYPE_CHECKING, NoReturn
 
-import typer
+from faultpath.errors import Stopped
+from faultpath.text import one_line
 
-from faultpath.cli import audit, claims, interface, probe, report, reproduce, scenes, train
-from faultpath.cli.options import Stopped
-from faultpath.errors import UserError
-
-app = typer.Typer(
-    name="faultpath",
-    help="Audit whether a repair still helps when a fault reaches every module that shares its "
-    "source.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-app.command("audit")(audit.command)
-app.command("claims")(claims.command)
-app.command("interface")(interface.command)
-app.command("probe")(probe.command)
-app.command("report")(report.command)
-app.command("reproduce")(reproduce.command)
-app.add_typer(scenes.app, name="scenes")
-app.add_typer(train.app, name="train")
+if TYPE_CHECKING:
+    from typer import TyperException
 
 USER_ERROR = 2
 INTERRUPTED = 130
-"""What shells report for a program that Ctrl-C ended; typer returns it as well."""
+"""What shells report for a program that Ctrl-C ended."""
+
+UNREAD = 141
+"""What shells report for a program that nobody reads any more."""
+
+_TRACEBACK = "--traceback"
+_AGAIN = "interrupted; the same command goes on from what is stored."
 
 
 def main() -> None:
-    """Run the command line; a user's mistake ends in one sentence and status 2."""
+    """Run the command line; a user's mistake ends in one sentence and status 2.
+
+    So does an error in the code of a system of one's own. An error of faultpath's own code keeps
+    its traceback; `faultpath.blame` tells the two apart.
+    """
+    arguments, told = _arguments(sys.argv[1:])
+    ctrl_c = _CtrlC()
     try:
-        status = app(prog_name="faultpath", standalone_mode=False)
-    except Stopped as stop:
-        _end(str(stop), INTERRUPTED)
-    except UserError as error:
-        _end(str(error), USER_ERROR)
-    except typer.TyperException as error:
-        _end(_sentence(error), USER_ERROR)
-    if status == INTERRUPTED:
-        _end("interrupted; the same command goes on from what is stored.", INTERRUPTED)
-    sys.exit(status if isinstance(status, int) else 0)
+        status = _run(arguments)
+    except BaseException as error:
+        if isinstance(error, BrokenPipeError):  # whoever read our output has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            sys.exit(UNREAD)
+        if ctrl_c.pressed or isinstance(error, (Stopped, KeyboardInterrupt)):
+            _end(str(error) if isinstance(error, Stopped) else _AGAIN, INTERRUPTED)
+        sentence = _sentence(error)
+        if sentence is None:
+            raise
+        if told:
+            sys.stderr.write("".join(format_exception(error)))
+        _end(sentence, USER_ERROR)
+    finally:
+        ctrl_c.leave()
+    sys.exit(status)
+
+
+class _CtrlC:
+    """Remembers that Ctrl-C was pressed: libraries that it stops while they load raise errors of
+    other kinds."""
+
+    def __init__(self) -> None:
+        self.pressed = False
+        self._before = None
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            self._before = signal.signal(signal.SIGINT, self._press)
+
+    def _press(self, number: int, frame: FrameType | None) -> NoReturn:
+        self.pressed = True
+        raise KeyboardInterrupt
+
+    def leave(self) -> None:
+        if self._before is not None:
+            signal.signal(signal.SIGINT, self._before)
+
+
+def _arguments(given: Sequence[str]) -> tuple[list[str], bool]:
+    """Return the arguments without `--traceback`, and whether it was there."""
+    end = given.index("--") if "--" in given else len(given)
+    told = _TRACEBACK in given[:end]
+    return [part for part in given[:end] if part != _TRACEBACK] + list(given[end:]), told
+
+
+def _run(arguments: list[str]) -> int:
+    """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
+    import typer
+
+    from faultpath.cli.app import app
+    from faultpath.cli.options import check_arguments
+
+    check_arguments(arguments)
+    try:
+        with typer.main.get_command(app).make_context("faultpath", arguments) as context:
+            status = context.command.invoke(context)
+    except typer.Exit as end:
+        status = end.exit_code
+    return status if isinstance(status, int) else 0
+
+
+def _sentence(error: BaseException) -> str | None:
+    """Return what to tell the user; nothing to say where the help is shown already, and `None`
+    for an error of faultpath's own."""
+    from typer import TyperException
+
+    from faultpath.blame import explained
+
+    if isinstance(error, TyperException):
+        return _misread(error)
+    mistake = explained(error)
+    if mistake is not None:
+        return str(mistake)
+    if isinstance(error, MemoryError):
+        return "there is not enough memory: ask for less, or for fewer --workers."
+    if isinstance(error, OSError) and error.strerror:
+        about = f"{error.filename}: " if error.filename is not None else ""
+        return (
+            f"{about}{error.strerror[0].lower()}{error.strerror[1:]}; check the path and the disk."
+        )
+    return None
+
+
+def _misread(error: "TyperException") -> str:
+    """Say what the parser of the arguments found wrong."""
+    said = error.format_message().strip().rstrip(".").replace(". ", ": ")
+    if not said:
+        return ""
+    command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
+    return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
 
 
 def _end(sentence: str, status: int) -> NoReturn:
     if sentence:
-        typer.echo(f"faultpath: {sentence}", err=True)
+        sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
     sys.exit(status)
-
-
-def _sentence(error: typer.TyperException) -> str:
-    """Say what the parser of the arguments found wrong; nothing where it has shown the help."""
-    said = error.format_message().strip().rstrip(".").replace(". ", ": ")
-    if not said:
-        return ""
-    context = getattr(error, "ctx", None)
-    command = getattr(context, "command_path", "faultpath")
-    return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."

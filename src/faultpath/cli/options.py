@@ -1,15 +1,32 @@
 """Reading what several verbs take."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
 import typer
 
 from faultpath.errors import UserError
+from faultpath.text import one_line, steers
+
+_LONGEST = 4096
+"""What Linux takes for a path; nothing else that is asked for needs as much."""
+_LARGEST = 2**63 - 1
+"""What the tables hold."""
 
 
-class Stopped(UserError):
-    """Ctrl-C ended the command; the sentence says what is kept and how to go on."""
+def check_arguments(arguments: Sequence[str]) -> None:
+    """Refuse arguments that can name nothing; they would fail later, and garble the terminal."""
+    for argument in arguments:
+        if steers(argument):
+            raise UserError(
+                f"the argument '{one_line(argument)}' holds control characters or is not UTF-8 "
+                "text: write it without them."
+            )
+        if len(argument.encode()) > _LONGEST:
+            raise UserError(
+                f"the argument '{one_line(argument)}' is too long: write at most {_LONGEST} bytes."
+            )
 
 
 def settings(pairs: Sequence[str]) -> dict[str, str]:
@@ -26,13 +43,25 @@ def settings(pairs: Sequence[str]) -> dict[str, str]:
 
 
 def numbers(text: str, what: str) -> tuple[int, ...]:
-    """Read comma-separated integers such as `0,1,2`."""
-    try:
-        return tuple(int(part) for part in text.split(","))
-    except ValueError:
+    """Read comma-separated seeds such as `0,1,2`; `UserError` for what is none."""
+    return tuple(_seed(part, f"{what} {text!r}") for part in text.split(","))
+
+
+def _seed(text: str, said: str) -> int:
+    if not re.fullmatch(r"-?[0-9]+", text.strip()):
+        raise UserError(f"{said} is not a list of whole numbers, for example 0,1,2.")
+    if len(text.strip()) > 19 or not 0 <= int(text) <= _LARGEST:
+        raise UserError(f"{said}: a seed lies between 0 and 2^63 - 1.")
+    return int(text)
+
+
+def refuse_unless(needed: str, **given: object) -> None:
+    """Raise `UserError` for options that were given although they only go with another one."""
+    idle = [f"--{name.replace('_', '-')}" for name, value in given.items() if value is not None]
+    if idle:
         raise UserError(
-            f"{what} {text!r} is not a list of whole numbers, for example 0,1,2."
-        ) from None
+            f"{' and '.join(idle)} would do nothing here: give it with {needed}, or leave it out."
+        )
 
 
 def path(text: str | Path) -> Path:

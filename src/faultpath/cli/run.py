@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.audit import Audit
-from faultpath.cli.options import Stopped
 from faultpath.cli.pages import MADE_FROM, RECORD, SYSTEM, save_pages
+from faultpath.errors import Stopped
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.execution import Progress as RunProgress
 from faultpath.record import DecisionRecord

@@ -11,14 +11,15 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.errors import UserError
-from faultpath.taps import TapCount, TapError, Taps
+from faultpath.blame import described, located
+from faultpath.errors import SystemMistake, UserError
+from faultpath.taps import TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
 
 
-class WrongOutcomes(Exception):
+class WrongOutcomes(SystemMistake):
     """The system did not return one outcome for each scene, in order."""
 
 
@@ -55,16 +56,14 @@ class Died:
 
 Reply = Done | Raised | Wrong | Died
 
-_WRONG = (UserError, TapError, WrongOutcomes)
-
 
 def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | Wrong:
     """Run an arm over some scenes; an error comes back as a value."""
     started = time.perf_counter()
     try:
         outcomes, taps = _run(system, arm, scenes)
-    except _WRONG as error:
-        return Wrong(error)
+    except UserError as error:
+        return Wrong(located(error))
     except Exception as error:
         return Raised(_said(error), traceback.format_exc())
     return Done(outcomes, taps, time.perf_counter() - started)
@@ -72,7 +71,7 @@ def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | 
 
 def _said(error: BaseException) -> str:
     """Return the last line of the traceback, with a hint where the taps know better."""
-    text = f"{type(error).__name__}: {error}"
+    text = described(error)
     if isinstance(error, ValueError) and "read-only" in text:
         text += " (what a tap delivers cannot be written to: copy it first)"
     return text

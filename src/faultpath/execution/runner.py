@@ -20,6 +20,7 @@ from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
 from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
+from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
@@ -95,7 +96,7 @@ def run_study(
     if workers < 0:
         raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
     system = load_system(study.system) if system is None else system
-    library = system.library(study.library)
+    library = library_of(system, study.library)
     code = system_code(system, study.system)
     fingerprint = code.state.digest
     scenes = selected(study, library)

@@ -11,8 +11,8 @@ from multiprocessing.connection import Connection
 from pickle import PicklingError
 from typing import Any
 
+from faultpath.blame import described, explained
 from faultpath.code import CodeState, Watch
-from faultpath.errors import UserError
 from faultpath.execution.attempt import Raised, Wrong, attempt, limit_threads
 from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
@@ -74,6 +74,8 @@ def _serve(parent: "Connection[Any, Any]") -> None:
         else:
             assert built is not None  # whoever built none has said so and is sent nothing
             reply = watched(built.unread, attempt(built.system, message.arm, message.scenes))
+        if isinstance(reply, Wrong):  # its traceback cannot be sent otherwise
+            reply.error.add_note("".join(traceback.format_exception(reply.error)))
         try:
             parent.send(reply)
         except (PicklingError, TypeError, AttributeError) as error:
@@ -89,10 +91,10 @@ def _build(hello: Hello) -> tuple[_Built | None, Ready | Wrong | Raised]:
         code = system_code(system, hello.system)
         check_same(before, code.state)
         return _Built(system, code.unread()), Ready(code.state, library.content_hash)
-    except UserError as error:
-        return None, Wrong(error)
-    except Exception as error:
-        return None, Raised(f"{type(error).__name__}: {error}", traceback.format_exc())
+    except (Exception, SystemExit) as error:
+        if mistake := explained(error):
+            return None, Wrong(mistake)
+        return None, Raised(described(error), traceback.format_exc())
 
 
 def _end_with(lifeline: int) -> None:

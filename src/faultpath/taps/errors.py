@@ -1,7 +1,9 @@
 """Mistakes of a system's author, found where a reading becomes what a consumer gets."""
 
+from faultpath.errors import SystemMistake
 
-class TapError(Exception):
+
+class TapError(SystemMistake):
     """A tap was used against what the interface declares; the sentence names the tap."""
 
 

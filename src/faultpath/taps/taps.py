@@ -13,7 +13,13 @@ from faultpath.faults import Coupled, Draws, Fault
 from faultpath.interface import Interface, modules
 from faultpath.interface.words import listed, unknown
 from faultpath.taps.checks import check_finite, check_first, check_same, check_shape
-from faultpath.taps.errors import IllegalRead, MalformedReading, UndeclaredReader, WrittenTo
+from faultpath.taps.errors import (
+    IllegalRead,
+    MalformedReading,
+    TapError,
+    UndeclaredReader,
+    WrittenTo,
+)
 from faultpath.taps.guard import Watch
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipts, check_delivered
@@ -174,9 +180,9 @@ class Taps:
         self._running = Running(mask)
 
     def for_module(self, module: str) -> ModuleTaps:
-        """Return the view that `module` gets; raises `UserError` for an unknown module."""
+        """Return the view that `module` gets; raises `TapError` for an unknown module."""
         if module not in modules(self._interface):
-            raise UserError(unknown("module", module, modules(self._interface)))
+            raise TapError(unknown("module", module, modules(self._interface)))
 
         def deliver(channel: str, place: str, reading: Reading, step: int) -> Array:
             return self.deliver(channel, f"{module}.{place}", reading, step)

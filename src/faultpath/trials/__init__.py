@@ -1,6 +1,7 @@
 """Arms over identical scenes: systems, studies, outcomes and their pairing."""
 
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.outcome import Outcome, Status
@@ -34,6 +35,7 @@ __all__ = [
     "TrialRow",
     "Variant",
     "VariantShown",
+    "library_of",
     "load_measurer",
     "load_system",
     "mismatch_words",

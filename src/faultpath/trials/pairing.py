@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.errors import UserError
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -19,7 +20,7 @@ _HASHES = {
 }
 
 
-class PairingRefused(Exception):
+class PairingRefused(UserError):
     """Two sides that were to be compared do not hold the same seeds and scenes."""
 
 

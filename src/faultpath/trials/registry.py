@@ -5,13 +5,17 @@ import importlib.util
 import inspect
 import os
 import sys
+from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
+from faultpath.blame import note_system
+from faultpath.blame import place as where
 from faultpath.code import Root
-from faultpath.errors import UserError
+from faultpath.errors import SystemMistake, UserError
 from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
+from faultpath.trials.checks import check_system
 from faultpath.trials.system import System
 
 BUILT_IN = {"quadrotor": "faultpath.quadrotor.system:create"}
@@ -33,6 +37,8 @@ def load_system(spec: SystemSpec) -> System:
     place, attribute = _target(spec)
     try:
         module = _load_file(place) if place.endswith(".py") else _load_module(place)
+        if module.__file__ is not None and spec.name not in BUILT_IN:
+            note_system(module.__file__)
         factory = getattr(module, attribute, None)
         if not callable(factory):
             raise UserError(f"{place} has no function {attribute!r} that builds a system")
@@ -45,6 +51,7 @@ def load_system(spec: SystemSpec) -> System:
             f"{place}:{attribute} returned a {type(system).__name__}: it must return a "
             "faultpath.trials.system.System"
         )
+    check_system(system, spec.name)
     return system
 
 
@@ -114,14 +121,32 @@ def _load_file(place: str) -> ModuleType:
         raise UserError(f"{place!r} cannot be imported: it must be a Python file")
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
+    _compile(place, name)
     sys.modules[name] = module  # dataclasses look their module up by name
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        raise
     return module
+
+
+def _compile(place: str, name: str) -> None:
+    """Raise what is wrong with a file before anything of it runs."""
+    try:
+        SourceFileLoader(name, place).get_code(name)
+    except SyntaxError as error:
+        error.filename = error.filename or place  # a file with NUL bytes has neither
+        raise
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise UserError(
+            f"{place} is no Python that can be compiled ({error}): correct it"
+        ) from error
 
 
 def _file(place: str) -> Path:
     path = Path(place).resolve()
-    if not path.is_file():
+    if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
         raise UserError(f"there is no file {place!r} to load a system from: check the path")
     return path
 
@@ -157,8 +182,12 @@ def _check_options(spec: SystemSpec, factory: object) -> None:
         ) from error
 
 
-def _missing(name: str, error: ModuleNotFoundError) -> UserError:
+def _missing(name: str, error: ModuleNotFoundError) -> SystemMistake:
     package = (error.name or "").partition(".")[0]
     extra = _EXTRAS.get(package)
     hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
-    return UserError(f"system {name!r} needs the package {package!r}, not installed here: {hint}")
+    mistake = SystemMistake(
+        f"system {name!r} needs the package {package!r}, not installed here: {hint}"
+    )
+    mistake.place = where(error)
+    return mistake

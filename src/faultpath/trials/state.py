@@ -5,6 +5,7 @@ from pathlib import Path
 
 from faultpath.code import Code, CodeState, Root, read_code
 from faultpath.trials.arm import SystemSpec
+from faultpath.trials.checks import fingerprint_of
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 
@@ -23,7 +24,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
         (root, *_classes(system, root), _FLIES),
         data=map(Path, system.data_files),
         base=None if root.path is None else root.path.parent,
-        given=str(system.fingerprint()),
+        given=fingerprint_of(system),
     )
 
 

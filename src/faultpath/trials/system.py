@@ -8,6 +8,7 @@ from os import PathLike
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.taps import Taps
+from faultpath.trials.checks import check_library, check_scene, check_variant
 from faultpath.trials.floorplan import FloorPlan
 from faultpath.trials.outcome import Outcome
 
@@ -25,6 +26,10 @@ class Variant:
     privileged: frozenset[str] = frozenset()
     """Privileged sources that this variant may read, because it says so here."""
 
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for parts of another type."""
+        check_variant(self)
+
 
 @dataclass(frozen=True)
 class SceneRef:
@@ -34,6 +39,10 @@ class SceneRef:
     index: int
     topology: str = ""
 
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for what no table could hold."""
+        check_scene(self)
+
 
 @dataclass(frozen=True)
 class Library:
@@ -42,6 +51,10 @@ class Library:
     name: str
     scenes: tuple[SceneRef, ...]
     content_hash: str
+
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for scenes that are none, or that share a name."""
+        check_library(self)
 
 
 class System(ABC):

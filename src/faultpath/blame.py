@@ -1,0 +1,108 @@
+"""Whose code an error comes from: that of a system of one's own, or faultpath's.
+
+A traceback is read from its innermost frame outward. Frames of the standard library and of
+installed packages are passed over, because they do what they are told. The first that is left
+decides.
+"""
+
+import os
+import sysconfig
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+
+from faultpath.errors import SystemMistake, UserError
+from faultpath.text import one_line
+
+_OURS = str(Path(__file__).resolve().parent) + os.sep
+_STANDARD = tuple(
+    os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
+)
+_PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
+
+_systems: set[str] = set()
+"""Folders of systems that are loaded, for those that are installed packages themselves."""
+
+_MISUSE = (TypeError, ValueError, AttributeError, LookupError)
+"""What comes of handing a function something that it does not take."""
+
+
+def note_system(file: str) -> None:
+    """Note that the code beside `file` is a system's, even where it is an installed package."""
+    _systems.add(os.path.dirname(os.path.realpath(file)) + os.sep)
+
+
+def place(error: BaseException) -> str:
+    """Return the innermost line of a system's own code that an error came through, or nothing."""
+    return next(filter(None, _frames(error)), "")
+
+
+def described(error: BaseException) -> str:
+    """Return kind and message of an error, in one line. It is stored with outcomes, so it names no
+    path: those differ from machine to machine."""
+    said = error.msg if isinstance(error, SyntaxError) else str(error)
+    return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
+
+
+def located(error: UserError) -> UserError:
+    """Note in a `SystemMistake` which line of the system's code brought it about."""
+    if isinstance(error, SystemMistake) and not error.place:
+        error.place = place(error)
+    return error
+
+
+def explained(error: BaseException) -> UserError | None:
+    """Return what to tell the author of a system; `None` for an error that is faultpath's own.
+
+    - An error raised in the system's code is its author's.
+    - So is a `SystemMistake`, with which faultpath refuses what that code hands it.
+    - An error raised in faultpath's code is faultpath's own. Where the system's code called it and
+      the error is of a kind that a wrong argument causes, either may be at fault, and the
+      sentence says so.
+    """
+    if isinstance(error, UserError):
+        return located(error)
+    found, innermost = place(error), next(_frames(error), "")
+    if not found:
+        return None
+    what = described(error)
+    if isinstance(error, SystemExit):
+        said = f"the system ends the program ({what}); let it raise an error instead"
+    elif innermost:
+        said = f"{what}; correct the system there, or see all of it with --traceback"
+    elif isinstance(error, _MISUSE):
+        said = (
+            f"faultpath fails on what it is handed there ({what}); correct the call, or see with "
+            "--traceback whether the fault is faultpath's"
+        )
+    else:
+        return None
+    mistake = SystemMistake(said)
+    mistake.place, mistake.__cause__ = found, error
+    return mistake
+
+
+def _frames(error: BaseException) -> Iterator[str]:
+    """Yield the frames that count, innermost first; those of faultpath are empty."""
+    if isinstance(error, SyntaxError) and error.filename and not _passed_over(error.filename):
+        yield _said(error.filename, error.lineno or 1)
+    for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
+        file = os.path.realpath(frame.f_code.co_filename)
+        if file.startswith(_OURS):
+            yield ""
+        elif not _passed_over(frame.f_code.co_filename):
+            yield _said(file, line)
+
+
+def _passed_over(name: str) -> bool:
+    if name.startswith("<"):  # code without a file: frozen modules, generated methods
+        return True
+    file = os.path.realpath(name)
+    if file.startswith(tuple(_systems)):
+        return False
+    return file.startswith((_OURS, *_STANDARD)) or any(part in file for part in _PACKAGES)
+
+
+def _said(file: str, line: int) -> str:
+    near = os.path.relpath(file)
+    return f"{file if near.startswith(os.pardir) else near}, line {line}"

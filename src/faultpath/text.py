@@ -1,0 +1,40 @@
+"""Text from elsewhere, made fit for a terminal."""
+
+import re
+import unicodedata
+
+_WORD = re.compile(r"\S{240,}")
+_LONGEST = 4000
+
+
+def steers(text: str) -> bool:
+    """Return whether text holds what no name needs: control characters, line separators, or lone
+    surrogates, which are no text at all."""
+    return any(unicodedata.category(c) in ("Cc", "Cs", "Zl", "Zp") for c in text)
+
+
+def printable(text: str) -> str:
+    """Escape what is not to be seen: control characters, lone surrogates, marks of direction.
+
+    Line breaks are escaped as well, so that a name stays on its line.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else _escaped(c) for c in text)
+
+
+def one_line(text: str) -> str:
+    """Return a message as one line that can be read: line breaks become spaces, the rest of what
+    is not to be seen is escaped, and words and messages without end are cut in the middle."""
+    line = printable(" ".join(part.strip() for part in text.split("\n") if part.strip()))
+    line = _WORD.sub(lambda word: _cut(word[0], 120), line)
+    return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
+
+
+def _escaped(character: str) -> str:
+    return character.encode("unicode_escape").decode("ascii")
+
+
+def _cut(text: str, kept: int) -> str:
+    left_out = len(text) - 2 * kept
+    return text if left_out <= 0 else f"{text[:kept]}…({left_out} more)…{text[-kept:]}"

@@ -1,0 +1,193 @@
+"""Mistakes in the code of a system of one's own: one sentence with its file and line, status 2.
+An error of faultpath's own code keeps its traceback."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+from unittest.mock import Mock
+
+import pytest
+from cli_runs import ROOT, audit, faultpath
+
+HEAD = f"""
+import sys
+sys.path.insert(0, {str(ROOT / "examples")!r})
+import numpy as np
+from faultpath.taps import Reading
+from faultpath.trials import Library, SceneRef, System, Variant
+from toy import INTERFACE, Toy
+"""
+
+BROKEN = {
+    "syntax": ("def create(:", "SyntaxError"),
+    "indentation": ("def create():\nreturn Toy()  # here", "IndentationError"),
+    "import": ("import numpi", "numpi"),
+    "import of a name": ("from toy import Tyo  # here", "ImportError"),
+    "while loading": ("1 / 0  # here", "ZeroDivisionError: division by zero"),
+    "ends the program while loading": ("sys.exit(3)  # here", "SystemExit: 3"),
+    "ends the program when built": ("def create():\n    sys.exit(0)  # here", "SystemExit"),
+    "end of input": ("def create():\n    raise EOFError('no more')  # here", "EOFError: no more"),
+    "when built": ("def create():\n    return Toy(3)  # here", "TypeError"),
+    "missing methods": (
+        "class Mine(System):\n    name = 'mine'\ndef create():\n    return Mine()  # here",
+        "abstract method",
+    ),
+    "variant of text": ("Variant('a', 'words', 'abc')  # here", "'abc'"),
+    "variant without a name": ("Variant('', 'words', frozenset())  # here", "empty"),
+    "name that steers": ("SceneRef('a\\x1b[31m', 0)  # here", "control characters"),
+    "long name": ("SceneRef('a' * 5000, 0)  # here", "5000 characters"),
+    "index above 2^63": ("SceneRef('a', 2 ** 63)  # here", "2^63 - 1"),
+    "index of text": ("SceneRef('a', '0')  # here", "'0'"),
+    "scene twice": ("Library('l', (SceneRef('a', 0), SceneRef('a', 1)), 'h')  # here", "'a' twice"),
+    "no scene": ("Library('l', (None,), 'h')  # here", "None"),
+    "no hash": ("Library('l', (), '')  # here", "content hash"),
+}
+
+DECLARED = {
+    "no name": ("name = None", "`name`"),
+    "name of bytes": ("name = b'mine'", "b'mine'"),
+    "no step": ("control_dt_s = 0.0", "`control_dt_s` is 0.0"),
+    "no block": ("block_size = 0", "`block_size` is 0"),
+    "interface of text": ("interface = 'toy.yaml'", "`interface` is 'toy.yaml'"),
+    "no variants": ("variants = {}", "`variants` is {}"),
+    "variant under another name": ("variants = {'b': Toy.variants['blind']}", "under 'b'"),
+    "unknown consumer": (
+        "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
+        "unknown consumer 'nobody.there'",
+    ),
+    "list of scenes": ("def library(self, name):\n        return ['a']", "['a']: it must"),
+    "library of nothing": ("def library(self, name):\n        pass", "None: it must"),
+    "library that fails": ("def library(self, name):\n        return {}[name]  # here", "KeyError"),
+    "interface that fails": (
+        "@property\n    def interface(self):\n        return self.nothing  # here",
+        "AttributeError",
+    ),
+    "fingerprint of nothing": ("def fingerprint(self):\n        return None", "fingerprint"),
+    "fingerprint that fails": ("def fingerprint(self):\n        return 1 / 0  # here", "Zero"),
+}
+
+FLOWN = {
+    "list": ("observer.deliver('velocity', 'difference', [0.0], 0)  # here", "Reading"),
+    "number": ("observer.deliver('velocity', 'difference', 0.0, 0)  # here", "Reading"),
+    "undeclared": (
+        "observer.deliver('velocity', 'x', Reading(np.zeros(len(scenes)), 'speedometer', 0), 0)"
+        "  # here",
+        "velocity -> observer.x",
+    ),
+    "future": (
+        "observer.deliver('velocity', 'difference', "
+        "Reading(np.zeros(len(scenes)), 'speedometer', 9), 0)  # here",
+        "after step 0",
+    ),
+    "unknown module": ("taps.for_module('obsever')  # here", "did you mean 'observer'"),
+    "no outcomes": ("return []", "one for each"),
+}
+
+
+def _system(tmp_path: Path, code: str) -> tuple[str, str]:
+    """Write a system and return its name, and the place that is marked `here`."""
+    path = tmp_path / "mine.py"
+    path.write_text(HEAD + code + "\n")
+    lines = path.read_text().splitlines()
+    here = next((n for n, line in enumerate(lines, 1) if line.endswith("# here")), 0)
+    return f"{path}:create", f"mine.py, line {here}:" if here else ""
+
+
+def _check(sentence: str, place: str, says: str) -> None:
+    assert place in sentence
+    assert says in sentence
+    assert sentence.count("mine.py, line") <= 1
+
+
+@pytest.mark.parametrize(("code", "says"), BROKEN.values(), ids=BROKEN)
+def test_a_system_that_does_not_load(code, says, tmp_path):
+    system, place = _system(tmp_path, code)
+    sentence = audit(system=system, out=tmp_path / "run").refused()
+    _check(sentence, place or "mine.py, line", says)
+    assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    "source", [b"x = 1\0", b"\xff\xfe", b"(" * 5000], ids=["NUL", "UTF-16", "deep"]
+)
+def test_a_file_that_is_no_python(source, tmp_path):
+    (tmp_path / "mine.py").write_bytes(source)
+    assert "mine.py" in audit(system=f"{tmp_path / 'mine.py'}:create").refused()
+
+
+@pytest.mark.parametrize(("code", "says"), DECLARED.values(), ids=DECLARED)
+def test_a_system_that_declares_nonsense(code, says, tmp_path):
+    code = f"class Mine(Toy):\n    {code}\ndef create():\n    return Mine()"
+    system, place = _system(tmp_path, code)
+    sentence = audit(system=system, out=tmp_path / "run").refused()
+    _check(sentence, place, says)
+    assert not (tmp_path / "run" / "record.json").exists()
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+@pytest.mark.parametrize(("code", "says"), FLOWN.values(), ids=FLOWN)
+def test_a_system_that_flies_wrongly(code, says, workers, tmp_path):
+    if workers and says != "Reading":  # a worker costs a second: one kind for all
+        return
+    run = f"""
+        class Mine(Toy):
+            def run(self, variant, scenes, taps, seed):
+                observer = taps.for_module("observer")
+                {code}
+        def create():
+            return Mine()
+        """
+    system, place = _system(tmp_path, dedent(run))
+    sentence = audit(system=system, out=tmp_path / "run", workers=workers).refused()
+    _check(sentence, place, says)
+    told = audit("--traceback", system=system, out=tmp_path / "run", workers=workers)
+    assert told.status == 2
+    assert "Traceback (most recent call last)" in told.err
+    assert "faultpath: " in told.err.splitlines()[-1]
+
+
+def test_an_error_of_ours_keeps_its_traceback(monkeypatch, tmp_path):
+    broken = Mock(side_effect=AssertionError("a bug of faultpath"))
+    monkeypatch.setattr("faultpath.cli.run.save_pages", broken)
+    with pytest.raises(AssertionError, match="a bug of faultpath"):
+        audit(out=tmp_path / "run")
+
+
+def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
+    """The user's code called, but no argument of his can be the cause."""
+    code = """
+        import faultpath.streams
+        def create():
+            return faultpath.streams.generator("p", Failing(), 0)
+        class Failing:
+            pass
+        def lost(*_):
+            raise RuntimeError("a bug of faultpath")
+        lost.__code__ = lost.__code__.replace(co_filename=faultpath.streams.__file__)
+        faultpath.streams.key = lost
+        """
+    system, _ = _system(tmp_path, dedent(code))
+    line = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
+    asked = [*line, "interface", system]
+    done = subprocess.run(asked, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1
+    assert "Traceback" in done.stderr
+    assert "RuntimeError: a bug of faultpath" in done.stderr
+
+
+def test_a_wrong_argument_names_the_line_and_leaves_open_whose_fault_it_is(tmp_path):
+    code = "from faultpath.interface import read_interface\nread_interface(7)  # here"
+    system, place = _system(tmp_path, code)
+    sentence = faultpath("interface", system).refused()
+    _check(sentence, place, "whether the fault is faultpath's")
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_traceback_goes_before_and_after_the_verb(before):
+    asked = ["interface", "quadcopter"]
+    told = faultpath("--traceback", *asked) if before else faultpath(*asked, "--traceback")
+    assert told.status == 2
+    assert re.search(r"^Traceback.*\nfaultpath: there is no system", told.err, re.DOTALL)
+    assert "--traceback" in faultpath("--help").out
