@@ -17,6 +17,7 @@ from faultpath.quadrotor.training.fitting import Moment, fit
 from faultpath.quadrotor.training.jobs import Interrupted, Report, missing_pools, run_jobs
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.quadrotor.training.pace import Overview, Pace
+from faultpath.quadrotor.training.provenance import Provenance
 from faultpath.quadrotor.training.worker import Places
 
 HERE = Path(__file__).resolve().parent
@@ -79,6 +80,35 @@ def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> Non
     (tmp_path / "wind.json").touch()
     assert missing_pools(wanted, tmp_path) == ("nominal",)
     assert missing_pools(choose(["wm-a"]), tmp_path) == ("nominal",)
+
+
+@pytest.mark.parametrize("pool", ["nominal", "trajectory"])
+def test_a_pool_of_other_code_is_not_fitted_on(
+    pool: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model = {"nominal": "wm-a", "trajectory": "gru-trajectory"}[pool]
+    wanted = [job for job in choose([model]) if job.seed == 0]
+    code = {"nominal": jobs, "trajectory": trajectories}[pool].code_sha256()
+    provenance = Provenance(
+        pool=pool,
+        episodes=1,
+        seed=0,
+        wind={},
+        code_sha256=code,
+        faultpath_version="0",
+        packages={},
+        rows=1,
+        vehicle_seconds=1.0,
+        ended_early=0,
+        rows_sha256="",
+        episodes_sha256="",
+    )
+    path = tmp_path / f"{pool}.json"
+    path.write_bytes(provenance.encode())
+    jobs.check_pools(wanted, tmp_path)
+    path.write_bytes(provenance.model_copy(update={"code_sha256": "other"}).encode())
+    with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
+        run_jobs(wanted, Places(tmp_path, tmp_path / "out"), 0, print, print)
 
 
 def test_each_missing_pool_is_made_by_its_own_collector(

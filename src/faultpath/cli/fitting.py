@@ -100,8 +100,9 @@ def _tell(console: Console, report: Report, out: Path) -> None:
 
 
 def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:
-    from faultpath.quadrotor.training.jobs import collect_missing, missing_pools
+    from faultpath.quadrotor.training.jobs import check_pools, collect_missing, missing_pools
 
+    check_pools(jobs, wishes.data)
     missing = missing_pools(jobs, wishes.data)
     if not missing:
         return

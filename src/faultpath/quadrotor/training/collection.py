@@ -110,8 +110,9 @@ def _is_there(path: Path, asked: Recipe) -> bool:
         return False
     for field in Recipe.model_fields:
         if getattr(found, field) != getattr(asked, field):
+            how = "by other code" if field == "code_sha256" else f"with another '{field}'"
             raise UserError(
-                f"the pool at {path} was collected with another '{field}': choose another folder, "
+                f"the pool at {path} was collected {how}: choose another folder, "
                 f"or delete its {path.stem}.json to collect it again."
             )
     return True

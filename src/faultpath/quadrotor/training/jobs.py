@@ -26,6 +26,7 @@ from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.fitting import Moment, forget
 from faultpath.quadrotor.training.pace import Overview, Pace
 from faultpath.quadrotor.training.pool import provenance_path
+from faultpath.quadrotor.training.provenance import code_sha256, read_provenance
 from faultpath.quadrotor.training.scalars import require_tensorboard
 from faultpath.quadrotor.training.worker import (
     Failed,
@@ -76,6 +77,22 @@ def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
     return tuple(pool for pool in pools if not provenance_path(data / pool).is_file())
 
 
+def check_pools(jobs: Sequence[Job], data: Path) -> None:
+    """Raise `UserError` where a pool that some jobs need was collected by other code than this."""
+    needed = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
+    for pool in needed:
+        path = data / f"{pool}.parquet"
+        if pool == CLEARANCE_POOL or (found := read_provenance(path)) is None:
+            continue  # the depth images are checked where they are read
+        code = trajectories.code_sha256() if pool == trajectories.POOL else code_sha256()
+        if found.code_sha256 != code:
+            raise UserError(
+                f"the pool at {path} was collected by other code than this, with faultpath "
+                f"{found.faultpath_version}: delete {path.with_suffix('.json')} to collect it "
+                "again, or give another folder of data"
+            )
+
+
 def collect_missing(
     jobs: Sequence[Job],
     data: Path,
@@ -116,6 +133,7 @@ def run_jobs(
     """
     if workers < 0:
         raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    check_pools(jobs, places.data)
     if places.tensorboard is not None:
         require_tensorboard()
     try:

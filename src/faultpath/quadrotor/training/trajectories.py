@@ -77,7 +77,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     path = folder / f"{POOL}.parquet"
-    place = folder / f".{POOL}-{_recipe()[:16]}"
+    place = folder / f".{POOL}-{code_sha256()[:16]}"
     place.mkdir(parents=True, exist_ok=True)
     with locked(folder, lambda text: None):
         atomic.sweep(place)
@@ -114,8 +114,8 @@ def fly(shard: Shard, place: Path) -> None:
     atomic.write(place / f"{shard.name}.rows", encode_rows(shard.episodes, flights))
 
 
-def _recipe() -> str:
-    """Hash of what decides the pool: the system's code and checkpoints, and the settings here."""
+def code_sha256() -> str:
+    """Return a hash of what decides the pool: the system, its weights, and the settings here."""
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
     code = code_of("training.trajectories")
@@ -139,7 +139,7 @@ def _assemble(path: Path, place: Path) -> None:
             "variant": VARIANT,
         },
         wind={},
-        code_sha256=_recipe(),
+        code_sha256=code_sha256(),
         faultpath_version=faultpath.__version__,
         packages=packages(),
         rows=int(steps.sum()) + len(steps),

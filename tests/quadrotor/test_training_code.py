@@ -1,0 +1,62 @@
+"""What counts as the code of the data that models learn from."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from faultpath.code import Root, read_code
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.system import Quadrotor
+from faultpath.quadrotor.training import clearance_data, closed_loop, flight
+from faultpath.quadrotor.training.pool import encode_episodes, encode_rows
+from faultpath.quadrotor.training.shards import Shard
+
+SOURCE = Path(__file__).resolve().parents[2] / "src"
+
+
+def _pool(folder: Path) -> None:
+    Shard(str(folder), "wind", 0, 0, 1).fly()
+
+
+def _closed_loop(folder: Path) -> None:
+    system = Quadrotor.parse(wind="L1", clearance="true", environment="free-space")
+    scene = system.library("selection").scenes[0].id
+    flights = closed_loop.record_flights(system, "wm-a-wind/true-wind", (scene,), 0)
+    encode_episodes(range(1), flights)
+    encode_rows(range(1), flights)
+
+
+def _images(folder: Path) -> None:
+    recipe = clearance_data.Recipe(images=1, in_view=16, near_surface=16, around=8)
+    clearance_data.draw(recipe, load_library(recipe.library).scenes[0])
+
+
+@pytest.mark.parametrize(
+    ("make", "roots"),
+    [
+        (_pool, ["training.shards"]),
+        (_images, ["training.clearance_data"]),
+        pytest.param(_closed_loop, ["system", "training.trajectories"], marks=pytest.mark.slow),
+    ],
+    ids=["episodes", "images", "closed loop"],
+)
+def test_whatever_runs_while_data_are_made_counts(
+    make: Callable[[Path], None],
+    roots: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(flight, "EPISODE_STEPS", 10)
+    monkeypatch.setattr(flight, "EPISODE_S", 0.5)
+    ran: set[str] = set()
+    sys.setprofile(lambda frame, event, _: ran.add(frame.f_code.co_filename))
+    try:
+        make(tmp_path)
+    finally:
+        sys.setprofile(None)
+    counted = read_code([Root(f"faultpath.quadrotor.{root}") for root in roots]).sources
+    ours = {Path(file).resolve() for file in ran if Path(file).is_relative_to(SOURCE)}
+    assert len(ours) > 5
+    assert ours <= {path.resolve() for path in counted.values()}
