@@ -6,6 +6,7 @@ from typing import TypeGuard
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.native.lending import is_exactly, lend
 from faultpath.quadrotor.native.library import WIDEST, Kernels
 from faultpath.quadrotor.planner import ScaledTemperature, Temperature
 from faultpath.quadrotor.planner.costs import NavigationCost, RunningGoal, Scored, TerminalGoal
@@ -25,7 +26,10 @@ class _Weights(ctypes.Structure):
 
 
 class CompiledCost(NavigationCost):
-    """The navigation cost in one pass over the candidates."""
+    """The navigation cost in one pass over the candidates.
+
+    Raises `ValueError` where a tensor is not what the kernel takes; see `lend`.
+    """
 
     def __init__(self, kernels: Kernels, cost: NavigationCost) -> None:
         super().__init__(cost.goal, cost.weights)
@@ -43,22 +47,28 @@ class CompiledCost(NavigationCost):
     @staticmethod
     def covers(cost: object) -> TypeGuard[NavigationCost]:
         """Return whether `cost` is one that this can stand for."""
-        return type(cost) is NavigationCost and type(cost.goal) in (TerminalGoal, RunningGoal)
+        return is_exactly(cost, NavigationCost) and is_exactly(cost.goal, TerminalGoal, RunningGoal)
 
     def __call__(self, scored: Scored) -> Tensor:
         """See `NavigationCost`."""
         rollout, commands = scored.rollout, scored.commands
         steps, _, scenes, candidates = commands.shape
-        if candidates % WIDEST:
+        if candidates % WIDEST or not steps:
             return super().__call__(scored)
         costs = commands.new_empty(scenes, candidates)
+        moved = (3, scenes, steps, candidates)
         self._kernels.call(
             "faultpath_cost",
             ctypes.byref(self._table),
-            *(rollout.positions, rollout.velocities, rollout.final.rotation.contiguous()),
-            *(commands, scored.clearance.contiguous()),
-            *(scored.goal.contiguous(), scored.hover.contiguous()),
-            *(steps, scenes, candidates, costs),
+            lend("positions", rollout.positions.contiguous(), *moved),
+            lend("velocities", rollout.velocities.contiguous(), *moved),
+            lend("rotation", rollout.final.rotation.contiguous(), 3, 3, scenes, candidates),
+            lend("commands", commands.contiguous(), steps, 4, scenes, candidates),
+            lend("clearance", scored.clearance.contiguous(), scenes, steps, candidates),
+            lend("goal", scored.goal.contiguous(), 3, scenes),
+            lend("hover", scored.hover.contiguous(), scenes),
+            *(steps, scenes, candidates),
+            lend("costs", costs, scenes, candidates),
         )
         return costs
 
@@ -74,7 +84,7 @@ class CompiledTemperature(Temperature):
     @staticmethod
     def covers(temperature: object) -> TypeGuard[ScaledTemperature]:
         """Return whether `temperature` is one that this can stand for."""
-        return type(temperature) is ScaledTemperature
+        return is_exactly(temperature, ScaledTemperature)
 
     def of(self, cost: Tensor) -> Tensor:
         """See `Temperature.of`."""
@@ -83,12 +93,17 @@ class CompiledTemperature(Temperature):
     def weights(self, cost: Tensor) -> Tensor:
         """See `Temperature.weights`."""
         scenes, candidates = cost.shape
-        if candidates % WIDEST:
+        if candidates % WIDEST or not candidates:
             return super().weights(cost)
         weights = torch.empty_like(cost)
         scratch = cost.new_empty(candidates)
         self._kernels.call(
-            "faultpath_weights", cost, self._scale, *(scenes, candidates), *(scratch, weights)
+            "faultpath_weights",
+            lend("cost", cost, scenes, candidates),
+            lend("scale", self._scale, 2),
+            *(scenes, candidates),
+            lend("scratch", scratch, candidates),
+            lend("weights", weights, scenes, candidates),
         )
         return weights
 
@@ -106,6 +121,10 @@ class CompiledMean:
             return (commands * weight).sum(-1)
         plan = commands.new_empty(steps, channels, scenes)
         self._kernels.call(
-            "faultpath_mean", commands, weight, *(steps * channels, scenes, candidates), plan
+            "faultpath_mean",
+            lend("commands", commands.contiguous(), *commands.shape),
+            lend("weight", weight.contiguous(), scenes, candidates),
+            *(steps * channels, scenes, candidates),
+            lend("plan", plan, steps, channels, scenes),
         )
         return plan

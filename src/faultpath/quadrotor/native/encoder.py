@@ -5,8 +5,10 @@ import ctypes
 import torch
 from torch import Tensor, nn
 
+from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.native.lending import is_exactly, lend, unlike
 from faultpath.quadrotor.native.library import Kernels
-from faultpath.quadrotor.perception.camera import RANGE_M
+from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath.quadrotor.perception.clearance import CODE, INVERSE_SCALE, NEAREST_M, ClearanceModel
 
 _LAYERS = ("first", "second", "third", "dense", "last")
@@ -24,11 +26,32 @@ class _Encoder(ctypes.Structure):
     )
 
 
+def misfit(model: ClearanceModel) -> str:
+    """Return in words why the kernels of clearance do not stand for a model; empty if they do."""
+    if not is_exactly(model, ClearanceModel):
+        return unlike(ClearanceModel, model)
+    with torch.device("meta"):
+        known = ClearanceModel()
+    kinds = [type(part) for part in known.modules()]
+    parts = list(model.modules())
+    if len(parts) != len(kinds) or not all(map(is_exactly, parts, kinds)):
+        return "its layers are others"
+    theirs = {name: part.shape for name, part in known.state_dict().items()}
+    if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
+        return "its layers have other sizes"
+    if any(p.dtype != torch.float32 or not at_hand(p.device) for p in model.parameters()):
+        return "its weights are not float32 on the CPU"
+    return ""
+
+
 class CompiledEncoder:
     """Encodes depth images one by one, with the weights that a model has when this is made."""
 
     @torch.no_grad()
     def __init__(self, kernels: Kernels, model: ClearanceModel) -> None:
+        """Copy the weights; raises `ValueError` for a model of another form, see `misfit`."""
+        if wrong := misfit(model):
+            raise ValueError(f"no compiled encoder of this model: {wrong}")
         self._kernels = kernels
         modules = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
         *convolutions, dense, last = (module.weight for module in modules)
@@ -45,11 +68,16 @@ class CompiledEncoder:
         self._table = _Encoder(*addresses, RANGE_M, NEAREST_M, INVERSE_SCALE)
 
     def __call__(self, depth: Tensor) -> Tensor:
-        """Return the codes `[64, S]` of images `[S, 36, 64]`, m; see `ClearanceModel.encode`."""
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m; see `ClearanceModel.encode`.
+
+        Raises `ValueError` for images of another size; see `lend`.
+        """
         codes = torch.empty(CODE, len(depth))
         self._kernels.call(
             "faultpath_encode",
             ctypes.byref(self._table),
-            *(depth.float().contiguous(), len(depth), codes),
+            lend("depth", depth.float().contiguous(), len(depth), HEIGHT, WIDTH),
+            len(depth),
+            lend("codes", codes, CODE, len(depth)),
         )
         return codes

@@ -5,6 +5,7 @@ import ctypes
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.native.lending import lend
 from faultpath.quadrotor.native.library import Kernels
 
 
@@ -23,7 +24,11 @@ class _Field(ctypes.Structure):
 
 
 class CompiledField:
-    """Interpolates the table of some scenes; the arguments are attributes of `DistanceField`."""
+    """Interpolates the table of some scenes; the arguments are attributes of `DistanceField`.
+
+    Raises `ValueError` where a scene's cells lie outside the table, or a tensor is not what the
+    kernel takes; see `lend`.
+    """
 
     def __init__(
         self,
@@ -36,9 +41,16 @@ class CompiledField:
         per_metre: float,
     ) -> None:
         self._kernels = kernels
-        self._kept = (table, origin.contiguous(), last.contiguous(), first.contiguous())
-        places = [part.data_ptr() for part in self._kept]
-        self._scenes = len(first)
+        scenes = len(first)
+        self._kept = (
+            lend("table", table, table.numel()),
+            lend("origin", origin.contiguous(), 3, scenes, 1),
+            lend("last", last.contiguous(), 3, scenes, 1),
+            lend("first", first.contiguous(), scenes, 1, dtype=torch.int32),
+        )
+        _check_places(len(table), pitch, last, first)
+        places = [part.address for part in self._kept]
+        self._scenes = scenes
         self._field = _Field(places[0], pitch[0], pitch[1], *places[1:], per_metre)
 
     def query(self, points: Tensor) -> Tensor:
@@ -50,8 +62,17 @@ class CompiledField:
         self._kernels.call(
             "faultpath_field",
             ctypes.byref(self._field),
-            points.float().contiguous(),
-            *distances.shape,
-            distances,
+            lend("points", points.float().contiguous(), 3, self._scenes, count),
+            *(self._scenes, count),
+            lend("distances", distances, self._scenes, count),
         )
         return distances
+
+
+def _check_places(length: int, pitch: tuple[int, int, int], last: Tensor, first: Tensor) -> None:
+    """Raise `ValueError` unless every corner of every cell stands in a table of `length`."""
+    steps = torch.tensor(pitch, dtype=torch.float64)[:, None, None]
+    furthest = (last * steps).sum(0) + first + sum(pitch)
+    inside = (first >= 0) & (last >= 0).all(0) & (furthest < length)
+    if pitch[2] != 1 or min(pitch) < 1 or not bool(inside.all()):
+        raise ValueError(f"distance field: cells of pitch {pitch} lie outside its table")

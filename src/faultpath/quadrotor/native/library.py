@@ -15,6 +15,7 @@ from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.native.lending import Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
 PORTABLE = "portable"
@@ -36,7 +37,10 @@ class Kernels:
     library: ctypes.CDLL
 
     def call(self, name: str, *arguments: object) -> None:
-        """Call a kernel; tensors go as addresses and must be contiguous, numbers as integers."""
+        """Call a kernel: with what was lent to it, integers, and references to structures.
+
+        Raises `TypeError` for a tensor that was not lent: nobody has checked it.
+        """
         getattr(self.library, name)(*(_argument(value) for value in arguments))
 
     @property
@@ -46,9 +50,10 @@ class Kernels:
 
 
 def _argument(value: object) -> object:
+    if isinstance(value, Lent):
+        return value.address
     if isinstance(value, Tensor):
-        assert value.is_contiguous()
-        return ctypes.c_void_p(value.data_ptr())
+        raise TypeError("a kernel takes no tensor that was not lent: see `native/lending.py`")
     return ctypes.c_int64(value) if isinstance(value, int) else value
 
 

@@ -7,7 +7,9 @@ import torch
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.native.clearance import CompiledDepthClearance
 from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean, CompiledTemperature
-from faultpath.quadrotor.native.library import kernels, kernels_on
+from faultpath.quadrotor.native.coverage import uncovered
+from faultpath.quadrotor.native.lending import is_exactly, tell_portable
+from faultpath.quadrotor.native.library import Kernels, kernels, kernels_on
 from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
@@ -20,7 +22,8 @@ from faultpath.quadrotor.planner import (
     WithinBundle,
     weighted_mean,
 )
-from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.planner.mppi import Roll
+from faultpath.quadrotor.predictors import Predictor, TrueParameter
 from faultpath.quadrotor.rollout import rollout
 
 
@@ -48,12 +51,24 @@ def build_planner(
         return MPPI(predictor, sampler, cost, temperature, roll, mean)
     if CompiledCost.covers(cost):
         cost = CompiledCost(built, cost)
-    covered = CompiledRollout.covers(predictor)
-    roll = CompiledRollout(built, predictor) if covered else partial(rollout, predictor)
+    roll = _roll(built, predictor)
     return MPPI(predictor, sampler, cost, temperature, roll, CompiledMean(built))
+
+
+def _roll(built: Kernels, predictor: Predictor) -> Roll:
+    if why := uncovered(predictor):
+        if not is_exactly(predictor, TrueParameter):  # of which there never was a kernel
+            tell_portable(f"The predictor {type(predictor).__name__}", why)
+        return partial(rollout, predictor)
+    return CompiledRollout(built, predictor)
 
 
 def depth_clearance(model: ClearanceModel, device: torch.device = CPU) -> DepthClearance:
     """Return the clearance of depth images on `device`, compiled where there are kernels."""
     built = kernels_on(device)
-    return DepthClearance(model) if built is None else CompiledDepthClearance(built, model)
+    if built is None:
+        return DepthClearance(model)
+    if why := CompiledDepthClearance.misfit(model):
+        tell_portable(f"The clearance model {type(model).__name__}", why)
+        return DepthClearance(model)
+    return CompiledDepthClearance(built, model)

@@ -5,8 +5,14 @@ import ctypes
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.library import Kernels
+from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.library import WIDEST, Kernels
 from faultpath.quadrotor.scenes.geometry import Geometry
+
+_SOLID = 12
+"""Numbers of a `Solid` in `render_view.hpp`."""
+_WIDEST_IMAGE = 64
+"""Columns for which `render.cpp` has room."""
 
 
 class _Camera(ctypes.Structure):
@@ -43,6 +49,10 @@ class CompiledRenderer:
             slopes: How far the pixels' rays go left `[64]` and up `[36]` per metre forward.
             planes: Inward normals of the view and their offsets, `[6, 4]`.
             range_m: What a pixel reads that sees nothing.
+
+        Raises:
+            ValueError: The image is wider than the kernel's rows or not whole vectors wide, there
+                is no prism, or a tensor is not what the kernel takes; see `lend`.
         """
         self._kernels = kernels
         rows = (
@@ -54,24 +64,38 @@ class CompiledRenderer:
             geometry.sign[None],
             *(height[None] for height in heights),
         )
-        self._solids = torch.cat(rows).permute(2, 1, 0).contiguous()  # `Solid` of the same header
+        solids = torch.cat(rows).permute(2, 1, 0).contiguous()  # `Solid` of the same header
+        count, scenes = geometry.sign.shape
+        self._solids = lend("solids", solids, scenes, count, _SOLID, dtype=torch.float64)
         left, up = (slope.float().contiguous() for slope in slopes)
-        self._kept = (left, up, planes.double().contiguous())  # the kernel holds addresses only
         self._shape = (len(up), len(left))
-        self._camera = _Camera(*self._shape, *(part.data_ptr() for part in self._kept), range_m)
+        if not count or not len(up) or not 0 < len(left) <= _WIDEST_IMAGE or len(left) % WIDEST:
+            raise ValueError(
+                f"the camera's kernel draws images of {WIDEST} to {_WIDEST_IMAGE} columns, in "
+                f"multiples of {WIDEST}, and an arena; it was given {len(left)} columns and "
+                f"{count} prisms"
+            )
+        self._kept = (  # the kernel holds addresses only
+            lend("left", left, len(left)),
+            lend("up", up, len(up)),
+            lend("planes", planes.double().contiguous(), 6, 4, dtype=torch.float64),
+        )
+        self._camera = _Camera(*self._shape, *(part.address for part in self._kept), range_m)
 
     def render(self, position: Tensor, rotation: Tensor) -> Tensor:
         """Return `[B, 36, 64]` as cameras at `[3, B]` of attitudes `[3, 3, B]` see it, float64."""
-        scenes, count, _ = self._solids.shape
+        scenes, count, _ = self._solids.tensor.shape
         images = torch.empty(scenes, *self._shape)
+        at = position.expand(3, scenes).contiguous()
+        turned = rotation.expand(3, 3, scenes).contiguous()
         self._kernels.call(
             "faultpath_render",
             ctypes.byref(self._camera),
             self._solids,
             *(count, scenes),
-            position.expand(3, scenes).contiguous(),
-            rotation.expand(3, 3, scenes).contiguous(),
+            lend("position", at, 3, scenes, dtype=torch.float64),
+            lend("rotation", turned, 3, 3, scenes, dtype=torch.float64),
             scenes,
-            images,
+            lend("images", images, scenes, *self._shape),
         )
         return images

@@ -6,6 +6,8 @@ import math
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.native.coverage import uncovered
+from faultpath.quadrotor.native.lending import Lent, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
 from faultpath.quadrotor.predictors import (
@@ -17,7 +19,7 @@ from faultpath.quadrotor.predictors import (
     UnanchoredPredictor,
 )
 from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
-from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, FoldedNetwork
+from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, LATENT, FoldedNetwork
 from faultpath.quadrotor.predictors.unanchored import OUTPUTS, UnanchoredNetwork
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
@@ -70,9 +72,13 @@ class CompiledRollout:
     """Rolls candidates of one predictor out, with the weights that it has when this is made."""
 
     def __init__(self, kernels: Kernels, predictor: Predictor) -> None:
+        """Copy the predictor's weights; raises `ValueError` where `uncovered` has a reason."""
+        if why := uncovered(predictor):
+            raise ValueError(f"no compiled rollout of {type(predictor).__name__}: {why}")
         self._kernels = kernels
-        self._kept: list[Tensor] = []  # the kernel holds addresses only
+        self._kept: list[Lent] = []  # the kernel holds addresses only
         self._model = _Model(gravity=GRAVITY_MPS2)
+        self._reads = predictor.reads
         if isinstance(predictor, UnanchoredPredictor):
             self._model.kind = _UNANCHORED
             self._set_network(predictor.network)
@@ -83,29 +89,30 @@ class CompiledRollout:
         elif isinstance(predictor, KinematicIntegrator):
             self._model.kind = _KINEMATIC
             self._set_kinematics(predictor)
-        else:
-            raise TypeError(f"no compiled rollout of {type(predictor).__name__}")
-
-    @staticmethod
-    def covers(predictor: Predictor) -> bool:
-        """Return whether there is a compiled rollout of `predictor`."""
-        kinds = (UnanchoredPredictor, AnchoredPredictor, KinematicIntegrator)
-        return isinstance(predictor, kinds)
 
     def __call__(self, inputs: PredictorInputs, commands: Tensor) -> Rollout:
-        """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`."""
+        """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`.
+
+        Raises:
+            ValueError: There is no step, the predictor was not told what it reads, or a tensor is
+                not what the kernel takes; see `lend`.
+        """
         horizon, _, scenes, candidates = commands.shape
+        if not horizon:
+            raise ValueError("there is no step to roll out: the commands have a horizon of 0")
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        told = _told(inputs)
+        told = _told(inputs, self._reads, scenes)
         self._kernels.call(
             "faultpath_roll",
             ctypes.byref(self._model),
-            ctypes.byref(_Inputs(*(part if part is None else part.data_ptr() for part in told))),
-            commands.contiguous(),
+            ctypes.byref(_Inputs(*(part if part is None else part.address for part in told))),
+            lend("commands", commands.contiguous(), horizon, 4, scenes, candidates),
             *(horizon, scenes, candidates),
-            *(positions, velocities, ends),
+            lend("positions", positions, 3, scenes, horizon, candidates),
+            lend("velocities", velocities, 3, scenes, horizon, candidates),
+            lend("ends", ends, 12, scenes, candidates),
         )
         rotation = ends[:9].unflatten(0, (3, 3))
         final = State(positions[:, :, -1], velocities[:, :, -1], rotation, ends[9:])
@@ -123,10 +130,10 @@ class CompiledRollout:
     def _set_network(self, network: LatentNetwork) -> None:
         for name, (weights, block) in _layers(network.fold()).items():
             packed = pack(weights, block)
-            self._kept.append(packed)
+            lent = lend(name, packed, *packed.shape)
+            self._kept.append(lent)
             outputs = packed.shape[0] * block
-            layer = _Layer(packed.data_ptr(), packed.shape[1] - 1, outputs)
-            setattr(self._model, name, layer)
+            setattr(self._model, name, _Layer(lent.address, packed.shape[1] - 1, outputs))
         if isinstance(network, UnanchoredNetwork):
             self._model.spread[:] = network.increment_std.flatten().tolist()
 
@@ -152,14 +159,32 @@ def _bias_first(weights: Tensor) -> Tensor:
     return weights.roll(1, dims=1)
 
 
-def _told(inputs: PredictorInputs) -> tuple[Tensor | None, ...]:
-    """Return the tensors of `Inputs` of `rollout.cpp`, each `[rows, S]` in memory."""
+def _told(inputs: PredictorInputs, reads: frozenset[str], scenes: int) -> tuple[Lent | None, ...]:
+    """Return the tensors of `Inputs` of `rollout.cpp`, each `[rows, S]` in memory.
+
+    What the predictor does not read is left out; `ValueError` where it is told less than it reads.
+    """
     state, dynamics, shown = inputs.state, inputs.dynamics, inputs.conditioning
-    told = (
-        *(state.position, state.velocity, state.rotation, state.rate),
-        *((None, None) if dynamics is None else (dynamics.mass_kg, dynamics.thrust_scale)),
-        *(inputs.wind_mps, inputs.wind_map_mass_kg, inputs.thrust_mass_kg),
-        *((None, None) if shown is None else (shown.mass_kg, shown.thrust_scale)),
-        inputs.code,
+    told: tuple[tuple[str, str, Tensor | None, tuple[int, ...]], ...] = (
+        ("position", "", state.position, (3,)),
+        ("velocity", "", state.velocity, (3,)),
+        ("rotation", "", state.rotation, (3, 3)),
+        ("rate", "", state.rate, (3,)),
+        ("mass", "dynamics", dynamics and dynamics.mass_kg, ()),
+        ("thrust scale", "dynamics", dynamics and dynamics.thrust_scale, ()),
+        ("wind", "wind_map", inputs.wind_mps, (3,)),
+        ("mass of the wind map", "wind_map", inputs.wind_map_mass_kg, ()),
+        ("mass of the thrust", "normalise_thrust", inputs.thrust_mass_kg, ()),
+        ("mass shown", "features", shown and shown.mass_kg, ()),
+        ("thrust scale shown", "features", shown and shown.thrust_scale, ()),
+        ("history code", "latent", inputs.code, (LATENT,)),
     )
-    return tuple(None if part is None else part.contiguous() for part in told)
+    found: list[Lent | None] = []
+    for name, place, part, rows in told:
+        if place and place not in reads:
+            found.append(None)
+        elif part is None:
+            raise ValueError(f"compiled rollout: the predictor reads {name} and was told none")
+        else:
+            found.append(lend(name, part.contiguous(), *rows, scenes, 1))
+    return tuple(found)

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.native.lending import is_exactly, lend
 from faultpath.quadrotor.native.library import WIDEST, Kernels
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler
 from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
@@ -31,29 +32,37 @@ class CompiledSampler(AutoregressiveSampler):
     @staticmethod
     def covers(sampler: object) -> TypeGuard[AutoregressiveSampler]:
         """Return whether `sampler` is one that this can stand for."""
-        return type(sampler) is AutoregressiveSampler and sampler.settings.candidates % WIDEST == 0
+        if not is_exactly(sampler, AutoregressiveSampler):
+            return False
+        return sampler.settings.candidates % WIDEST == 0
 
     def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
         """See `Sampler.noise`."""
         horizon, candidates = self.settings.horizon, self.settings.candidates
-        keys = np.array([words(key("planner", scene, seed)) for scene in scenes])
+        drawn = [words(key("planner", scene, seed)) for scene in scenes]
+        keys = np.array(drawn, dtype=np.uint64).reshape(-1, 2)
         noise = torch.empty(horizon, 4, len(scenes), candidates)
         self._kernels.call(
             "faultpath_noise",
-            torch.from_numpy(keys),
+            lend("keys", torch.from_numpy(keys), len(scenes), 2, dtype=torch.uint64),
             *(step, horizon, len(scenes), candidates),
-            *(self._correlation, self._scratch, noise),
+            lend("correlation", self._correlation, 2),
+            lend("scratch", self._scratch, 4 * horizon * candidates, dtype=torch.int32),
+            lend("noise", noise, horizon, 4, len(scenes), candidates),
         )
         return noise
 
     def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
-        """See `Sampler.candidates`."""
-        if not at_hand(noise.device):
-            return super().candidates(plan, hover, noise)
+        """See `Sampler.candidates`; `ValueError` for a tensor of another form, see `lend`."""
         horizon, _, scenes, candidates = noise.shape
+        if not at_hand(noise.device) or candidates % WIDEST:
+            return super().candidates(plan, hover, noise)
         self._kernels.call(
             "faultpath_candidates",
-            *(plan.contiguous(), hover.contiguous(), self._sigma, self._limit),
-            *(horizon, scenes, candidates, noise),
+            lend("plan", plan.contiguous(), horizon, 4, scenes),
+            lend("hover", hover.contiguous(), scenes),
+            *(lend("sigma", self._sigma, 4), lend("limit", self._limit, 3)),
+            *(horizon, scenes, candidates),
+            lend("noise", noise, horizon, 4, scenes, candidates),
         )
         return noise

@@ -21,6 +21,7 @@ from torch import Tensor
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.device import CPU, at_hand
+from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.native.render import CompiledRenderer
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
 from faultpath.quadrotor.scenes.geometry import Geometry
@@ -122,14 +123,16 @@ class DepthRenderer:
         most = _GROUP if at_hand(device) else geometry.sign.numel()
         self._scratch = torch.empty(3, 3, most, HEIGHT, WIDTH, device=device)
         kernels = native.kernels_on(device)
-        self._compiled = kernels and CompiledRenderer(
-            kernels,
-            geometry,
-            (self._low, self._high),
-            (left, up),
-            torch.cat((_PLANES, _OFFSETS[:, None]), 1),
-            RANGE_M,
-        )
+        self._compiled: CompiledRenderer | None = None
+        if kernels is not None and covered(self, DepthRenderer):
+            self._compiled = CompiledRenderer(
+                kernels,
+                geometry,
+                (self._low, self._high),
+                (left, up),
+                torch.cat((_PLANES, _OFFSETS[:, None]), 1),
+                RANGE_M,
+            )
 
     def render(self, state: State) -> Tensor:
         """Return what the cameras of vehicles see.

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native
+from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.native.plant import CompiledPlant
 from faultpath.quadrotor.plant import aerodynamics, motors, rigid_body
 from faultpath.quadrotor.plant.rate_loop import RateLoop
@@ -60,9 +61,9 @@ class Plant:
         self._gravity_kick = motors.column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
         kernels = native.kernels_on(like.device)
         fits = like.ndim == 1 and like.dtype == torch.float64
-        self.compiled = (
-            CompiledPlant(kernels, self._airframes(), dt_s) if kernels and fits else None
-        )
+        self.compiled = None
+        if kernels is not None and fits and covered(self, Plant):
+            self.compiled = CompiledPlant(kernels, self._airframes(), dt_s)
 
     def start(self, state: State) -> PlantState:
         """Return `state` with motors at hover trim."""

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from faultpath.quadrotor.native.lending import covered, tell_portable
 from faultpath.quadrotor.native.library import kernels_on
-from faultpath.quadrotor.native.recurrent import recur
+from faultpath.quadrotor.native.recurrent import fits, recur
 from faultpath.quadrotor.predictors.base import Calibration, History
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
@@ -66,10 +67,21 @@ class GatedCell(nn.Module):
         candidate = torch.addcmul(given[split:], reset, remembered).tanh()
         return torch.lerp(candidate, latent, update)
 
+    def _has_kernel(self, sequence: Tensor) -> bool:
+        """Return whether the compiled kernel does what this cell does to a sequence."""
+        layers = (self.from_input, self.from_latent)
+        if not (covered(self, GatedCell) and all(covered(each, Affine) for each in layers)):
+            return False
+        if not fits(sequence.shape[1], self.latent):
+            size = f"{sequence.shape[1]} inputs and a latent of {self.latent}"
+            tell_portable("A recurrent cell", f"its kernel has no room for {size}")
+            return False
+        return sequence.dtype == torch.float32
+
     def last(self, sequence: Tensor) -> Tensor:
         """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
         compiled = None if torch.is_grad_enabled() else kernels_on(sequence.device)
-        if compiled is not None and sequence.dtype == torch.float32:
+        if compiled is not None and self._has_kernel(sequence):
             given, kept = (
                 (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)
             )

@@ -28,6 +28,7 @@ from torch import Tensor
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native.field import CompiledField
+from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.scenes.geometry import Prism, arena, rectangle_distance, solids
 from faultpath.quadrotor.scenes.scene import Scene
 
@@ -192,7 +193,7 @@ class DistanceField:
     @cached_property
     def _compiled(self) -> CompiledField | None:
         kernels = native.kernels_on(self.table.device)
-        if kernels is None:
+        if kernels is None or not covered(self, DistanceField):
             return None
         return CompiledField(
             kernels, self.table, self.pitch, self.origin, self.last, self.first, self.per_metre

@@ -1,0 +1,325 @@
+"""A kernel stands for exactly what it repeats; anything else flies as it is, and that is said."""
+
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from types import MethodType
+
+import pytest
+import torch
+from test_native_rollout import commands_of, inputs_of, predictor, random_weights
+from torch import Tensor, nn
+
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native.coverage import uncovered
+from faultpath.quadrotor.native.lending import PortableNotice, lend, tell_portable
+from faultpath.quadrotor.native.parts import build_planner, depth_clearance
+from faultpath.quadrotor.native.recurrent import recur
+from faultpath.quadrotor.native.rollout import CompiledRollout
+from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
+from faultpath.quadrotor.planner import (
+    MPPI,
+    AutoregressiveSampler,
+    NavigationCost,
+    SamplerSettings,
+    ScaledTemperature,
+    TerminalGoal,
+)
+from faultpath.quadrotor.predictors import (
+    AnchoredPredictor,
+    KinematicIntegrator,
+    LatentNetwork,
+    Memory,
+    Predictor,
+    TrueParameter,
+    UnanchoredPredictor,
+)
+from faultpath.quadrotor.predictors.drag import LinearDrag
+from faultpath.quadrotor.predictors.network import GatedCell
+from faultpath.quadrotor.rollout import Rollout, rollout
+from faultpath.quadrotor.state import State
+
+SHIFT_M = 100.0
+"""No shipped predictor leads so far."""
+
+pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was compiled")
+
+
+@pytest.fixture(autouse=True)
+def _nothing_said_yet() -> Iterator[None]:
+    tell_portable.cache_clear()
+    yield
+    tell_portable.cache_clear()
+
+
+def planner(of: Predictor) -> MPPI:
+    return build_planner(
+        of,
+        AutoregressiveSampler(SamplerSettings(candidates=32)),
+        NavigationCost(TerminalGoal()),
+        ScaledTemperature(0.08),
+    )
+
+
+def proposed(of: Predictor) -> Rollout:
+    """Return where the planner believes its candidates lead."""
+    given, mine = inputs_of(), planner(of)
+    plan = mine.initial_plan(torch.full((3,), 9.8))
+    noise = mine.sampler.noise(["a", "b", "c"], 0, 0)
+    return mine.propose(given, plan, noise).rollout
+
+
+class Anchored(AnchoredPredictor):
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        ahead, memory = super().step(state, command, memory)
+        return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+
+
+class Kinematic(KinematicIntegrator):
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        ahead, memory = super().step(state, command, memory)
+        return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+
+
+def shifted(self: Predictor, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+    ahead, memory = type(self).step(self, state, command, memory)
+    return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
+
+
+def anchored_on(network: LatentNetwork) -> AnchoredPredictor:
+    return AnchoredPredictor(network, wind=True)
+
+
+def replaced_step() -> Predictor:
+    model = predictor("wm-a-wind")
+    vars(model)["step"] = MethodType(shifted, model)
+    return model
+
+
+def own_kinematics() -> Predictor:
+    class Integrator(KinematicIntegrator):
+        def advance(self, *given: object, **named: object) -> State:
+            ahead = super().advance(*given, **named)  # type: ignore[arg-type]
+            return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate)
+
+    model = predictor("wm-a-wind")
+    assert isinstance(model, AnchoredPredictor)
+    model.kinematics = Integrator()
+    return model
+
+
+OWN: dict[str, Callable[[], Predictor]] = {
+    "anchored": lambda: Anchored(predictor("wm-a").network, wind=True),  # type: ignore[attr-defined]
+    "kinematic": Kinematic,
+    "a step of its own on the instance": replaced_step,
+    "kinematics of its own": own_kinematics,
+}
+
+
+@torch.inference_mode()
+@pytest.mark.parametrize("make", OWN.values(), ids=OWN)
+def test_a_step_of_ones_own_is_what_flies(make: Callable[[], Predictor]) -> None:
+    own = make()
+    with pytest.warns(PortableNotice, match=r"runs on the portable path.* there is a kernel|were"):
+        seen = proposed(own)
+    with native.using(native.PORTABLE):
+        wanted = proposed(own)
+    assert float(seen.positions[..., -1, :].min()) > SHIFT_M
+    torch.testing.assert_close(seen.positions, wanted.positions, rtol=1e-4, atol=1e-4)
+
+
+@torch.inference_mode()
+def test_an_unanchored_step_of_ones_own_is_what_flies() -> None:
+    network = UnanchoredPredictor.build_network()
+    random_weights(network)
+
+    class Own(UnanchoredPredictor):
+        def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+            ahead, memory = super().step(state, command, memory)
+            far = ahead.position + SHIFT_M
+            return State(far, ahead.velocity, ahead.rotation, ahead.rate), memory
+
+    with pytest.warns(PortableNotice, match="not of Own"):
+        seen = proposed(Own(network))
+    assert float(seen.positions[..., -1, :].min()) > SHIFT_M / 2
+
+
+class OtherNetwork(LatentNetwork):
+    pass
+
+
+class OtherDrag(LinearDrag):
+    pass
+
+
+def with_drag() -> Predictor:
+    integrator = KinematicIntegrator()
+    integrator.air = OtherDrag()
+    return integrator
+
+
+def doubled() -> Predictor:
+    return anchored_on(AnchoredPredictor.build_network().double())
+
+
+REASONS: dict[str, tuple[Callable[[], Predictor], str]] = {
+    "too many hidden units": (lambda: anchored_on(LatentNetwork(4096, 6)), "128 hidden.*4096"),
+    "one unit too many": (lambda: anchored_on(LatentNetwork(129, 6)), "128 hidden units, not 129"),
+    "more outputs": (lambda: anchored_on(LatentNetwork(64, 17)), "layer 'last'"),
+    "other inputs": (lambda: anchored_on(LatentNetwork(64, 6, conditioning=40)), "'first'"),
+    "double precision": (doubled, "float32 on the CPU"),
+    "network": (lambda: anchored_on(OtherNetwork(64, 6)), "not of OtherNetwork"),
+    "drag": (with_drag, "not of OtherDrag"),
+}
+
+
+@pytest.mark.parametrize(("make", "why"), REASONS.values(), ids=REASONS)
+def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(
+    make: Callable[[], Predictor], why: str
+) -> None:
+    model = make()
+    assert uncovered(model)
+    with pytest.raises(ValueError, match=why):
+        CompiledRollout(native.load(native.available()[0]), model)
+
+
+@torch.inference_mode()
+def test_a_network_of_4096_hidden_units_flies_on_the_portable_path() -> None:
+    network = LatentNetwork(4096, 6)
+    random_weights(network)
+    large = anchored_on(network)
+    with pytest.warns(PortableNotice, match="128 hidden units, not 4096"):
+        seen = proposed(large)
+    assert seen.positions.isfinite().all()
+
+
+@torch.inference_mode()
+@pytest.mark.parametrize("hidden", [1, 3, 126, 128])
+def test_every_size_that_the_kernel_can_hold_is_computed(hidden: int) -> None:
+    network = LatentNetwork(hidden, 6)
+    random_weights(network)
+    model = anchored_on(network)
+    given, commands = inputs_of(), commands_of()
+    roll = CompiledRollout(native.load(native.available()[0]), model)
+    ours, theirs = roll(given, commands), rollout(model, given, commands)
+    torch.testing.assert_close(ours.positions, theirs.positions, rtol=1e-4, atol=1e-4)
+
+
+def test_it_is_said_once() -> None:
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        for _ in range(3):
+            planner(Kinematic())
+    assert [each.category for each in said] == [PortableNotice]
+
+
+def test_shipped_predictors_say_nothing() -> None:
+    for name in ("dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"):
+        planner(predictor(name))
+    planner(TrueParameter())
+
+
+# Other parts
+
+
+def test_a_clearance_model_of_ones_own_is_what_answers() -> None:
+    class Own(ClearanceModel):
+        def query(self, code: Tensor, points: Tensor) -> Tensor:
+            return super().query(code, points) * 0
+
+    with pytest.warns(PortableNotice, match="not of Own"):
+        assert type(depth_clearance(Own())) is DepthClearance
+    wider = ClearanceModel()
+    wider.encoder[7] = nn.Linear(48 * 5 * 8, 256)
+    wider.encoder[9] = nn.Linear(256, 64)
+    with pytest.warns(PortableNotice, match="other sizes"):
+        assert type(depth_clearance(wider)) is DepthClearance
+    other = ClearanceModel()
+    other.encoder[1] = nn.Tanh()
+    with pytest.warns(PortableNotice, match="layers are others"):
+        assert type(depth_clearance(other)) is DepthClearance
+    assert type(depth_clearance(ClearanceModel())) is not DepthClearance
+
+
+@torch.inference_mode()
+def test_a_recurrent_cell_of_ones_own_is_what_remembers() -> None:
+    class Own(GatedCell):
+        def forward(self, x: Tensor, latent: Tensor) -> Tensor:
+            return super().forward(x, latent) * 0 + 7
+
+    with pytest.warns(PortableNotice, match="not of Own"):
+        assert Own(19, 32).last(torch.randn(4, 19, 5)).eq(7).all()
+    with pytest.warns(PortableNotice, match="33 inputs"):
+        assert GatedCell(33, 32).last(torch.randn(4, 33, 5)).shape == (32, 5)
+    with pytest.warns(PortableNotice, match="latent of 64"):
+        assert GatedCell(19, 64).last(torch.randn(4, 19, 5)).shape == (64, 5)
+
+
+# What may be lent
+
+WRONG: dict[str, tuple[Tensor, str]] = {
+    "shape": (torch.zeros(3, 5), r"shape \[3, 5\], not \[3, 4\]"),
+    "rank": (torch.zeros(12), r"shape \[12\]"),
+    "dtype": (torch.zeros(3, 4, dtype=torch.float64), "float64, not float32"),
+    "half": (torch.zeros(3, 4, dtype=torch.float16), "float16"),
+    "device": (torch.zeros(3, 4, device="meta"), "on meta, not on the CPU"),
+    "layout": (torch.zeros(4, 3).T, "not contiguous"),
+    "expanded": (torch.zeros(1, 4).expand(3, 4), "not contiguous"),
+    "gradient": (torch.zeros(3, 4, requires_grad=True), "gradient"),
+}
+
+
+@pytest.mark.parametrize(("tensor", "says"), WRONG.values(), ids=WRONG)
+def test_memory_that_a_kernel_would_misread_is_refused(tensor: Tensor, says: str) -> None:
+    with pytest.raises(ValueError, match=rf"kernel: 'commands' .*{says}.*FAULTPATH_KERNELS"):
+        lend("commands", tensor, 3, 4)
+
+
+def test_a_tensor_that_nobody_checked_never_reaches_a_kernel() -> None:
+    with pytest.raises(TypeError, match="not lent"):
+        native.load(native.available()[0]).call("faultpath_mean", torch.zeros(3))
+
+
+@torch.inference_mode()
+@pytest.mark.parametrize("name", ["dki", "wm-a-wind", "wm-u"])
+def test_a_rollout_checks_all_that_it_is_given(name: str) -> None:
+    roll = CompiledRollout(native.load(native.available()[0]), predictor(name))
+    given, commands = inputs_of(), commands_of()
+    swapped = commands.movedim(3, 2).contiguous().movedim(2, 3)
+    assert not swapped.is_contiguous()
+    assert torch.equal(roll(given, swapped).positions, roll(given, commands).positions)
+    refused: list[tuple[Callable[[], Rollout], str]] = [
+        (partial(roll, given, commands.double()), "'commands' is float64"),
+        (partial(roll, given, commands[:, :3]), r"'commands' has the shape"),
+        (partial(roll, given, commands[:0]), "horizon of 0"),
+        (partial(roll, given, commands[:, :, :2]), "'position' has the shape"),
+    ]
+    for call, says in refused:
+        with pytest.raises(ValueError, match=says):
+            call()
+
+
+@torch.inference_mode()
+def test_a_rollout_that_is_told_less_than_it_reads_is_refused() -> None:
+    roll = CompiledRollout(native.load(native.available()[0]), predictor("wm-a-wind"))
+    for field in ("dynamics", "wind_mps", "thrust_mass_kg", "code"):
+        with pytest.raises(ValueError, match="was told none"):
+            roll(replace(inputs_of(), **{field: None}), commands_of())
+
+
+@torch.inference_mode()
+def test_the_recurrent_kernel_checks_its_weights() -> None:
+    kernels = native.load(native.available()[0])
+    good, kept = GatedCell(19, 32), (torch.zeros(96, 32), torch.zeros(96, 1))
+    given = (good.from_input.weight, good.from_input.bias)
+    sequence = torch.randn(4, 19, 5)
+    assert recur(kernels, given, kept, sequence).shape == (32, 5)
+    for wrong, says in (
+        ((given, kept, torch.randn(4, 20, 5)), "weights of the inputs"),
+        ((given, kept, sequence.double()), "'sequence' is float64"),
+        ((given, (torch.zeros(96, 33), kept[1]), sequence), "weights of the latent"),
+        ((given, kept, torch.randn(4, 4096, 5)), "1 to 32 inputs, not 4096"),
+    ):
+        with pytest.raises(ValueError, match=says):
+            recur(kernels, *wrong)
