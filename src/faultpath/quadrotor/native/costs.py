@@ -47,7 +47,9 @@ class CompiledCost(NavigationCost):
     @staticmethod
     def covers(cost: object) -> TypeGuard[NavigationCost]:
         """Return whether `cost` is one that this can stand for."""
-        return is_exactly(cost, NavigationCost) and is_exactly(cost.goal, TerminalGoal, RunningGoal)
+        if not is_exactly(cost, NavigationCost):
+            return False
+        return is_exactly(cost.goal, TerminalGoal) or is_exactly(cost.goal, RunningGoal)
 
     def __call__(self, scored: Scored) -> Tensor:
         """See `NavigationCost`."""
