@@ -226,7 +226,7 @@ def test_shipped_predictors_say_nothing() -> None:
 def test_a_clearance_model_of_ones_own_is_what_answers() -> None:
     class Own(ClearanceModel):
         def query(self, code: Tensor, points: Tensor) -> Tensor:
-            return super().query(code, points) * 0
+            return torch.zeros_like(super().query(code, points))
 
     with pytest.warns(PortableNotice, match="not of Own"):
         assert type(depth_clearance(Own())) is DepthClearance
@@ -246,7 +246,7 @@ def test_a_clearance_model_of_ones_own_is_what_answers() -> None:
 def test_a_recurrent_cell_of_ones_own_is_what_remembers() -> None:
     class Own(GatedCell):
         def forward(self, x: Tensor, latent: Tensor) -> Tensor:
-            return super().forward(x, latent) * 0 + 7
+            return torch.full_like(super().forward(x, latent), 7)
 
     with pytest.warns(PortableNotice, match="not of Own"):
         assert Own(19, 32).last(torch.randn(4, 19, 5)).eq(7).all()
