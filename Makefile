@@ -3,6 +3,7 @@
 PYTHON ?= python3
 JOBS ?= 2
 ARGS ?=
+SEED ?= random
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -16,7 +17,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-c
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit reproduce train test bench bench-page lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz bench bench-page lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -37,6 +38,10 @@ train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the q
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
+
+fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
+	  --hypothesis-profile=explore --fuzz-seed=$(SEED) $(ARGS)
 
 bench: $(BENCH)/ready ## Measure side by side with other software; ARGS="--only plant" for some
 	$(BENCH)/bin/python -m benchmarks run $(ARGS)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.interface import (
@@ -22,7 +23,8 @@ from faultpath.interface import (
 )
 
 names = st.from_regex(r"[a-z][a-z0-9_]{0,8}", fullmatch=True)
-words = st.text(max_size=12)
+seen = st.characters(exclude_categories=["Cc", "Cs", "Zl", "Zp"])
+words = st.text(seen | st.just("\n"), max_size=12)
 amounts = st.floats(0, 1e6)
 uncertainties = st.builds(Uncertainty, std=amounts, relative=st.booleans(), words=words)
 
@@ -84,6 +86,56 @@ channels:
   - predictor.dynamics
   - planner.hover
 """
+
+
+CONTROLS = "".join(map(chr, (*range(32), *range(127, 160), 0x2028, 0x2029)))
+
+
+@pytest.mark.parametrize("character", CONTROLS, ids=lambda c: f"U+{ord(c):04X}")
+def test_control_characters_are_refused_and_line_breaks_come_back(character: str) -> None:
+    """NEL once came back from YAML as a space."""
+    described = read_interface(GOOD).model_dump(mode="json")
+    described["sources"][0]["description"] = f"a{character}b"
+    if character == "\n":
+        interface = Interface.model_validate(described)
+        assert read_interface(interface_yaml(interface)) == interface
+        return
+    with pytest.raises(ValidationError, match=rf"control character U\+{ord(character):04X}"):
+        Interface.model_validate(described)
+    escaped = GOOD.replace("unit: kg", f'unit: "\\u{ord(character):04x}"')
+    with pytest.raises(UserError, match=r"line 4: sources\.0\.unit: holds the control character"):
+        read_interface(escaped)
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "9" * 5000,
+        "2001-99-99",
+        "!!bool 7",
+        "!!timestamp x",
+        "!!int x",
+        "0x_",
+        '"\\ud800"',
+        "[" * 99,
+    ],
+    ids=lambda value: value[:12],
+)
+def test_values_that_the_loader_chokes_on_are_refused_in_one_sentence(value: str) -> None:
+    with pytest.raises(UserError, match="the interface text"):
+        read_interface(GOOD.replace("unit: kg", f"latency_s: {value}\n  unit: kg"))
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "a\0b", "\ud800", "x" * 5000, "."])
+def test_what_is_no_file_is_refused_in_one_sentence(name: str) -> None:
+    with pytest.raises(UserError, match="give the path"):
+        read_interface(name)
+
+
+def test_a_file_without_end_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "long.yaml").write_text(GOOD + "# more\n" * 200_000)
+    with pytest.raises(UserError, match="too long"):
+        read_interface(tmp_path / "long.yaml")
 
 
 def test_file_round_trip(tmp_path: Path) -> None:

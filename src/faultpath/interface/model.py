@@ -10,14 +10,34 @@ from collections.abc import Mapping
 from enum import StrEnum
 from typing import Annotated, Self
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    StringConstraints,
+    model_validator,
+)
 
 from faultpath.arrays import Constant
 from faultpath.errors import UserError
 from faultpath.interface.words import unknown
+from faultpath.text import steers
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
 Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]
+
+
+def _readable(text: str) -> str:
+    """Refuse what files would not give back and terminals would act upon."""
+    for character in text:
+        if character != "\n" and steers(character):
+            raise ValueError(f"holds the control character U+{ord(character):04X}")
+    return text
+
+
+Words = Annotated[str, AfterValidator(_readable)]
+"""Text for people: line breaks, but no other control characters."""
 
 
 class _Frozen(BaseModel):
@@ -57,7 +77,7 @@ class Uncertainty(_Frozen):
     half_range: float | None = Field(default=None, ge=0)
     """Of a uniform distribution around the true value."""
     relative: bool = False
-    words: str = ""
+    words: Words = ""
 
     @model_validator(mode="after")
     def _one_of_two(self) -> Self:
@@ -77,7 +97,7 @@ class Source(_Frozen):
     """Something that produces a reading at every step."""
 
     name: Name
-    unit: str
+    unit: Words
     """`1` for a number without a unit."""
     shape: tuple[Annotated[int, Field(ge=1)], ...] = ()
     """Of one scene's reading; `()` for a scalar."""
@@ -90,7 +110,7 @@ class Source(_Frozen):
     """Typical magnitude in `unit`; makes an absolute uncertainty comparable with others."""
     correlation_group: Name | None = None
     """Sources of one group err together, by one cause."""
-    description: str = ""
+    description: Words = ""
 
     @property
     def expected_uncertainty(self) -> float | None:
@@ -113,7 +133,7 @@ class Channel(_Frozen):
     erasure_default: Constant = 0.0
     """What a consumer gets when the channel is erased."""
     gap: Gap = Gap.NONE
-    description: str = ""
+    description: Words = ""
 
 
 class Interface(_Frozen):

@@ -13,6 +13,7 @@ from faultpath.errors import UserError
 from faultpath.interface.model import Interface
 
 _DEEPEST = 12
+_LONGEST = 1_000_000
 _TEXT = "the interface text"
 
 
@@ -25,13 +26,15 @@ def read_interface(path_or_text: Path | str) -> Interface:
         return _parse(path_or_text, _TEXT)
     path = Path(path_or_text)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = _read(path).decode("utf-8")
     except OSError as error:
         raise UserError(
             f"{path}: cannot be read ({error.strerror}); give the path of an interface file"
         ) from None
     except UnicodeDecodeError:
         raise UserError(f"{path}: is not UTF-8 text; save the interface as UTF-8") from None
+    except ValueError:  # a name with NUL or a surrogate in it
+        raise UserError(f"{path}: is no name of a file; give the path of one") from None
     return _parse(text, str(path))
 
 
@@ -51,7 +54,17 @@ def json_schema() -> dict[str, Any]:
     return Interface.model_json_schema()
 
 
+def _read(path: Path) -> bytes:
+    """Read a file, but no device or pipe: those may have no end."""
+    if path.exists() and not path.is_file():
+        raise OSError(0, "it is not a file")
+    with path.open("rb") as file:
+        return file.read(_LONGEST + 1)
+
+
 def _parse(text: str, where: str) -> Interface:
+    if len(text) > _LONGEST:
+        raise UserError(f"{where}: is too long; an interface has at most {_LONGEST} characters")
     root = _compose(text, where)
     if not isinstance(root, MappingNode):
         raise UserError(f"{where}: holds no interface; start with `name:`, `sources:`, `channels:`")
@@ -63,6 +76,11 @@ def _parse(text: str, where: str) -> Interface:
         raise _not_yaml(error, where) from None
     except ValidationError as error:
         raise _refused(error, root, where) from None
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # a number of 5,000 digits, the 99th of a month, `!!bool 7`: the loader lets them through
+        raise UserError(
+            f"{where}: holds a value that is none ({error}); write it plainly"
+        ) from None
 
 
 def _compose(text: str, where: str) -> Node | None:

@@ -1,0 +1,23 @@
+"""Every run of the tests tries the same inputs; `make fuzz` explores with random ones."""
+
+import secrets
+
+import pytest
+from hypothesis import settings
+
+settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
+settings.register_profile("explore", derandomize=False, max_examples=500, deadline=None)
+settings.load_profile("fixed")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--fuzz-seed", default="1", help="Seed of the fuzz tests, a number or `random`."
+    )
+
+
+@pytest.fixture
+def fuzz_seed(request: pytest.FixtureRequest) -> int:
+    """The seed of what a fuzz test tries; a failing test names it."""
+    given = request.config.getoption("--fuzz-seed")
+    return secrets.randbelow(10**9) if given == "random" else int(given)
