@@ -52,6 +52,7 @@ RANGES = Variant(
 
 class Dock(System):
     name, control_dt_s, interface = "dock", 0.1, INTERFACE
+    ends = {Status.TIMEOUT: "stopped short"}  # noqa: RUF012 - never changed
     variants = {"wheels": WHEELS, "ranges": RANGES}  # noqa: RUF012 - never changed
 
     def library(self, name: str) -> Library:

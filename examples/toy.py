@@ -49,6 +49,7 @@ EVERYONE = frozenset(c for channel in INTERFACE.channels for c in channel.consum
 
 class Toy(System):
     name, control_dt_s, interface = "toy", DT_S, INTERFACE
+    ends = {Status.TIMEOUT: "missed"}  # noqa: RUF012 - never changed
     variants = {  # noqa: RUF012 - never changed
         "calibrated": Variant("calibrated", "The observer reads the gain estimate.", EVERYONE),
         "blind": Variant("blind", "It assumes gain 1.", EVERYONE - {"observer.model"}),

@@ -7,7 +7,17 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import Interface, module_of
 from faultpath.interface.words import unknown
-from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, StruckTap, decide
+from faultpath.record import (
+    CORRECT,
+    SHARED,
+    DecisionRecord,
+    Generalise,
+    Path,
+    Question,
+    StruckTap,
+    decide,
+    primary_path,
+)
 from faultpath.taps import TapCount
 from faultpath.trials import (
     Arm,
@@ -74,13 +84,18 @@ def plan_audit(
     library: Library,
     scenes: int | None = None,
     seeds: Sequence[int] = (0,),
+    primary: str | None = None,
+    generalise: Generalise = "scenes",
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
 
-    `scenes` takes the first so many of the library. Raises `UserError` for an unknown variant, a
-    repair that is its own baseline, a number of scenes that the library does not have, no seed, or
-    a fault that reaches neither variant.
+    `scenes` takes the first so many of the library. `primary` is the path that leads the headline;
+    by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
+    trained models too. Raises `UserError` for an unknown variant, a
+    repair that is its own baseline, a number of scenes that the library does not have, no seed,
+    a fault that reaches neither variant, a primary path that there is none of, or newly trained
+    models of a system that trains none or from one seed.
     """
     variants = [_variant(system, name) for name in (baseline, repair)]
     if baseline == repair:
@@ -96,6 +111,8 @@ def plan_audit(
         for variant in variants
         for seed in seeds
     ]
+    if generalise == "models":
+        _check_trainings(system, seeds)
     question = Question(
         system=spec.name,
         options=spec.options,
@@ -106,6 +123,10 @@ def plan_audit(
         library_hash=library.content_hash,
         n_scenes=len(chosen),
         seeds=tuple(seeds),
+        primary=primary_path(primary or "", paths),
+        generalise=generalise,
+        trained=system.trained,
+        ends={status.value: words for status, words in system.ends.items()},
     )
     study = Study(
         name=f"{spec.name}-{repair}-vs-{baseline}",
@@ -115,6 +136,18 @@ def plan_audit(
         rows=tuple(rows),
     )
     return Audit(question, tuple(paths), study)
+
+
+def _check_trainings(system: System, seeds: Sequence[int]) -> None:
+    if not system.trained:
+        raise UserError(
+            f"{system.name} has no trained models to generalise to: leave --generalise models out."
+        )
+    if len(seeds) < 2:
+        raise UserError(
+            "one seed says nothing of newly trained models: give several, such as --seeds 0,1,2, "
+            "or leave --generalise models out."
+        )
 
 
 def _variant(system: System, name: str) -> Variant:

@@ -6,7 +6,7 @@ from audit_toys import INTERFACE, Paper, planned
 from faultpath.audit import Audit
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
-from faultpath.trials import Variant
+from faultpath.trials import Status, Variant
 
 
 def _paths(audit: Audit) -> list[str]:
@@ -140,3 +140,28 @@ def test_a_module_may_not_be_called_like_a_path(monkeypatch):
     monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))
     with pytest.raises(UserError, match="calls a module 'shared'"):
         planned("plain", "observed", "mass:scale=2")
+
+
+def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
+    assert planned("plain", "observed", "mass:scale=2").question.primary == "shared"
+    assert planned("deaf", "plain", "mass:scale=2").question.primary == "planner"
+    named = planned("plain", "observed", "mass:scale=2", primary="observer").question
+    assert (named.primary, named.generalise, named.trained) == ("observer", "scenes", False)
+    with pytest.raises(UserError, match=r"no path 'pilot'.*correct, observer, planner, shared"):
+        planned("plain", "observed", "mass:scale=2", primary="pilot")
+
+
+def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch):
+    asked = {"generalise": "models", "seeds": (0, 1)}
+    with pytest.raises(UserError, match="no trained models to generalise to"):
+        planned("plain", "observed", "mass:scale=2", **asked)
+    monkeypatch.setattr(Paper, "trained", True)
+    question = planned("plain", "observed", "mass:scale=2", **asked).question
+    assert (question.generalise, question.trained) == ("models", True)
+    with pytest.raises(UserError, match=r"one seed says nothing.*--seeds 0,1,2"):
+        planned("plain", "observed", "mass:scale=2", generalise="models")
+
+
+def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
+    monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
+    assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}

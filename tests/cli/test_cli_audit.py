@@ -62,8 +62,8 @@ def test_the_toy_shows_the_reversal(toy_run):
     assert {path.name for path in toy_run.iterdir()} >= FILES
     record = read_record(toy_run)
     assert [path.name for path in record.paths] == ["correct", "controller", "observer", SHARED]
-    (turn,) = (turn for turn in record.reversals if turn.isolated == "observer")
-    assert turn.reversed
+    turns = {change.isolated: change.turn for change in record.changes}
+    assert turns == {"controller": "interaction", "observer": "reversal"}
     effects = {effect.path: effect for effect in record.effects}
     assert effects["observer"].detected
     assert effects["observer"].success.value > 0
@@ -264,7 +264,7 @@ def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):
         (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
         assert "has no wheels" in Path(place).read_text()
     effect = read_record(tmp_path / "run").effects[0]
-    assert (effect.void_pairs, effect.pairs) == (1, 5)
+    assert (effect.void_pairs, effect.scenes) == (1, 5)
     assert "1 void" in ended.out
 
 

@@ -28,7 +28,15 @@ def question(n_scenes: int = SCENES, seeds: Sequence[int] = (0,)) -> Question:
 
 
 def paths(*names: str) -> tuple[Path, ...]:
-    return tuple(Path(name=name, title=name, consumers=(), baseline_consumers=()) for name in names)
+    return tuple(
+        Path(
+            name=name,
+            title=name,
+            consumers=() if name == CORRECT else (f"{name}.tap",),
+            baseline_consumers=(),
+        )
+        for name in names
+    )
 
 
 def arms(counts: Counts, n: int = SCENES) -> dict[str, list[Status]]:
@@ -44,8 +52,14 @@ def arms(counts: Counts, n: int = SCENES) -> dict[str, list[Status]]:
 
 
 def rows(
-    variant: str, path: str, statuses: Sequence[Status], seed: int = 0, slower_s: float = 0.0
+    variant: str,
+    path: str,
+    statuses: Sequence[Status],
+    seed: int = 0,
+    slower_s: float = 0.0,
+    altered: int | None = None,
 ) -> list[TrialRow]:
+    """Return trials with these ends; the fault acts in the first `altered` of them, or in all."""
     return [
         TrialRow(
             variant=variant,
@@ -63,7 +77,11 @@ def rows(
                 disturbance_hash=f"d{i}",
                 planner_noise_hash=f"n{i}-{seed}",
                 struck_steps=3 if path != CORRECT else 0,
-                altered_steps=2 if path != CORRECT and variant == REPAIR else 0,
+                altered_steps=2
+                if path != CORRECT
+                and variant == REPAIR
+                and i < (len(statuses) if altered is None else altered)
+                else 0,
             ),
         )
         for i, status in enumerate(statuses)
@@ -81,6 +99,22 @@ def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -
 
 def record(cells: Mapping[str, Counts], n: int = SCENES, **changes: float) -> DecisionRecord:
     return decide(question(n), paths(*cells), table(cells, n, **changes))
+
+
+def seeded(
+    cells: Mapping[str, Sequence[Counts]], n: int = SCENES, **asked: object
+) -> DecisionRecord:
+    """Return the record of several seeds, counts seed by seed; `asked` changes the question."""
+    out = [
+        row
+        for path, by_seed in cells.items()
+        for seed, counts in enumerate(by_seed)
+        for variant, statuses in arms(counts, n).items()
+        for row in rows(variant, path, statuses, seed=seed)
+    ]
+    seeds = range(len(next(iter(cells.values()))))
+    about = question(n, tuple(seeds)).model_copy(update=asked)
+    return decide(about, paths(*cells), OutcomeTable(tuple(out)))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:

@@ -1,8 +1,8 @@
 """From tables with known counts to exactly their numbers."""
 
 import re
-import sys
 from dataclasses import replace
+from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -15,12 +15,15 @@ from outcome_tables import (
     question,
     record,
     rows,
+    seeded,
     table,
     three,
 )
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, decide
+from faultpath.record import CORRECT, SHARED, decide, decide_paths
+from faultpath.statistics import Resamples
+from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
 
@@ -31,7 +34,7 @@ def test_counts_make_the_effect_and_the_p_value(counts):
     assert effect.success.value == pytest.approx(wins - losses)  # of 100 scenes: points
     assert effect.success.unit == "pp"
     assert (effect.wins, effect.losses) == ((wins,), (losses,))
-    assert effect.pairs == 100
+    assert effect.scenes == 100
     assert effect.joint_successes == both
     assert effect.p_value == pytest.approx(exact_p(wins, losses), rel=1e-9)
     assert effect.mid_p_value is not None
@@ -77,22 +80,28 @@ def test_without_a_joint_success_there_is_no_time_to_compare():
 
 
 @pytest.mark.parametrize(
-    ("correct", "fault", "direction", "p_star"),
+    ("correct", "fault", "p_star", "signs"),
     [
-        ((50, 4, 16), (30, 24, 0), "above", 12 / 36),
-        ((50, 16, 4), (30, 0, 24), "below", 12 / 36),
-        ((50, 10, 0), (30, 20, 0), "always", 0.0),
-        ((50, 0, 10), (30, 0, 20), "never", None),
-        ((50, 0, 0), (50, 0, 0), "always", 0.0),
+        ((50, 0, 16), (30, 24, 0), 16 / 40, [-1, 1]),
+        ((50, 16, 0), (30, 0, 24), 16 / 40, [1, -1]),
+        ((50, 10, 0), (30, 20, 0), None, [1]),
+        ((50, 0, 10), (30, 0, 20), None, [-1]),
+        ((50, 0, 0), (50, 0, 0), None, []),
     ],
 )
-def test_break_even_follows_from_the_two_effects(correct, fault, direction, p_star):
+def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
     made = record({CORRECT: correct, "observer": fault})
     (item,) = made.break_even
     assert item.path == "observer"
-    assert item.result.direction == direction
     assert item.result.p_star == (None if p_star is None else pytest.approx(p_star))
+    assert [region.sign for region in item.result.regions] == signs
     curve = np.array(item.curve)
+    inside = [any(a <= p <= b for a, b in item.result.pieces) for p in curve[:, 0]]
+    touches = (curve[:, 2] <= 0) & (curve[:, 3] >= 0)
+    near = [
+        any(abs(p - end) < 0.02 for ends in item.result.pieces for end in ends) for p in curve[:, 0]
+    ]
+    assert all(a == b or c for a, b, c in zip(inside, touches, near, strict=True))
     d0, df = made.effects[0].success.value, made.effects[1].success.value
     assert curve[0, 0] == 0
     assert curve[-1, 0] == 1
@@ -101,31 +110,44 @@ def test_break_even_follows_from_the_two_effects(correct, fault, direction, p_st
     assert (curve[:, 1] <= curve[:, 3] + 1e-9).all()
 
 
-@pytest.mark.parametrize("wins", range(4, 9))
-def test_a_difference_is_detected_when_interval_and_test_agree(wins):
-    """Five to nothing: the interval excludes 0, but the exact test does not reject."""
-    (effect,) = record({CORRECT: (50, wins, 0)}).effects
+@pytest.mark.parametrize("wins", range(4, 12))
+def test_a_difference_is_detected_when_interval_test_and_family_agree(wins):
+    """Two effects and no shared path: Holm asks the smaller p-value for 0.025."""
+    made = record({CORRECT: (50, wins, 0), "observer": (50, 5, 5)})
+    effect = made.effects[0]
+    assert made.hypotheses == 2
     assert effect.success.low is not None
-    assert effect.success.low > 0 or wins == 4
-    assert effect.detected == (exact_p(wins, 0) <= 0.05 and effect.success.low > 0)
-    assert effect.detected == (wins >= 6)
+    assert effect.adjusted_p_value == pytest.approx(min(1.0, 2 * exact_p(wins, 0)))
+    assert effect.detected == (2 * exact_p(wins, 0) <= 0.05)
+    assert not effect.detected or effect.success.low > 0
 
 
-def test_a_test_that_rejects_is_not_enough_where_the_interval_holds_zero(monkeypatch):
-    (effect,) = record({CORRECT: (50, 20, 18)}).effects
-    assert not effect.detected
+def holm(p_values: list[float]) -> list[float]:
+    """Return Holm's adjusted p-values, by their definition."""
+    order = sorted(range(len(p_values)), key=lambda i: p_values[i])
+    adjusted, worst = [0.0] * len(p_values), 0.0
+    for rank, i in enumerate(order):
+        worst = max(worst, min(1.0, (len(p_values) - rank) * p_values[i]))
+        adjusted[i] = worst
+    return adjusted
 
-    class Rejects:
-        name, p_value = "always rejects", 0.0
 
-        def rejects(self) -> bool:
-            return True
+def test_the_family_is_all_that_may_be_announced():
+    made = record({CORRECT: (50, 12, 2), "a": (40, 15, 5), "b": (30, 9, 8), SHARED: (40, 3, 14)})
+    contrasts = (*made.effects, *made.changes)
+    assert made.hypotheses == len(contrasts) == 6
+    adjusted = holm([each.p_value for each in contrasts])
+    assert [each.adjusted_p_value for each in contrasts] == pytest.approx(adjusted)
+    for each, p in zip(contrasts, adjusted, strict=True):
+        assert (each.sign != 0) <= (p <= 0.05)
 
-    module = sys.modules["faultpath.record.decide"]  # the package calls a function so
-    monkeypatch.setattr(module, "success_test", lambda *_: Rejects())
-    (effect,) = record({CORRECT: (50, 20, 18)}).effects
-    assert effect.p_value == 0.0
-    assert not effect.detected
+
+@pytest.mark.parametrize(("n", "enough"), [(3, False), (7, False), (8, True), (30, True)])
+def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
+    made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
+    assert made.scenes_needed == 8  # 2 / 2^8 <= 0.05 / 6 < 2 / 2^7
+    assert all(effect.detected == enough for effect in made.effects)
+    assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
 
 def test_swapping_the_arms_flips_every_sign():
@@ -158,7 +180,7 @@ def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_eve
     made = decide(question(), paths(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45)))
     correct, observer = made.effects
     assert (correct.void_pairs, observer.void_pairs) == (0, 1)
-    assert correct.pairs == observer.pairs == 99
+    assert correct.scenes == observer.scenes == made.scenes == 99
     assert correct.wins == (19,)
     assert observer.losses == (29,)
     assert correct.success.value == pytest.approx(100 * (19 - 10) / 99)
@@ -172,7 +194,7 @@ def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_eve
 def test_scenes_that_failed_anywhere_are_left_out_together():
     failed = ((REPAIR, CORRECT, 0), (BASELINE, CORRECT, 1), (BASELINE, "observer", 2))
     made = decide(question(), paths(CORRECT, "observer"), _with_failures(*failed))
-    assert [effect.pairs for effect in made.effects] == [97, 97]
+    assert [effect.scenes for effect in made.effects] == [97, 97]
     assert [effect.void_pairs for effect in made.effects] == [2, 1]
 
 
@@ -203,29 +225,110 @@ def test_several_seeds_are_averaged_within_each_scene():
     (effect,) = both.effects
     assert effect.success.value == pytest.approx((15 + 5) / 2)
     assert (effect.wins, effect.losses) == ((20, 10), (5, 5))
-    assert effect.pairs == 200
+    assert effect.scenes == 100
     assert effect.mid_p_value is None
     assert "sign test" in effect.test
     assert effect.success.n_seeds == 2
 
 
-def test_a_seed_given_twice_over_does_not_shrink_the_p_value():
-    out = []
-    for seed in (0, 1, 2):
-        for variant, statuses in arms((40, 9, 2)).items():
-            out += rows(variant, CORRECT, statuses, seed=seed)
-    (thrice,) = decide(question(seeds=(0, 1, 2)), paths(CORRECT), OutcomeTable(tuple(out))).effects
-    (once,) = record({CORRECT: (40, 9, 2)}).effects
-    assert thrice.p_value == pytest.approx(once.p_value)
-    assert (thrice.success.low, thrice.success.high) == (once.success.low, once.success.high)
+SECONDARY = {"time_s", "joint_successes", "terminal_distance_m", "min_clearance_m"}
 
 
-def test_effects_of_one_record_share_their_resamples():
-    """Equal data on two paths: not even the interval of the change may be wider than nothing."""
+def test_seeds_that_change_nothing_are_counted_once():
+    """Not only the p-value: interval, counts and detectable effect are those of one seed."""
+    thrice = seeded({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
+    once = seeded({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
+    for many, one in zip(thrice.effects, once.effects, strict=True):
+        assert many.model_dump(exclude=SECONDARY) == (one.model_dump(exclude=SECONDARY))
+        assert many.wins == one.wins
+    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.verdict.sentences)
+    assert "seeds" not in " ".join(once.verdict.sentences)
+
+
+def test_a_seed_that_repeats_another_is_counted_once_beside_one_that_does_not():
+    made = seeded({CORRECT: [(40, 9, 2), (40, 9, 2), (38, 12, 3)]})
+    assert made.effects[0].wins == (9, 12)
+    assert "Some of the 3 seeds gave the same outcome" in " ".join(made.verdict.sentences)
+
+
+def test_a_change_has_an_interval_even_where_no_scene_differs():
     made = three((50, 10, 5), (40, 20, 5), (40, 20, 5))
-    (turn,) = made.reversals
-    assert (turn.change.value, turn.change.low, turn.change.high) == (0, 0, 0)
-    assert made.effects[1].success == made.effects[2].success
+    (change,) = made.changes
+    assert change.change.value == 0
+    assert change.change.low < 0 < change.change.high
+    assert change.change.high - change.change.low > 5
+
+
+@pytest.mark.parametrize("counts", [(50, 0, 0), (0, 0, 0), (100, 0, 0)])
+def test_no_interval_of_a_success_difference_has_no_width(counts):
+    for effect in three(counts, counts, counts).effects:
+        assert effect.success.low < -1
+        assert effect.success.high > 1
+
+
+@pytest.mark.parametrize(
+    ("counts", "extreme"),
+    [((0, 7, 0), "floor"), ((92, 4, 4), "ceiling"), ((5, 5, 0), None), ((90, 0, 8), None)],
+)
+def test_floor_and_ceiling_are_both_arms_below_10_or_above_90(counts, extreme):
+    assert record({CORRECT: counts}).effects[0].extreme == extreme
+
+
+def test_a_path_on_which_the_fault_never_acted_is_no_part_of_the_family():
+    out = []
+    for path, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
+        for variant, statuses in arms(counts).items():
+            out += rows(variant, path, statuses, altered=0 if path == "a" else None)
+    made = decide(question(), paths(CORRECT, "a", SHARED), OutcomeTable(tuple(out)))
+    idle = made.effects[1]
+    assert not idle.acted
+    assert not idle.detected
+    assert idle.adjusted_p_value is None
+    assert made.hypotheses == 2
+    assert made.changes == ()
+    assert [each.path for each in made.break_even] == [SHARED]
+
+
+def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the_one_named():
+    level = (50, 5, 5)
+    assert three(level, level, level).question.primary == SHARED
+    assert record({CORRECT: level, "observer": level}).question.primary == "observer"
+    named = question().model_copy(update={"primary": "observer"})
+    cells = {CORRECT: level, "observer": level, SHARED: level}
+    assert decide(named, paths(*cells), table(cells)).question.primary == "observer"
+    with pytest.raises(UserError, match=r"no path 'obs'.*has correct, observer, shared"):
+        decide(named.model_copy(update={"primary": "obs"}), paths(*cells), table(cells))
+
+
+def test_a_secondary_outcome_that_does_not_vary_has_no_interval():
+    (effect,) = record({CORRECT: (40, 20, 5)}).effects
+    assert effect.min_clearance_m is not None
+    assert effect.min_clearance_m.interval is None
+    assert "no interval" in effect.min_clearance_m.method
+
+
+def aa_audits(n: int, n_seeds: int, audits: int, rate: float) -> float:
+    """Return the share of audits of equal methods on four paths that announce anything."""
+    stream = generator("test/aa", f"{n}/{n_seeds}/{rate}", 0)
+    resamples = Resamples.draw("test/aa", n, n_resamples=10)
+    said = 0
+    for _ in range(audits):
+        hard = stream.normal(size=(n, 1))
+        arms = [
+            hard + stream.normal(size=(n, n_seeds)) < NormalDist().inv_cdf(rate) * 2**0.5
+            for _ in range(8)
+        ]
+        success = {
+            p: (arms[2 * i], arms[2 * i + 1]) for i, p in enumerate(("correct", "a", "b", SHARED))
+        }
+        said += decide_paths(success, resamples=resamples).announces
+    return said / audits
+
+
+@pytest.mark.parametrize("n_seeds", [1, 3])
+def test_equal_methods_are_rarely_announced_to_differ(n_seeds):
+    """One in twenty at most; 200 audits may show 8 % by chance."""
+    assert aa_audits(50, n_seeds, 200, 0.5) <= 0.08
 
 
 def test_a_record_says_the_same_every_time():

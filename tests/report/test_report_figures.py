@@ -1,17 +1,20 @@
 """Pictures: well-formed, nothing overlaps, and what is marked is what was struck."""
 
+import re
+from dataclasses import replace
 from itertools import combinations, pairwise
 from xml.etree import ElementTree
 
 import pytest
 
 from faultpath.interface import Interface
+from faultpath.record import PathBreakEven
 from faultpath.report import ReportInput, draw_interface, figures, struck_paths, wording
 from faultpath.report.interface_layout import CHANNEL_HEIGHT, SOURCE_HEIGHT, lay_out
 from faultpath.report.pairing import read_pairs
 from faultpath.report.scale import Axis, covering
 from faultpath.report.svg import Svg, number, shortened, text_width, wrapped
-from faultpath.statistics import BreakEven, Estimate
+from faultpath.statistics import BreakEven, Estimate, Region
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -78,9 +81,9 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     drawn = [
         figures.forest(rows, "a<b", "c&d"),
         figures.forest(rows, "a<b", "c&d", narrow=True),
-        figures.pair_grid('"<title>"', pairs),
-        figures.pair_grid("nothing", ()),
-        figures.outcome_bars("<x>", record.cells),
+        figures.pair_grid('"<title>"', pairs, {"timeout": "<late>"}),
+        figures.pair_grid("nothing", (), {}),
+        figures.outcome_bars("<x>", record.cells, {"timeout": "<late>"}),
         *(sign for sign, _ in figures.pair_key(pairs)),
         *(
             figures.frequency_panel(b, "<&>", figures.shared_range(record.break_even))
@@ -91,13 +94,58 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
         ElementTree.fromstring(picture)
 
 
-def test_less_can_be_better() -> None:
+def test_a_secondary_outcome_looks_decided_nowhere() -> None:
+    """Its interval leaves out zero, and yet it gets no dot, no colour and no winner."""
     e = Estimate(
         value=0.9, low=0.5, high=1.4, unit="m", method="m", estimand="e", n_scenes=9, n_seeds=1
     )
-    more = figures.interval_panel("distance", "m", [("shared", e), ("none", None)], good=-1)
-    assert 'class="dot baseline"' in more
-    assert 'class="dot repair"' in figures.interval_panel("x", "m", [("shared", e)], good=1)
+    panel = figures.secondary_panel("distance", "m", [("shared", e), ("none", None)], "less")
+    assert "dot" not in panel
+    assert not re.search(r'class="[^"]*(repair|baseline|bold)', panel)
+    assert "secondary; less is better" in panel
+
+
+def _row(one_seed: ReportInput, **changes: object) -> str:
+    row = replace(figures.effect_rows(one_seed.record)[0], **changes)
+    return figures.forest([row], "a", "b")
+
+
+def test_a_dot_is_filled_for_what_is_decided_and_for_nothing_else(one_seed: ReportInput) -> None:
+    for sign, look in ((1, "dot repair"), (-1, "dot baseline"), (0, "dot open")):
+        drawn = _row(one_seed, sign=sign)
+        assert re.findall(r'class="(dot[^"]*)"', drawn) == [look]
+    drawn = _row(one_seed, note="primary, floor")
+    assert "primary, floor" in drawn
+
+
+def test_system_names_its_own_ends(one_seed: ReportInput) -> None:
+    cells = [cell for cell in one_seed.record.cells if cell.timeout]
+    drawn = figures.outcome_bars("x", cells, {"timeout": "missed"})
+    assert "missed" in drawn
+    assert "timeout" not in re.sub(r'class="[^"]*"', "", drawn)
+
+
+def _panel(words: str, pieces: tuple[tuple[float, float], ...], *regions: Region) -> str:
+    kind = "whole" if pieces == ((0.0, 1.0),) else "interval" if pieces else "empty"
+    result = BreakEven(
+        p_star=None, pieces=pieces, kind=kind, regions=regions, words="", method="", estimand=""
+    )
+    curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
+    path = PathBreakEven(path="shared", result=result, curve=curve, words=words)
+    return figures.frequency_panel(path, "Shared", figures.shared_range([path]))
+
+
+def test_the_curve_is_coloured_where_an_arm_is_decided_to_be_ahead() -> None:
+    regions = (Region(low=0.0, high=0.3, sign=-1), Region(low=0.7, high=1.0, sign=1))
+    drawn = _panel("a is ahead", ((0.3, 0.7),), *regions)
+    assert drawn.count('class="curve baseline"') == drawn.count('class="curve repair"') == 1
+    assert drawn.count('class="star-range"') == 1
+    silent = _panel("", ((0.3, 0.7),), *regions)
+    assert "curve baseline" not in silent
+    assert "curve repair" not in silent
+    assert "Nothing is decided." in silent
+    both = _panel("b is ahead", ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
+    assert both.count('class="star-range"') == 2
 
 
 def test_axes_cover_and_ticks_are_round() -> None:
@@ -139,5 +187,20 @@ def test_words_of_numbers() -> None:
     assert wording.typeset("from -6.3 pp [-13.9, 1.3] at gru-2, 1-3") == (
         "from −6.3 pp [−13.9, 1.3] at gru-2, 1-3"
     )
-    never = BreakEven(p_star=None, direction="never", words="", method="", estimand="")
-    assert wording.break_even(never) == "no crossing"
+
+
+@pytest.mark.parametrize(
+    ("p_star", "kind", "pieces", "said"),
+    [
+        (0.588, "interval", ((0.3349, 0.7981),), "59 % [33, 80]"),
+        (None, "interval", ((0.7, 1.0),), "[70, 100]"),
+        (0.1, "two pieces", ((0.0, 0.12), (0.8, 1.0)), "10 % [0, 12] and [80, 100]"),
+        (0.5, "whole", ((0.0, 1.0),), "any [0, 100]"),
+        (None, "empty", (), "none"),
+    ],
+)
+def test_a_set_of_frequencies_is_written_with_its_ends_outwards(p_star, kind, pieces, said) -> None:
+    result = BreakEven(
+        p_star=p_star, pieces=pieces, kind=kind, regions=(), words="", method="", estimand=""
+    )
+    assert wording.break_even(result) == said

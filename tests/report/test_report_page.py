@@ -10,7 +10,7 @@ from itertools import pairwise
 import pytest
 
 from faultpath.errors import UserError
-from faultpath.report import ReportInput, Traces, report_page
+from faultpath.report import ReportInput, Traces, report_page, wording
 from faultpath.report.pairing import Kind, read_pairs
 
 MINUS = "−"
@@ -143,17 +143,12 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
         assert row[5] == "/".join(
             f"{w}:{n}" for w, n in zip(effect.wins, effect.losses, strict=True)
         )
-        assert row[6] == ("< 0.001" if effect.p_value < 0.001 else f"{effect.p_value:.3f}")
+        adjusted = effect.adjusted_p_value or 0.0
+        assert row[6] == ("< 0.001" if adjusted < 0.001 else f"{adjusted:.3f}")
         assert row[7] == plain(effect.minimum_detectable_pp or 0.0)
-        assert row[8:10] == [str(effect.pairs), str(effect.void_pairs)]
+        assert row[8:10] == [str(effect.scenes), str(effect.void_pairs)]
         result = breaks.get(effect.path)
-        if result is None:
-            assert row[10] == "–"
-        elif result.p_star is None:
-            assert row[10] == "no crossing"
-        else:
-            ends = f"[{100 * (result.low or 0):.0f}, {100 * (result.high or 0):.0f}]"
-            assert row[10] == f"{100 * result.p_star:.0f} % {ends}"
+        assert row[10] == ("–" if result is None else wording.break_even(result))
 
 
 def test_secondary_outcomes_and_cells_are_shown(source: ReportInput, html: str) -> None:
@@ -177,8 +172,8 @@ def test_fixture_has_a_reversal_a_path_without_crossing_and_a_void_pair(
     source: ReportInput, page: Page
 ) -> None:
     record = source.record
-    assert any(reversal.reversed for reversal in record.reversals)
-    assert any(b.result.direction == "never" for b in record.break_even)
+    assert any(change.turn == "reversal" for change in record.changes)
+    assert any(b.result.p_star is None for b in record.break_even)
     n_pairs = len(record.paths) * record.question.n_scenes * len(record.question.seeds)
     assert f"1 of {n_pairs} pairs is void." in page.text
     assert "doorways-017" in page.text
@@ -195,7 +190,9 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
             assert kinds.count(Kind.BASELINE_ONLY) == lost
         kinds = [p.kind for p in pairs if p.path == effect.path]
         assert kinds.count(Kind.VOID) == effect.void_pairs
-        assert len(kinds) - kinds.count(Kind.VOID) - kinds.count(Kind.LEFT_OUT) == effect.pairs
+        assert len(kinds) - kinds.count(Kind.VOID) - kinds.count(Kind.LEFT_OUT) == (
+            effect.scenes * len(source.record.question.seeds)
+        )
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:
@@ -210,7 +207,7 @@ def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -
     source = make(void=False, n_scenes=60)
     bare = replace(source, traces=Traces({}, dt_s=0.05), plans={})
     page = Page(report_page(bare))
-    assert "Some flights" not in page.text
+    assert "Some trials" not in page.text
     assert "A void pair" not in page.text
 
 

@@ -9,13 +9,14 @@ from rich.console import Console
 
 from faultpath.errors import UserError
 from faultpath.interface import Interface
-from faultpath.record import DecisionRecord
+from faultpath.record import DecisionRecord, Effect
 from faultpath.report import (
     ReportInput,
     decision,
     interface_table,
     latex_table,
     markdown_table,
+    wording,
     write_report,
 )
 
@@ -27,13 +28,7 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
     def frequency(path: str) -> str:
         if path not in breaks:
             return "-"
-        result = breaks[path]
-        if result.p_star is None:
-            return "no crossing"
-        return (
-            f"{100 * result.p_star:.0f} % "
-            f"[{100 * (result.low or 0):.0f}, {100 * (result.high or 0):.0f}]"
-        )
+        return wording.break_even(breaks[path])
 
     return {
         "gru": [f"{c.success_percent:.1f}" for c in record.cells if c.variant == "gru"],
@@ -43,11 +38,22 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         "Wins:losses": [
             "/".join(f"{w}:{n}" for w, n in zip(e.wins, e.losses, strict=True)) for e in effects
         ],
-        "p": ["< 0.001" if e.p_value < 0.001 else f"{e.p_value:.3f}" for e in effects],
-        "Least detectable effect": [f"{e.minimum_detectable_pp:.1f}" for e in effects],
-        "Pairs (void)": [f"{e.pairs} ({e.void_pairs})" for e in effects],
-        "p* [interval]": [frequency(e.path) for e in effects],
+        "p of this contrast alone": [_p(e.p_value) for e in effects],
+        f"p after Holm, {record.hypotheses} contrasts": [_p(e.adjusted_p_value) for e in effects],
+        "Decided for": [_decided(e) for e in effects],
+        "Found with 80% power (pp)": [f"{e.minimum_detectable_pp:.1f}" for e in effects],
+        "Scenes (void pairs)": [f"{e.scenes} ({e.void_pairs})" for e in effects],
+        "p* and the set": [frequency(e.path) for e in effects],
     }
+
+
+def _p(value: float | None) -> str:
+    assert value is not None
+    return "< 0.001" if value < 0.001 else f"{value:.3f}"
+
+
+def _decided(effect: Effect) -> str:
+    return {1: "gru-dcc", -1: "gru", 0: "-"}[effect.sign]
 
 
 def _rows(lines: list[list[str]]) -> dict[str, list[str]]:

@@ -21,6 +21,21 @@ def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
     assert -shared in first.pattern
 
 
+def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: ReportInput) -> None:
+    """The repair's shared path may strike no more taps than one of its isolated ones."""
+    record = one_seed.record
+    widest = next(path for path in record.paths if path.name == "predictor")
+    paths = [p.model_copy(update={"consumers": widest.consumers}) for p in record.paths]
+    source = replace(one_seed, record=record.model_copy(update={"paths": tuple(paths)}))
+    pairs = read_pairs(source.outcomes, source.record.question)
+    for shown, told in zip(
+        choose(source, pairs), viewer_data(source, choose(source, pairs))["scenes"], strict=True
+    ):
+        shared = shown.pairs["shared"].sign
+        assert ("with the fault shared" in told["why"]) == (shown.rank in (0, 2))
+        assert shown.rank not in (0, 2) or shared != 0
+
+
 def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> None:
     pairs = read_pairs(three_seeds.outcomes, three_seeds.record.question)
     chosen = choose(three_seeds, pairs)

@@ -4,7 +4,7 @@ import os
 import re
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -30,6 +30,14 @@ def command(
     seeds: Annotated[
         str, typer.Option(help="Seeds of the noise; quadrotor: also of the trained models.")
     ] = "0",
+    primary: Annotated[
+        str | None,
+        typer.Option(help="Path of the primary contrast, a module or shared (default)."),
+    ] = None,
+    generalise: Annotated[
+        Literal["scenes", "models"],
+        typer.Option(help="To new scenes, or to newly trained models too (several seeds)."),
+    ] = "scenes",
     wind: Annotated[str | None, typer.Option(help="Quadrotor: wind level, L0 to L3.")] = None,
     environment: Annotated[
         str | None, typer.Option(help="Quadrotor: obstacles or free-space.")
@@ -84,6 +92,8 @@ def command(
         library=library_of(built, library),
         scenes=scenes,
         seeds=numbers(seeds, "--seeds"),
+        primary=primary,
+        generalise=generalise,
     )
     name = _name(audit.study.name, fault, library, scenes, seeds, options)
     folder, other = (out, "") if out else keyed(Path("runs"), name, system_code(built, spec).state)

@@ -65,7 +65,7 @@ def _run(console: Console, system: System, audit: Audit, folder: Path, workers: 
         TextColumn("{task.fields[left]}"),
     )
     with Progress(*columns, console=console) as bar:
-        task = bar.add_task("Flying", total=None, trials="", left="")
+        task = bar.add_task("Running", total=None, trials="", left="")
 
         def show(now: RunProgress) -> None:
             bar.update(

@@ -48,6 +48,7 @@ class Quadrotor(System):
     """Flies a block of scenes with the modules under test behind taps."""
 
     name = "quadrotor"
+    trained = True
     control_dt_s = CONTROL_DT_S
 
     def __init__(self, options: QuadrotorOptions) -> None:

@@ -1,22 +1,23 @@
 """The decision: effects, break-even frequency, verdict."""
 
 from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
-from faultpath.record.decide import decide
+from faultpath.record.decide import decide, primary_path
+from faultpath.record.family import CORRECT, SHARED, Decided, Family, decide_paths
 from faultpath.record.model import (
     Cell,
+    Change,
     DecisionRecord,
     Effect,
+    Generalise,
     Path,
     PathBreakEven,
     Question,
-    Reversal,
     StruckTap,
     Verdict,
 )
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.reproduction import Configuration, Reproduction, SceneShown
 from faultpath.record.table import MISSING, Entry, Line, Point, Series, Sweep, Table
-from faultpath.record.words import CORRECT, SHARED
 
 __all__ = [
     "CORRECT",
@@ -24,11 +25,15 @@ __all__ = [
     "SHARED",
     "Answer",
     "Cell",
+    "Change",
     "ClaimVerdict",
     "Configuration",
+    "Decided",
     "DecisionRecord",
     "Effect",
     "Entry",
+    "Family",
+    "Generalise",
     "Ledger",
     "Line",
     "Part",
@@ -37,7 +42,6 @@ __all__ = [
     "Point",
     "Question",
     "Reproduction",
-    "Reversal",
     "RunProvenance",
     "SceneShown",
     "Series",
@@ -46,4 +50,6 @@ __all__ = [
     "Table",
     "Verdict",
     "decide",
+    "decide_paths",
+    "primary_path",
 ]

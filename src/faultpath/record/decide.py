@@ -1,44 +1,46 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from statistics import median
 
+import numpy as np
+
 from faultpath.errors import UserError
+from faultpath.record import breakeven_words, words
+from faultpath.record.family import CORRECT, SHARED, Arms, Decided, Family, decide_paths, percent
+from faultpath.record.headline import headline
 from faultpath.record.model import (
     Cell,
+    Change,
     DecisionRecord,
     Effect,
     Path,
     PathBreakEven,
     Question,
-    Reversal,
+    Verdict,
 )
-from faultpath.record.words import CORRECT, SHARED, effect_words, reversal_words, verdict
+from faultpath.record.secondary import secondary
 from faultpath.statistics import (
-    Comparison,
-    Decision,
     Estimate,
     Resamples,
     break_even,
-    compare,
-    decide_family,
     detectable,
-    difference_of_effects,
     discordant_by_seed,
     mcnemar_mid_p,
-    mean_effect,
-    median_effect,
     mixture_curve,
-    success_effect,
-    turn,
 )
-from faultpath.statistics import Effect as Draws
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Floats, Pairs, Side, mismatch_words, pair
+from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
-MIN_JOINT_SCENES = 6
-"""Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
+
+@dataclass(frozen=True)
+class _Path:
+    """The trials of one path: all that are compared, and success by the seeds that differ."""
+
+    pairs: Pairs
+    arms: Arms
 
 
 def decide(
@@ -51,150 +53,209 @@ def decide(
     """Return the decision record of an audit.
 
     Scenes in which a pair is void on any path are left out of all of them, so that every effect
-    speaks of the same scenes and shares one set of bootstrap resamples. The record carries
-    `findings`, and what was found about its pairs. `UserError` when no scene is left.
+    speaks of the same scenes. Seeds that gave the same outcomes everywhere are counted once.
+    The record carries `findings`, and what was found about its pairs. `UserError` when no scene is
+    left, for a primary path that the audit does not have, and where newly trained models are asked
+    for and all seeds gave the same.
     """
-    pairs = _common({path.name: _pair(question, path.name, table) for path in paths})
+    asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
+    pairs = {path.name: _pair(question, path.name, table) for path in paths}
     mismatches = [each for path in pairs.values() for each in path.mismatches]
-    n_scenes = len(next(iter(pairs.values())).scenes)
-    if n_scenes == 0:
+    trials = _trials(pairs, mismatches)
+    if question.generalise == "models" and _seeds_alike(trials)[1] < 2:
         raise UserError(
-            "no scene is left to compare, because in each of them a trial failed: mend what made "
-            "it fail, or choose other scenes."
+            "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
+            "models: leave --generalise models out."
         )
+    n_scenes = len(next(iter(trials.values())).pairs.scenes)
+    cells = tuple(
+        _cell(table, variant, path.name)
+        for path in paths
+        for variant in (question.baseline, question.repair)
+    )
+    untested = _untested(paths, cells)
     resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
-    draws = {
-        name: success_effect(each.first.success, each.second.success, resamples)
-        for name, each in pairs.items()
-    }
-    found = {f"effect/{name}": compare(effect) for name, effect in draws.items()} | {
-        f"change/{name}": compare(difference_of_effects(draws[name], draws[SHARED]))
-        for name in draws
-        if name not in (CORRECT, SHARED) and SHARED in draws
-    }
-    decided = decide_family(found)
-    effects = {
-        name: _effect(
-            question, name, each, found[f"effect/{name}"], decided[f"effect/{name}"], resamples
-        )
-        for name, each in pairs.items()
-    }
-    breaks = [_break_even(name, draws) for name in draws if name != CORRECT]
-    turns = [
-        _reversal(question, effects[name], effects[SHARED], found[f"change/{name}"], decided)
-        for name in draws
-        if f"change/{name}" in found
-    ]
-    ordered = tuple(effects.values())
+    family = decide_paths(
+        {name: each.arms for name, each in trials.items()},
+        resamples=resamples,
+        models=question.generalise == "models",
+        untested=untested,
+    )
+    estimand = words.estimand(asked)
+    about = words.About(asked, n_scenes, family.scenes_needed)
+    effects = tuple(
+        _effect(about, name, each, family, resamples, untested) for name, each in trials.items()
+    )
+    changes = tuple(_change(about, name, family, effects) for name in family.changes)
+    breaks = tuple(
+        _break_even(about, name, family, effects)
+        for name in trials
+        if name != CORRECT and name not in untested
+    )
     return DecisionRecord(
-        question=question,
+        question=asked,
         paths=tuple(paths),
-        cells=tuple(
-            _cell(table, variant, path.name)
-            for path in paths
-            for variant in (question.baseline, question.repair)
+        cells=cells,
+        effects=effects,
+        changes=changes,
+        break_even=breaks,
+        scenes=n_scenes,
+        scenes_needed=family.scenes_needed,
+        hypotheses=family.hypotheses,
+        estimand=estimand,
+        verdict=Verdict(
+            headline=headline(about, effects, changes),
+            sentences=(
+                *words.opening(about, _seeds_alike(trials)),
+                *(effect.words for effect in effects),
+                *(change.words for change in changes),
+                *breakeven_words.sentences(breaks, effects),
+                *words.barely_acted(asked, paths, cells),
+            ),
+            would_change=words.would_change(about, effects),
         ),
-        effects=ordered,
-        break_even=tuple(breaks),
-        reversals=tuple(turns),
-        verdict=verdict(question, ordered, breaks, turns),
         findings=(*mismatch_words(mismatches), *findings),
     )
+
+
+def primary_path(named: str, paths: Sequence[Path]) -> str:
+    """Return the path of the primary contrast: as named, else the shared one, else the isolated.
+
+    `UserError` for a name that the audit does not have.
+    """
+    names = [path.name for path in paths]
+    if named and named not in names:
+        raise UserError(
+            f"the audit has no path '{named}' to be its primary contrast: it has "
+            f"{', '.join(names)}."
+        )
+    isolated = [name for name in names if name not in (CORRECT, SHARED)]
+    return named or (SHARED if SHARED in names else (isolated or names)[0])
 
 
 def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
     return pair(table, Side(question.repair, path), Side(question.baseline, path))
 
 
-def _common(pairs: dict[str, Pairs]) -> dict[str, Pairs]:
+def _trials(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, _Path]:
+    """Cut all paths to the scenes that every one has, and success to the seeds that differ."""
     every = [set(each.scenes) for each in pairs.values()]
     first = next(iter(pairs.values()))
     kept = tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
-    return {name: each.only(kept) for name, each in pairs.items()}
+    if not kept:
+        raise UserError(
+            "no scene is left to compare, because in each of them a trial failed or the arms met "
+            "different conditions: mend what made it fail, or choose other scenes."
+            + "".join(f" {words}" for words in mismatch_words(mismatches))
+        )
+    cut = {name: each.only(kept) for name, each in pairs.items()}
+    seeds = _distinct([arm.success for each in cut.values() for arm in (each.first, each.second)])
+    return {
+        name: _Path(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
+        for name, each in cut.items()
+    }
+
+
+def _distinct(arms: Sequence[Bools]) -> list[int]:
+    """Return the seeds without those that repeat an earlier one in every arm and scene."""
+    stacked = np.concatenate(arms)
+    seen: dict[bytes, int] = {}
+    for seed, column in enumerate(stacked.T):
+        seen.setdefault(column.tobytes(), seed)
+    return list(seen.values())
+
+
+def _seeds_alike(trials: Mapping[str, _Path]) -> tuple[int, int]:
+    """Return how many seeds were run and how many of them differ."""
+    first = next(iter(trials.values()))
+    return first.pairs.first.success.shape[1], first.arms[0].shape[1]
+
+
+def _untested(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
+    """Return the paths on which the fault changed nothing in any trial."""
+    acted = {cell.path for cell in cells if cell.altered_trials}
+    return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
 
 
 def _effect(
-    question: Question,
+    about: words.About,
     path: str,
-    pairs: Pairs,
-    found: Comparison,
-    decision: Decision,
+    trials: _Path,
+    family: Family,
     resamples: Resamples,
+    untested: Collection[str],
 ) -> Effect:
-    first, second = pairs.first, pairs.second
-    counts = discordant_by_seed(first.success, second.success).per_seed
-    joint = first.success & second.success
+    repair, baseline = trials.arms
+    counts = discordant_by_seed(repair, baseline).per_seed
+    found = family.effects[path]
+    made = found.decision
+    others = secondary(trials.pairs, resamples)
     effect = Effect(
         path=path,
-        success=found.estimate,
-        pairs=len(first.success),
-        void_pairs=pairs.void,
+        success=_scoped(about, found.comparison.estimate),
+        sign=made.sign if made else 0,
+        test=found.comparison.test.name,
+        p_value=found.comparison.test.p_value,
+        adjusted_p_value=made.adjusted_p if made else None,
+        mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
+        scenes=len(trials.pairs.scenes),
+        void_pairs=trials.pairs.void,
         wins=tuple(count.first_only for count in counts),
         losses=tuple(count.second_only for count in counts),
-        test=found.test.name,
-        p_value=found.test.p_value,
-        mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
-        minimum_detectable_pp=detectable(
-            first.success, second.success, alpha=decision.critical_p
-        ).value,
-        detected=decision.sign != 0,
-        time_s=_time(pairs, joint, resamples),
-        joint_successes=int(joint.sum()),
-        terminal_distance_m=_mean(first.terminal_distance_m, second.terminal_distance_m, resamples),
-        min_clearance_m=_mean(first.min_clearance_m, second.min_clearance_m, resamples),
+        baseline_percent=percent(baseline),
+        repair_percent=percent(repair),
+        extreme=family.extremes[path],
+        acted=path not in untested,
+        minimum_detectable_pp=_detectable(about, found, trials.arms),
+        time_s=others.time_s,
+        joint_successes=others.joint_successes,
+        terminal_distance_m=others.terminal_distance_m,
+        min_clearance_m=others.min_clearance_m,
         words="",
     )
-    return effect.model_copy(update={"words": effect_words(question, effect)})
+    return effect.model_copy(update={"words": words.effect_words(about, effect)})
 
 
-def _time(pairs: Pairs, joint: Bools, resamples: Resamples) -> Estimate | None:
-    """Median within-scene difference over joint successes; too few of them have no interval."""
-    if not joint.any():
+def _detectable(about: words.About, found: Decided, arms: Arms) -> float | None:
+    """Return the least difference that the rule finds at the level that Holm left this contrast.
+
+    None is known for newly trained models, whose spread a few seeds do not give.
+    """
+    if found.decision is None or about.question.generalise == "models":
         return None
-    estimate = median_effect(pairs.first.time_s, pairs.second.time_s, joint, resamples).estimate()
-    if estimate.n_scenes >= MIN_JOINT_SCENES:
-        return estimate
-    return estimate.model_copy(
-        update={
-            "low": None,
-            "high": None,
-            "method": f"median of {estimate.n_scenes} scenes, too few for an interval",
-        }
+    return detectable(*arms, alpha=found.decision.critical_p).value
+
+
+def _scoped(about: words.About, estimate: Estimate) -> Estimate:
+    return estimate.model_copy(update={"estimand": words.estimand(about.question)})
+
+
+def _change(about: words.About, path: str, family: Family, effects: Sequence[Effect]) -> Change:
+    found, of = family.changes[path], {effect.path: effect for effect in effects}
+    assert found.decision is not None
+    change = Change(
+        isolated=path,
+        shared=SHARED,
+        change=_scoped(about, found.comparison.estimate),
+        sign=found.decision.sign,
+        test=found.comparison.test.name,
+        p_value=found.decision.p_value,
+        adjusted_p_value=found.decision.adjusted_p,
+        turn=family.turns[path],
+        words="",
     )
+    said = words.change_words(about, of[path], of[SHARED], change)
+    return change.model_copy(update={"words": said})
 
 
-def _mean(first: Floats | None, second: Floats | None, resamples: Resamples) -> Estimate | None:
-    if first is None or second is None:
-        return None
-    return mean_effect(first, second, resamples, "m").estimate()
-
-
-def _break_even(path: str, draws: dict[str, Draws]) -> PathBreakEven:
-    correct, faulty = draws[CORRECT], draws[path]
-    return PathBreakEven(
-        path=path, result=break_even(correct, faulty), curve=mixture_curve(correct, faulty)
-    )
-
-
-def _reversal(
-    question: Question,
-    isolated: Effect,
-    shared: Effect,
-    change: Comparison,
-    decided: Mapping[str, Decision],
-) -> Reversal:
-    kind = turn(
-        decided[f"effect/{isolated.path}"],
-        decided[f"effect/{shared.path}"],
-        decided[f"change/{isolated.path}"],
-    )
-    return Reversal(
-        isolated=isolated.path,
-        shared=shared.path,
-        change=change.estimate,
-        reversed=kind == "reversal",
-        words=reversal_words(question, isolated, shared, kind == "reversal"),
-    )
+def _break_even(
+    about: words.About, path: str, family: Family, effects: Sequence[Effect]
+) -> PathBreakEven:
+    ends = family.effects[CORRECT].effect, family.effects[path].effect
+    result = break_even(*ends)
+    of = {effect.path: effect for effect in effects}
+    said = breakeven_words.clause(about.question, result.regions, of[CORRECT], of[path])
+    return PathBreakEven(path=path, result=result, curve=mixture_curve(*ends), words=said)
 
 
 def _cell(table: OutcomeTable, variant: str, path: str) -> Cell:

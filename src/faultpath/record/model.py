@@ -1,8 +1,17 @@
 """The decision record: what was asked, what came out, and what it means."""
 
+from typing import Literal
+
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.statistics import BreakEven, Estimate
+
+Sign = Literal[-1, 0, 1]
+"""1: decided for the repair; -1: decided for the baseline; 0: not decided."""
+Extreme = Literal["floor", "ceiling"]
+"""Both arms below 10 %, or both above 90 %."""
+Generalise = Literal["scenes", "models"]
+Turn = Literal["reversal", "interaction", "none"]
 
 
 class _Frozen(BaseModel):
@@ -22,6 +31,14 @@ class Question(_Frozen):
     library_hash: str
     n_scenes: int
     seeds: tuple[int, ...]
+    primary: str = ""
+    """Path of the primary contrast, which leads the headline; empty for the default."""
+    generalise: Generalise = "scenes"
+    """What the intervals and tests speak of: new scenes, or newly trained models too."""
+    trained: bool = False
+    """Whether the variants hold trained models."""
+    ends: dict[str, str] = {}
+    """What the system calls its ends, where it is not the status itself."""
 
 
 class StruckTap(_Frozen):
@@ -70,48 +87,78 @@ class Cell(_Frozen):
 
 
 class Effect(_Frozen):
-    """The repair minus the baseline on one path, over pairs that both ran."""
+    """The repair minus the baseline on one path, over scenes in which every arm ran."""
 
     path: str
     success: Estimate
     """Percentage points."""
-    pairs: int
-    void_pairs: int
-    wins: tuple[int, ...]
-    """Scenes where only the repair succeeded, one count a seed."""
-    losses: tuple[int, ...]
+    sign: Sign
+    """What the family of all paths decides."""
     test: str
     p_value: float
+    adjusted_p_value: float | None
+    """After Holm over the family; `None` for a path that is not in it."""
     mid_p_value: float | None
+    scenes: int
+    """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
+    void_pairs: int
+    """Pairs of trials, seed by seed, that count for nothing."""
+    wins: tuple[int, ...]
+    """Scenes where only the repair succeeded, one count for each seed that differs."""
+    losses: tuple[int, ...]
+    baseline_percent: float
+    """Success over the scenes that are compared."""
+    repair_percent: float
+    extreme: Extreme | None
+    """Where both arms are at the floor or at the ceiling; such an effect makes no headline."""
+    acted: bool
+    """Whether the fault changed anything in any trial of the path; correct inputs count as so."""
     minimum_detectable_pp: float | None
-    detected: bool
+    """True difference that the deciding rule finds with 80 % power."""
     time_s: Estimate | None
-    """On jointly successful pairs; `None` without one."""
+    """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
     joint_successes: int
     terminal_distance_m: Estimate | None
     min_clearance_m: Estimate | None
     words: str
 
+    @property
+    def detected(self) -> bool:
+        """Whether the family decides for one of the arms."""
+        return self.sign != 0
+
+    @property
+    def leads(self) -> bool:
+        """Whether a headline may rest on it: decided, and away from floor and ceiling."""
+        return self.sign != 0 and self.extreme is None
+
 
 class PathBreakEven(_Frozen):
-    """The fault frequency above which the repair pays on one path."""
+    """The fault frequencies at which neither arm is decided to be ahead, on one path."""
 
     path: str
     result: BreakEven
     curve: tuple[tuple[float, float, float, float], ...]
-    """`(p, expected difference, low, high)` in fractions and percentage points, from the joint
-    bootstrap; for the picture of expected difference against fault frequency."""
+    """`(p, expected difference, low, high)` in fractions and percentage points. The band touches 0
+    exactly where p is in the set of `result`."""
+    words: str
+    """What is decided, without the path; empty where the family detects no effect at either end."""
 
 
-class Reversal(_Frozen):
-    """Whether the verdict on one isolated path turns round when the fault is shared."""
+class Change(_Frozen):
+    """How the effect changes from a fault at one module to the shared one."""
 
     isolated: str
     shared: str
     change: Estimate
     """Effect under the shared fault minus effect under the isolated one, percentage points."""
-    reversed: bool
-    """The interval of the change excludes 0 and the two effects differ in sign."""
+    sign: Sign
+    test: str
+    p_value: float
+    adjusted_p_value: float
+    turn: Turn
+    """`reversal`: both effects are decided, with opposite signs. `interaction`: the change alone
+    is decided."""
     words: str
 
 
@@ -127,13 +174,21 @@ class Verdict(_Frozen):
 class DecisionRecord(_Frozen):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 
-    format: int = 1
+    format: Literal[2] = 2
     question: Question
     paths: tuple[Path, ...]
     cells: tuple[Cell, ...]
     effects: tuple[Effect, ...]
+    changes: tuple[Change, ...]
     break_even: tuple[PathBreakEven, ...]
-    reversals: tuple[Reversal, ...]
+    scenes: int
+    """Scenes that are compared, those with a void pair left out."""
+    scenes_needed: int
+    """With fewer, nothing can be decided, whatever comes out."""
+    hypotheses: int
+    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
+    estimand: str
+    """What intervals and tests speak of."""
     verdict: Verdict
     findings: tuple[str, ...] = ()
     """What the run found that a reader has to know, a sentence each: pairs of different conditions,

@@ -1,134 +1,220 @@
-"""The record's sentences, made from its numbers alone."""
+"""The record's sentences, made from its decisions and numbers alone."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
-from faultpath.record.model import Effect, PathBreakEven, Question, Reversal, Verdict
+from faultpath.record.family import CORRECT, SHARED
+from faultpath.record.model import Cell, Change, Effect, Path, Question
+from faultpath.statistics import Estimate
 
-CORRECT = "correct"
-SHARED = "shared"
-
-
-def effect_words(question: Question, effect: Effect) -> str:
-    """Say what one effect shows, with what could have been detected where nothing was."""
-    where = path_words(effect.path)
-    shown = effect.success.text()
-    if effect.detected:
-        better = question.repair if effect.success.value > 0 else question.baseline
-        return f"{where}, {better} succeeds more often ({shown})."
-    if effect.minimum_detectable_pp is None:
-        return f"{where}, no difference is detected ({shown})."
-    return (
-        f"{where}, no difference is detected ({shown}); a true one of "
-        f"{effect.minimum_detectable_pp:.0f} pp would be, with 80 % power."
-    )
+FEW_TRAININGS = 5
+"""With fewer, an interval for newly trained models is too narrow: see docs/design/statistics.md."""
+ANOTHER = (
+    "Another size or sign of the fault, another library or another wiring of the system: the "
+    "record speaks of the one that was run."
+)
 
 
-def path_words(path: str) -> str:
-    """Return a path as the beginning of a sentence."""
-    if path == CORRECT:
-        return "Under correct inputs"
-    return "Under the shared fault" if path == SHARED else f"Under the fault at the {path} only"
+@dataclass(frozen=True)
+class About:
+    """What every sentence needs to know."""
+
+    question: Question
+    scenes: int
+    """Compared."""
+    needed: int
+    """With fewer scenes, nothing can be decided."""
+
+    @property
+    def few(self) -> bool:
+        """Whether there are too few scenes to decide anything."""
+        return self.scenes < self.needed
+
+    def winner(self, sign: int) -> str:
+        """Return the arm of a decided side."""
+        return self.question.repair if sign > 0 else self.question.baseline
+
+    @property
+    def both(self) -> str:
+        """The two arms."""
+        return f"{self.question.baseline} and {self.question.repair}"
 
 
-def reversal_words(question: Question, isolated: Effect, shared: Effect, turned: bool) -> str:
-    """Say whether sharing the fault turns the verdict round."""
-    change = f"{isolated.success.value:+.1f} pp to {shared.success.value:+.1f} pp"
-    if turned:
-        first, second = (question.repair, question.baseline)
-        if isolated.success.value < 0:
-            first, second = second, first
-        return (
-            f"Sharing the fault turns the answer round: {first} is ahead when only the "
-            f"{isolated.path} is struck, {second} when the fault is shared ({change}); both "
-            "are detected."
-        )
-    return (
-        f"Sharing the fault does not turn the verdict on the {isolated.path}-only fault round "
-        f"({change})."
-    )
-
-
-def verdict(
-    question: Question,
-    effects: Sequence[Effect],
-    break_even: Sequence[PathBreakEven],
-    reversals: Sequence[Reversal],
-) -> Verdict:
-    """Put the answer into words."""
-    sentences = [effect.words for effect in effects]
-    if break_even:
-        clauses = [f"{_under(item.path)} it {item.result.words}" for item in break_even]
-        sentences.append(f"{question.repair} by fault frequency: {'; '.join(clauses)}.")
-    sentences += [item.words for item in reversals]
-    return Verdict(
-        headline=_headline(question, effects, reversals),
-        sentences=tuple(sentences),
-        would_change=tuple(_would_change(question, effects, break_even)),
-    )
-
-
-def _headline(question: Question, effects: Sequence[Effect], reversals: Sequence[Reversal]) -> str:
-    repair, baseline = question.repair, question.baseline
-    turned = [item for item in reversals if item.reversed]
-    if turned:
-        # An isolated effect that was itself detected makes the stronger headline.
-        detected = {effect.path for effect in effects if effect.detected}
-        turned = [item for item in turned if item.isolated in detected] or turned
-        if turned[0].isolated not in detected:
-            turned = turned[:1]
-        found = {effect.path: effect for effect in effects}
-        where = " or the ".join(item.isolated for item in turned)
-        alone = _ahead(question, found[turned[0].isolated])
-        shared = _ahead(question, found[turned[0].shared])
-        return (
-            f"Do not choose by the isolated fault: struck at the {where} alone, {alone}; "
-            f"with the fault shared, {shared}."
-        )
-    better = [e for e in effects if e.detected and e.success.value > 0]
-    worse = [e for e in effects if e.detected and e.success.value < 0]
-    if better and not worse:
-        rest = len(effects) - len(better)
-        everywhere = "on every path" if not rest else f"on {len(better)} of {len(effects)} paths"
-        tail = "" if not rest else ", and on no path is a loss detected"
-        return f"{repair} is favoured over {baseline} {everywhere}{tail}."
-    if worse and not better:
-        return f"{repair} is not favoured: it loses to {baseline} {_list_paths(worse)}."
-    if better and worse:
-        return (
-            f"It depends on the fault's path: {repair} beats {baseline} {_list_paths(better)} "
-            f"and loses {_list_paths(worse)}."
-        )
-    return f"No difference between {repair} and {baseline} is detected on any path."
-
-
-def _ahead(question: Question, effect: Effect) -> str:
-    """Say who is ahead on a path, or that nobody was found to be."""
-    if not effect.detected:
-        return f"no difference is detected ({effect.success.value:+.1f} pp)"
-    return f"{question.repair if effect.success.value > 0 else question.baseline} is ahead"
-
-
-def _list_paths(effects: Sequence[Effect]) -> str:
-    return ", ".join(_under(effect.path) for effect in effects)
-
-
-def _under(path: str) -> str:
+def where(path: str) -> str:
+    """Return a path as part of a sentence."""
     if path == CORRECT:
         return "under correct inputs"
-    return "under the shared fault" if path == SHARED else f"under {path}-only corruption"
+    return "under the shared fault" if path == SHARED else f"with only the {path} struck"
 
 
-def _would_change(
-    question: Question, effects: Sequence[Effect], break_even: Sequence[PathBreakEven]
-) -> list[str]:
-    lines = [
-        f"More scenes: one of {effect.minimum_detectable_pp:.0f} pp {_under(effect.path)} would be "
-        f"detected with 80 % power, and smaller ones more rarely."
-        for effect in effects
-        if not effect.detected and effect.minimum_detectable_pp is not None
+def capital(words: str) -> str:
+    """Return words with a capital letter in front, whatever follows."""
+    return words[:1].upper() + words[1:]
+
+
+def estimand(question: Question) -> str:
+    """Return what intervals and tests speak of."""
+    if question.generalise == "models":
+        return "new scenes like these and models newly trained with other seeds"
+    return "new scenes like these" + (", for these trained models" if question.trained else "")
+
+
+def opening(about: About, seeds: tuple[int, int]) -> tuple[str, ...]:
+    """Return what a reader has to know before the numbers: their reach, and seeds that repeat.
+
+    `seeds` are how many were run and how many of them differ.
+    """
+    asked, (run, differ) = about.question, seeds
+    said = [f"What is decided holds for {estimand(asked)}."]
+    if asked.generalise == "models" and run < FEW_TRAININGS:
+        said.append(
+            f"Caution: {run} trainings say little about new ones. With fewer than "
+            f"{FEW_TRAININGS} the intervals for newly trained models are too narrow."
+        )
+    elif asked.trained and asked.generalise == "scenes":
+        said[0] = said[0].removesuffix(".") + "; models trained anew may differ."
+    if differ < run:
+        same = "All" if differ == 1 else "Some of the"
+        count = "they count" if differ > 1 else "together they count"
+        once = "as one" if differ == 1 else f"as {differ}"
+        said.append(f"{same} {run} seeds gave the same outcome in every trial: {count} {once}.")
+    return tuple(said)
+
+
+def points(value: float) -> str:
+    """Return a difference in percentage points with its sign; zero has none."""
+    text = f"{value:+.1f}"
+    return "0.0" if float(text) == 0 else text
+
+
+def numbers(estimate: Estimate, adjusted_p: float | None) -> str:
+    """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`."""
+    text = f"{points(estimate.value)} pp"
+    if estimate.low is not None and estimate.high is not None:
+        text += f" [{_plain(estimate.low)}, {_plain(estimate.high)}]"
+    return text if adjusted_p is None else f"{text}, p {_p(adjusted_p)} after Holm"
+
+
+def effect_words(about: About, effect: Effect) -> str:
+    """Say what one effect shows: who is decided to be ahead, or what could have been found."""
+    place, shown = capital(where(effect.path)), numbers(effect.success, effect.adjusted_p_value)
+    if not effect.acted:
+        place = "Shared" if effect.path == SHARED else place
+        return f"{place}, the fault never acted on this path: nothing was tested."
+    if effect.detected:
+        words = f"{place}, {about.winner(effect.sign)} succeeds more often ({shown})"
+        return (
+            f"{words}; {_extreme(effect)}, so this carries no headline."
+            if effect.extreme
+            else (f"{words}.")
+        )
+    if about.few:
+        return f"{place}, nothing is decided ({shown}): the scenes are too few."
+    if not any((*effect.wins, *effect.losses)):
+        words = (
+            f"{place}, both arms succeed in the same scenes; no difference is detected ({shown})"
+        )
+    else:
+        words = f"{place}, no difference is detected ({shown})"
+    if effect.extreme:
+        return f"{words}; {_extreme(effect)}, where a difference can hardly show."
+    if effect.minimum_detectable_pp is None:
+        return f"{words}."
+    least = math.ceil(effect.minimum_detectable_pp)
+    return f"{words}; a true one of {least} pp would be found with 80 % power."
+
+
+def _extreme(effect: Effect) -> str:
+    ends = "fail" if effect.extreme == "floor" else "succeed"
+    rates = f"{_plain(effect.baseline_percent)} and {_plain(effect.repair_percent)} % success"
+    return f"both arms nearly always {ends} there ({rates})"
+
+
+def change_words(about: About, isolated: Effect, shared: Effect, change: Change) -> str:
+    """Say whether sharing the fault reverses the verdict, changes the difference, or neither."""
+    from_to = f"{points(isolated.success.value)} pp to {points(shared.success.value)} pp"
+    shown = f"{from_to}; change {numbers(change.change, change.adjusted_p_value)}"
+    alone = where(isolated.path)
+    if change.turn == "reversal":
+        words = (
+            f"Sharing the fault reverses the verdict: {alone}, {about.winner(isolated.sign)} "
+            f"succeeds more often; {where(shared.path)}, {about.winner(shared.sign)} does "
+            f"({shown})."
+        )
+        if isolated.extreme or shared.extreme:
+            words += " One of the two lies at the floor or ceiling: this carries no headline."
+        return words
+    if change.turn == "interaction":
+        return (
+            f"Interaction detected: the difference is not the same {alone} as "
+            f"{where(shared.path)} ({shown}); a reversal is not shown."
+        )
+    between = f"between the effect {alone} and that {where(shared.path)}"
+    if about.few:
+        return f"Nothing is decided {between} ({shown})."
+    return f"No change is detected {between} ({shown})."
+
+
+def barely_acted(
+    question: Question, paths: Sequence[Path], cells: Sequence[Cell]
+) -> tuple[str, ...]:
+    """Name the arms that a fault should strike and changed nothing for in most of the trials."""
+    of = {(cell.variant, cell.path): cell for cell in cells}
+    said: list[str] = []
+    for path in paths:
+        arms = ((question.baseline, path.baseline_consumers), (question.repair, path.consumers))
+        struck = [of[name, path.name] for name, consumers in arms if consumers]
+        if not any(cell.altered_trials for cell in struck):
+            continue  # the path's own sentence says that the fault never acted
+        said += [
+            f"{capital(where(path.name))}, the fault changed something in only "
+            f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
+            for cell in struck
+            if 2 * cell.altered_trials < cell.trials
+        ]
+    return tuple(said)
+
+
+def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
+    """Say what would change the verdict."""
+    tested = [effect for effect in effects if effect.acted]
+    lines: list[str] = []
+    if about.few:
+        lines.append(
+            f"More scenes: with {about.needed}, a difference is found where every scene favours "
+            "the same arm; a smaller one takes more."
+        )
+    if any(not effect.acted for effect in effects):
+        lines.append(
+            "A fault that acts: an onset before the trial ends, a size that changes what is read."
+        )
+    for extreme, advice in (
+        ("floor", "Easier scenes or a smaller fault: where both arms nearly always fail, a "),
+        ("ceiling", "Harder scenes or a larger fault: where both arms nearly always succeed, a "),
+    ):
+        if any(effect.extreme == extreme for effect in tested):
+            lines.append(advice + "difference can hardly show.")
+    missed = [
+        f"{math.ceil(effect.minimum_detectable_pp)} pp {where(effect.path)}"
+        for effect in tested
+        if not about.few and not effect.detected and effect.minimum_detectable_pp is not None
     ]
-    lines.append(
-        "Another size or sign of the fault, another library or another wiring of the system: the "
-        "record speaks of the one that was run."
-    )
-    return lines
+    if missed:
+        lines.append(
+            f"More scenes: a true difference below {' or '.join(missed)} is missed more often than "
+            "one time in five."
+        )
+    return (*lines, ANOTHER)
+
+
+def _plain(value: float) -> str:
+    text = f"{value:.1f}"
+    return "0.0" if float(text) == 0 else text
+
+
+def _p(value: float) -> str:
+    if value < 0.001:
+        return "< 0.001"
+    text = f"{value:.3f}"
+    return f"= {value:.4f}" if text == "0.050" and value != 0.05 else f"= {text}"

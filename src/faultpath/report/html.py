@@ -37,7 +37,6 @@ def report_page(source: ReportInput) -> str:
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         break_even={b.path: b.result for b in source.record.break_even},
-        estimands=_estimands(source.record),
         viewer=viewer_data(source, chosen) if chosen else None,
         w=wording,
     )
@@ -63,10 +62,6 @@ def _tiles(record: DecisionRecord) -> list[tuple[str, Effect, Cell, Cell]]:
     ]
 
 
-def _estimands(record: DecisionRecord) -> list[str]:
-    return list(dict.fromkeys(effect.success.estimand for effect in record.effects))
-
-
 def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
     record = source.record
     titles, asked = _path_titles(record), record.question
@@ -84,12 +79,12 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
             for b in record.break_even
         ],
         "pairs": [
-            Markup(figures.pair_grid(title, [p for p in pairs if p.path == name]))
+            Markup(figures.pair_grid(title, [p for p in pairs if p.path == name], asked.ends))
             for name, title in titles.items()
         ],
         "pair_key": [(Markup(sign), words) for sign, words in figures.pair_key(pairs)],
         "outcomes": [
-            Markup(figures.outcome_bars(title, _cells(record, name)))
+            Markup(figures.outcome_bars(title, _cells(record, name), asked.ends))
             for name, title in titles.items()
         ],
         "secondary": _secondary(record),
@@ -103,8 +98,12 @@ def _secondary(record: DecisionRecord) -> list[Markup]:
     distance = [(title, effect.terminal_distance_m) for title, effect in named]
     clearance = [(title, effect.min_clearance_m) for title, effect in named]
     panels = (
-        figures.interval_panel("Time on joint successes", "s", time, -1),
-        figures.interval_panel("Distance to the goal at the end", "m", distance, -1),
-        figures.interval_panel("Least clearance", "m", clearance, 1),
+        ("Time on joint successes", "s", time, "less"),
+        ("Distance to the goal at the end", "m", distance, "less"),
+        ("Least clearance", "m", clearance, "more"),
     )
-    return [Markup(panel) for panel in panels]
+    return [
+        Markup(figures.secondary_panel(name, unit, rows, good))
+        for name, unit, rows, good in panels
+        if any(estimate for _, estimate in rows)
+    ]

@@ -49,18 +49,31 @@ def table_lines(record: DecisionRecord) -> tuple[tuple[str, ...], tuple[Line, ..
         row("Difference", lambda e: wording.signed(e.success.value)),
         row(_interval_label(record), lambda e: wording.interval(e.success) or "–"),
         row("Wins:losses", lambda e: wording.wins_losses(e.wins, e.losses)),
-        row("p", lambda e: wording.p_value(e.p_value)),
-        row("Least detectable effect", lambda e: _or_dash(e.minimum_detectable_pp)),
-        row("Pairs (void)", lambda e: f"{e.pairs} ({e.void_pairs})"),
-        Line("Break-even fault frequency", None),
-        Line("p* [interval]", tuple(breaks.get(name, "–") for name in names)),
+        row("p of this contrast alone", lambda e: wording.p_value(e.p_value)),
+        row(f"p after Holm, {record.hypotheses} contrasts", wording.adjusted),
+        row("Decided for", lambda e: decided(record, e)),
+        row("Found with 80% power (pp)", lambda e: _or_dash(e.minimum_detectable_pp)),
+        row("Scenes (void pairs)", lambda e: f"{e.scenes} ({e.void_pairs})"),
+        Line("Fault frequencies at which neither is decided to be ahead (%)", None),
+        Line("p* and the set", tuple(breaks.get(name, "–") for name in names)),
     ]
     for label, pick in _OTHERS:
         estimates = [pick(effects[name]) for name in names]
-        lines.append(Line(f"{asked.repair} minus {asked.baseline}, {label}", None))
+        if not any(estimates):
+            continue
+        title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
+        lines.append(Line(title, None))
         lines.append(Line("Difference", tuple(map(_value, estimates))))
         lines.append(Line(_interval_label(record), tuple(map(_range, estimates))))
     return tuple(titles[name] for name in names), tuple(lines)
+
+
+def decided(record: DecisionRecord, effect: Effect) -> str:
+    """Return the arm that the family decides for, with what keeps it out of a headline."""
+    if not effect.acted:
+        return "not tested"
+    arm = {1: record.question.repair, -1: record.question.baseline}.get(effect.sign, "–")
+    return f"{arm} ({effect.extreme})" if effect.extreme else arm
 
 
 def markdown_table(record: DecisionRecord) -> str:
@@ -78,7 +91,8 @@ def markdown_table(record: DecisionRecord) -> str:
     about = (
         f"{md(asked.repair)} against {md(asked.baseline)} on {md(asked.system)}, "
         f"fault {md(asked.fault)}; {asked.n_scenes} scenes of {md(asked.library)}, "
-        f"{wording.seeds(asked.seeds)}."
+        f"{wording.seeds(asked.seeds)}. Primary contrast: {md(asked.primary)}. Intervals and tests "
+        f"speak of {record.estimand}."
     )
     return "\n".join([about, "", *rows, "", md(record.verdict.headline), ""])
 
@@ -103,7 +117,8 @@ def latex_table(record: DecisionRecord) -> str:
         f"{tex(asked.repair)} against {tex(asked.baseline)} on {tex(asked.system)}, fault "
         f"{tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {tex(asked.library)}, "
         f"{wording.seeds(asked.seeds)}. Wins:losses are {tex(asked.repair)}-only:"
-        f"{tex(asked.baseline)}-only successes. Void pairs count for neither side."
+        f"{tex(asked.baseline)}-only successes. Void pairs count for neither side. Primary "
+        f"contrast: {tex(asked.primary)}. Intervals and tests speak of {tex(record.estimand)}."
     )
     head = " & ".join(["Method", *map(tex, heads)])
     return "\n".join(

@@ -27,24 +27,29 @@ def success_table(record: DecisionRecord) -> Table:
 
 
 def effect_table(record: DecisionRecord) -> Table:
-    """Return the effects path by path, with what stands behind them."""
+    """Return the effects path by path, with what stands behind them; bold is decided."""
     titles = {path.name: path.title for path in record.paths}
     breaks = {b.path: wording.break_even(b.result) for b in record.break_even}
     asked = record.question
     table = _table(f"{asked.repair} minus {asked.baseline}")
     table.add_column("path")
-    for head in ("difference, pp", "won:lost", "p", "pairs", "break-even"):
+    for head in ("difference, pp", "won:lost", "p, Holm", "scenes", "break-even, %"):
         table.add_column(head, justify="right", no_wrap=True)
     for effect in record.effects:
-        pairs = Text(str(effect.pairs))
+        scenes = Text(str(effect.scenes))
         if effect.void_pairs:
-            pairs.append(f", {effect.void_pairs} void", style="bold red")
+            scenes.append(f", {effect.void_pairs} void", style="bold red")
+        title = Text(titles.get(effect.path, effect.path))
+        notes = ["primary"] if effect.path == asked.primary else []
+        notes += filter(None, [wording.reservation(effect)])
+        if notes:
+            title.append(f" ({', '.join(notes)})", style="dim")
         table.add_row(
-            Text(titles.get(effect.path, effect.path)),
+            title,
             Text(wording.with_interval(effect.success), style="bold" if effect.detected else ""),
             wording.wins_losses(effect.wins, effect.losses),
-            wording.p_value(effect.p_value),
-            pairs,
+            wording.adjusted(effect),
+            scenes,
             breaks.get(effect.path, "–"),
         )
     return table
@@ -54,6 +59,9 @@ def decision(record: DecisionRecord) -> RenderableType:
     """Return the decision record as text and tables: verdict, effects, what would change it."""
     parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
     parts += [Text(sentence) for sentence in record.verdict.sentences]
+    if record.findings:
+        parts += [Text(""), Text("Found in the run", style="bold red")]
+        parts += [Padding(Text(f"- {item}"), (0, 0, 0, 2)) for item in record.findings]
     parts += [Text(""), success_table(record), Text(""), effect_table(record)]
     if record.verdict.would_change:
         parts += [Text(""), Text("What would change this", style="bold")]

@@ -2,13 +2,12 @@
 
 How scenes are chosen. A *showing* is one scene with one seed, and its *pattern* is who alone
 succeeded there, path by path. Scenes with a void pair and flights without a track are left out. The
-rest is ranked: first those where the arm that alone succeeds under the shared fault (the one that
-strikes most consumers) is not the one that alone succeeds on another path; then those where the
-winner changes between other paths; then those where one arm alone succeeds under the shared fault;
-then those where one does on any path; then the others. Within a rank the largest difference in
-terminal distance comes first, then the scene index and the seed. From that list the first showing
-of every pattern is taken, then the list is filled up in order, never with a scene twice. They are
-examples, not a sample.
+rest is ranked: first those where the arm that alone succeeds under the shared fault is not the one
+that alone succeeds on another path; then those where that arm changes between other paths; then
+those where one arm alone succeeds under the shared fault; then those where one does on any path;
+then the others. Within a rank the largest difference in terminal distance comes first, then the
+scene index and the seed. From that list the first showing of every pattern is taken, then the list
+is filled up in order, never with a scene twice. They are examples, not a sample.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,7 +17,8 @@ from typing import Protocol, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record.model import DecisionRecord, Path
+from faultpath.record import SHARED, DecisionRecord, Question
+from faultpath.report import wording
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, Trial
 from faultpath.trials.floorplan import FloorPlan
@@ -68,6 +68,7 @@ class ArmShown(TypedDict):
     """One flight: positions in centimetres, `[x, y, z, x, y, z, ...]`."""
 
     status: str
+    ended: str
     time_s: float | None
     terminal_distance_m: float | None
     track_cm: list[int]
@@ -148,23 +149,13 @@ def _showings(source: Audited, pairs: Sequence[Pair]) -> Iterator[Showing]:
     for pair in pairs:
         if pair.kind not in (Kind.VOID, Kind.LEFT_OUT) and _flown(source, pair):
             groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
-    widest = _widest(source.record)
     for group in groups.values():
-        yield Showing(group, _rank(group, widest), max(map(_distance_gap, group.values())))
+        yield Showing(group, _rank(group), max(map(_distance_gap, group.values())))
 
 
-def _widest(record: DecisionRecord) -> str:
-    """Return the path whose fault strikes most consumers: the shared one."""
-
-    def struck(path: Path) -> int:
-        return len(path.consumers)
-
-    return max(record.paths, key=struck).name
-
-
-def _rank(group: dict[str, Pair], widest: str) -> int:
+def _rank(group: dict[str, Pair]) -> int:
     signs = {path: pair.sign for path, pair in group.items()}
-    shared = signs.get(widest, 0)
+    shared = signs.get(SHARED, 0)
     if shared and -shared in signs.values():
         return 0
     if {1, -1} <= set(signs.values()):
@@ -197,11 +188,11 @@ def _flown(source: Audited, pair: Pair) -> bool:
 
 
 _WHY = (
-    "The winner changes when the fault strikes all taps of its source.",
-    "The winner changes with the path of the fault.",
-    "Only one arm succeeds when the fault strikes all taps of its source.",
-    "Only one arm succeeds on at least one path.",
-    "Both arms end alike; the distance at the end differs most.",
+    "In this scene one arm alone succeeds with the fault shared, the other alone on another path.",
+    "In this scene one arm alone succeeds on one path, and the other alone on another.",
+    "In this scene only one arm succeeds with the fault shared.",
+    "In this scene only one arm succeeds on at least one path.",
+    "In this scene both arms end alike on every path; how far from the goal differs most.",
 )
 
 
@@ -226,17 +217,18 @@ def _pair_shown(source: Audited, pair: Pair) -> PairShown:
     return {
         "path": pair.path,
         "kind": pair.kind.value,
-        "baseline": _arm(pair.baseline, baseline),
-        "repair": _arm(pair.repair, repair),
+        "baseline": _arm(pair.baseline, baseline, asked),
+        "repair": _arm(pair.repair, repair, asked),
         "parting_step": parting_step(baseline, repair),
     }
 
 
-def _arm(trial: Trial | None, track: NDArray[np.float32]) -> ArmShown:
+def _arm(trial: Trial | None, track: NDArray[np.float32], asked: Question) -> ArmShown:
     assert trial is not None  # a pair without both trials is void and never shown
     centimetres: list[int] = np.rint(100.0 * np.nan_to_num(track)).astype(int).ravel().tolist()
     return {
         "status": trial.status,
+        "ended": wording.ended(asked, trial.status),
         "time_s": trial.time_s,
         "terminal_distance_m": trial.terminal_distance_m,
         "track_cm": centimetres,

@@ -2,6 +2,8 @@
 
 import re
 
+from faultpath.record.breakeven_words import first, last
+from faultpath.record.model import Effect, Question
 from faultpath.statistics import BreakEven, Estimate
 
 MINUS = "−"
@@ -49,21 +51,40 @@ def p_value(value: float) -> str:
     return f"{value:.4f}" if text == "0.050" and value != 0.05 else text
 
 
+def break_even(result: BreakEven) -> str:
+    """Return the frequencies at which nobody is decided to be ahead, in percent.
+
+    `59 % [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
+    pieces; `any [0, 100]`; `none` where one arm is ahead throughout. Ends are rounded outwards.
+    """
+    if result.kind == "empty":
+        return "none"
+    if result.kind == "whole":
+        return "any [0, 100]"
+    pieces = " and ".join(f"[{last(low)}, {first(high)}]" for low, high in result.pieces)
+    return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} % {pieces}"
+
+
 def percent(fraction: float) -> str:
     """Return a fraction as whole percent, without the sign."""
     return f"{100.0 * fraction:.0f}"
 
 
-def break_even(result: BreakEven) -> str:
-    """Return `59 % [33, 80]`: where the estimates cross, and the frequencies not decided."""
-    point = "no crossing" if result.p_star is None else f"{percent(result.p_star)} %"
-    pieces = " or ".join(f"[{percent(low)}, {percent(high)}]" for low, high in result.pieces)
-    return f"{point} {pieces}".rstrip()
+def adjusted(effect: Effect) -> str:
+    """Return an effect's p-value within its family; a dash where it is in none."""
+    return "–" if effect.adjusted_p_value is None else p_value(effect.adjusted_p_value)
 
 
-def break_even_sentence(result: BreakEven) -> str:
-    """Return what the break-even means, short enough to stand under a picture's title."""
-    return f"repair {result.words}"
+def reservation(effect: Effect) -> str:
+    """Return why an effect makes no headline: the fault never acted, floor or ceiling."""
+    if not effect.acted:
+        return "fault never acted"
+    return {"floor": "floor", "ceiling": "ceiling"}.get(effect.extreme or "", "")
+
+
+def ended(question: Question, status: str) -> str:
+    """Return what the system calls the way in which a trial ended."""
+    return question.ends.get(status, status)
 
 
 def typeset(text: str) -> str:

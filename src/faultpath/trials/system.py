@@ -4,13 +4,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
+from types import MappingProxyType
 
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.taps import Taps
 from faultpath.trials.checks import check_library, check_scene, check_variant
 from faultpath.trials.floorplan import FloorPlan
-from faultpath.trials.outcome import Outcome
+from faultpath.trials.outcome import Outcome, Status
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,10 @@ class System(ABC):
     control_dt_s: float
     block_size: int = 20
     """Scenes handed to one call of `run`: the unit of work, of storage and of resuming."""
+    trained: bool = False
+    """Whether variants hold trained models: results then speak of these models, as trained."""
+    ends: Mapping[Status, str] = MappingProxyType({})
+    """What a trial's end is called where it is not the status itself, for example `missed`."""
 
     @property
     @abstractmethod

@@ -21,10 +21,12 @@ class EffectRow:
     repair_percent: float
     effect: Estimate
     wins_losses: str
-    detected: bool
-    """By test and interval together, as the record has it."""
+    sign: int
+    """Side that the family decides for: 1 the repair, -1 the baseline, 0 neither."""
+    note: str
+    """Whether it is the primary contrast, and what keeps it out of a headline."""
     band_pp: float | None
-    """Minimum detectable effect, where nothing is detected."""
+    """Difference that is found with 80 % power, where none is decided."""
 
 
 def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
@@ -39,7 +41,16 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
             repair_percent=rate[asked.repair, effect.path],
             effect=effect.success,
             wins_losses=wording.wins_losses(effect.wins, effect.losses),
-            detected=effect.detected,
+            sign=effect.sign,
+            note=", ".join(
+                filter(
+                    None,
+                    (
+                        "primary" if effect.path == asked.primary else "",
+                        wording.reservation(effect),
+                    ),
+                )
+            ),
             band_pp=None if effect.detected else effect.minimum_detectable_pp,
         )
         for effect in record.effects
@@ -49,8 +60,8 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
 def forest(rows: Sequence[EffectRow], baseline: str, repair: str, narrow: bool = False) -> str:
     """Return the forest plot of the success differences, percentage points, one row a path.
 
-    `narrow` stacks the columns for a telephone. An open dot is an effect that is not detected;
-    the light band beside it reaches as far as the minimum detectable effect.
+    `narrow` stacks the columns for a telephone. A filled dot is an effect that the family decides;
+    the light band behind an open one reaches as far as the difference found with 80 % power.
     """
     told = "; ".join(f"{r.label}: {wording.with_interval(r.effect)} pp" for r in rows)
     title = f"Success of {repair} minus success of {baseline}, percentage points"
@@ -77,11 +88,14 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
     for i, row in enumerate(rows):
         y = top + pitch * (i + 0.5)
         lines = wrapped(row.label, 146, 12, 2)
+        last = len(lines) - (0 if row.note else 1)
         for k, line in enumerate(lines):
-            svg.text(0, y + 4 + 15 * (k - (len(lines) - 1) / 2), line, "bold", tip=row.label)
+            svg.text(0, y + 4 + 15 * (k - last / 2), line, "bold", tip=row.label)
+        if row.note:
+            svg.text(0, y + 4 + 15 * (last / 2), row.note, "small soft")
         svg.text(214, y + 4, wording.plain(row.baseline_percent), "", "end")
         svg.text(266, y + 4, wording.plain(row.repair_percent), "", "end")
-        _mark(svg, plot, row.effect, y, _winner(row), row.band_pp)
+        _mark(svg, plot, row.effect, y, row.sign, row.band_pp)
         _numbers(svg, 612, y + 4, row.effect)
         svg.text(768, y + 4, row.wins_losses)
     _footnote(svg, rows, bottom + 40, 292)
@@ -101,21 +115,22 @@ def _narrow(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg
             svg.rect(0, y + 2, 350, 20, "paper")
             svg.text(0, y + 16, shortened(row.label, 195, 12), "bold", tip=row.label)
             svg.text(350, y + 16, wording.with_interval(row.effect), "", "end")
-        _mark(svg, plot, row.effect, y + 38, _winner(row), row.band_pp)
+        _mark(svg, plot, row.effect, y + 38, row.sign, row.band_pp)
         rates = f"{wording.plain(row.baseline_percent)} → {wording.plain(row.repair_percent)} %"
         svg.rect(0, y + 54, 350, 18, "paper")
-        svg.text(0, y + 67, rates, "small soft")
+        svg.text(0, y + 67, f"{rates}{f', {row.note}' if row.note else ''}", "small soft")
         svg.text(350, y + 67, f"won : lost  {row.wins_losses}", "small soft", "end")
     _footnote(svg, rows, bottom + 40, 0)
     return svg
 
 
-def interval_panel(
-    title: str, unit: str, rows: Sequence[tuple[str, Estimate | None]], good: int, digits: int = 2
+def secondary_panel(
+    title: str, unit: str, rows: Sequence[tuple[str, Estimate | None]], good: str, digits: int = 2
 ) -> str:
-    """Return a small forest plot of one outcome over the paths.
+    """Return the intervals of one secondary outcome over the paths.
 
-    `good` is the sign of a difference that speaks for the repair: -1 where less is better.
+    Nothing is decided from it, so no mark is filled or coloured. `good` says what is better, such
+    as `less`.
     """
     told = "; ".join(f"{label}: {wording.with_interval(e, digits)} {unit}" for label, e in rows)
     present = [e for _, e in rows if e is not None]
@@ -124,7 +139,7 @@ def interval_panel(
     bottom = top + pitch * len(rows)
     svg = Svg(_PANEL, bottom + 24, f"{title}: repair minus baseline, {unit}", told)
     svg.text(0, 14, f"{title}, {unit}", "head")
-    svg.text(0, 31, f"{'less' if good < 0 else 'more'} is better", "small soft")
+    svg.text(0, 31, f"secondary; {good} is better", "small soft")
     plot = covering(ends, least=10.0**-digits).at(6, _PANEL - 6)
     _frame(svg, plot, top, bottom, about=4)
     for i, (label, estimate) in enumerate(rows):
@@ -133,14 +148,15 @@ def interval_panel(
         svg.text(0, y + 18, shortened(label, _PANEL - 140, 12), tip=label)
         svg.text(_PANEL, y + 18, wording.with_interval(estimate, digits), "", "end")
         if estimate is not None:
-            _mark(svg, plot, estimate, y + 35, good * estimate.detected_sign, None)
+            _secondary_mark(svg, plot, estimate, y + 35)
     return svg.render()
 
 
-def _winner(row: EffectRow) -> int:
-    if not row.detected or row.effect.value == 0:
-        return 0
-    return 1 if row.effect.value > 0 else -1
+def _secondary_mark(svg: Svg, plot: Axis, e: Estimate, y: float) -> None:
+    """Draw an interval with a tick for its estimate, in the ink of what is not decided."""
+    if e.low is not None and e.high is not None:
+        svg.line((plot(e.low), y), (plot(e.high), y), "seed")
+    svg.line((plot(e.value), y - 5), (plot(e.value), y + 5), "seed")
 
 
 def _extent(rows: Sequence[EffectRow]) -> list[float]:
@@ -200,7 +216,7 @@ def _numbers(svg: Svg, x: float, y: float, e: Estimate) -> None:
 def _footnote(svg: Svg, rows: Sequence[EffectRow], y: float, x: float) -> None:
     notes: list[str] = []
     if any(row.band_pp for row in rows):
-        notes.append("shaded: too small to be detected")
+        notes.append("shaded: found with less than 80 % power")
     if any(len(row.effect.per_seed or ()) > 1 for row in rows):
         notes.append("ticks: single seeds")
     if notes:

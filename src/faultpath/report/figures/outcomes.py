@@ -1,6 +1,6 @@
 """How the trials of each cell ended."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from faultpath.record.model import Cell
 from faultpath.report import wording
@@ -10,13 +10,17 @@ _WIDTH = 390.0
 _STATUSES = ("success", "crash", "timeout", "failed")
 
 
-def outcome_bars(title: str, cells: Sequence[Cell]) -> str:
+def outcome_bars(title: str, cells: Sequence[Cell], names: Mapping[str, str]) -> str:
     """Return one stacked bar for each cell of a path, counts written on the pieces.
+
+    `names` says what the system calls its ends, where that is not the status itself.
 
     Success is plain and dark, crashes are hatched, timeouts plain and light, failed trials red.
     """
+    said = {status: names.get(status, status) for status in _STATUSES}
     told = "; ".join(
-        f"{c.variant}: " + ", ".join(f"{getattr(c, s)} {s}" for s in _STATUSES) for c in cells
+        f"{c.variant}: " + ", ".join(f"{getattr(c, s)} {word}" for s, word in said.items())
+        for c in cells
     )
     svg = Svg(_WIDTH, 34 + 50 * len(cells), f"{title}: how the trials ended", told)
     hatch = svg.hatch("crash", "crash-line")
@@ -25,7 +29,7 @@ def outcome_bars(title: str, cells: Sequence[Cell]) -> str:
         y = 38.0 + 50 * i
         svg.text(0, y, shortened(cell.variant, _WIDTH - 250, 12), tip=cell.variant)
         svg.text(_WIDTH, y, _beside(cell), "small soft", "end")
-        _bar(svg, cell, y + 6, hatch)
+        _bar(svg, cell, y + 6, hatch, names)
     return svg.render()
 
 
@@ -36,7 +40,7 @@ def _beside(cell: Cell) -> str:
     return f"{failed}median time of successes {wording.plain(cell.median_time_s, 2)} s"
 
 
-def _bar(svg: Svg, cell: Cell, y: float, hatch: str) -> None:
+def _bar(svg: Svg, cell: Cell, y: float, hatch: str, names: Mapping[str, str]) -> None:
     x, scale = 0.0, _WIDTH / max(cell.trials, 1)
     for status in _STATUSES:
         n: int = getattr(cell, status)
@@ -50,11 +54,11 @@ def _bar(svg: Svg, cell: Cell, y: float, hatch: str) -> None:
             20,
             status,
             1.5,
-            tip=f"{wording.counted(n, 'trial')}: {status}",
+            tip=f"{wording.counted(n, 'trial')}: {names.get(status, status)}",
         )
         if status == "crash":
             svg.filled(x, y, width - 1.5, 20, hatch)
-        _count(svg, f"{n} {status}", str(n), x, width, y, status)
+        _count(svg, f"{n} {names.get(status, status)}", str(n), x, width, y, status)
         x += width
 
 

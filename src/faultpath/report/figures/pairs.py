@@ -1,6 +1,6 @@
 """Every scene as one cell: who succeeded there."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 from faultpath.report.pairing import WORDS, Kind, Pair
@@ -18,12 +18,13 @@ _SHORT = {
 _ALWAYS = (Kind.BOTH, Kind.REPAIR_ONLY, Kind.BASELINE_ONLY, Kind.NEITHER)
 
 
-def pair_grid(title: str, pairs: Sequence[Pair]) -> str:
+def pair_grid(title: str, pairs: Sequence[Pair], names: Mapping[str, str]) -> str:
     """Return the grid of one path: a block for each topology, a column for each scene.
 
     With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
     that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
-    neither, a cross in a red box a void pair, a slash a scene left out because of one.
+    neither, a cross in a red box a void pair, a slash a scene left out because of one. `names` says
+    what the system calls its ends.
     """
     counts = {kind: sum(p.kind is kind for p in pairs) for kind in Kind}
     told = ", ".join(
@@ -46,7 +47,7 @@ def pair_grid(title: str, pairs: Sequence[Pair]) -> str:
             x = left + (k % columns) * (side + _GAP)
             at = y + (k // columns) * row_height
             for j, pair in enumerate(stack):
-                _cell(svg, pair, x, at + j * (side + 1), side)
+                _cell(svg, pair, x, at + j * (side + 1), side, names)
         y += -(-len(stacks) // columns) * row_height + 4
     return svg.render()
 
@@ -72,10 +73,10 @@ def _blocks(pairs: Sequence[Pair]) -> list[tuple[str, list[list[Pair]]]]:
     ]
 
 
-def _cell(svg: Svg, pair: Pair, x: float, y: float, side: float) -> None:
+def _cell(svg: Svg, pair: Pair, x: float, y: float, side: float, names: Mapping[str, str]) -> None:
     seed = f", seed {pair.seed}"
     ends = ", ".join(
-        f"{arm} {trial.status if trial else 'did not run'}"
+        f"{arm} {names.get(trial.status, trial.status) if trial else 'did not run'}"
         for arm, trial in (("baseline", pair.baseline), ("repair", pair.repair))
     )
     note = f" ({WORDS[Kind.LEFT_OUT]})" if pair.kind is Kind.LEFT_OUT else ""

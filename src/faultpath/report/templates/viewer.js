@@ -9,8 +9,8 @@ if (document.getElementById("viewer-data")) {
   const last = () => Math.max(...Flight.arms.map((arm) => Flight.steps(pair()[arm].track_cm))) - 1;
   const number = (value, digits, unit) => (value === null ? "" : `${value.toFixed(digits)} ${unit}`);
   const words = {
-    both: "Here both succeed.", "repair-only": "Here only the repair succeeds.",
-    "baseline-only": "Here only the baseline succeeds.", neither: "Here neither succeeds.",
+    both: "On the path shown both succeed.", "repair-only": "On the path shown only the repair succeeds.",
+    "baseline-only": "On the path shown only the baseline succeeds.", neither: "On the path shown neither succeeds.",
   };
 
   const redraw = () => {
@@ -43,7 +43,7 @@ if (document.getElementById("viewer-data")) {
       const end = shown[arm];
       const sign = { success: "✓", crash: "✕", timeout: "□" }[end.status] ?? "□";
       const line = { baseline: "dashed", repair: "solid" }[arm];
-      const parts = [`${sign} ${end.status}`, number(end.time_s, 2, "s"), end.terminal_distance_m === null ? "" : `${number(end.terminal_distance_m, 2, "m")} from the goal`];
+      const parts = [`${sign} ${end.ended}`, number(end.time_s, 2, "s"), end.terminal_distance_m === null ? "" : `${number(end.terminal_distance_m, 2, "m")} from the goal`];
       return term(`${arm}: ${data[arm]} (${line})`, parts.filter(Boolean).join(", "), arm);
     });
     const parting = shown.parting_step === null

@@ -1,0 +1,196 @@
+"""Whatever comes out of a run, no sentence claims what was not decided."""
+
+import re
+from collections.abc import Callable, Iterator
+
+import pytest
+from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
+
+from faultpath.errors import UserError
+from faultpath.record import CORRECT, SHARED, Change, DecisionRecord, Effect, decide
+from faultpath.streams import generator
+from faultpath.trials import OutcomeTable, Status
+
+Statuses = dict[str, list[Status]]
+PATHS = {
+    "one path": (CORRECT,),
+    "one module": (CORRECT, "a"),
+    "shared": (CORRECT, "a", "b", SHARED),
+}
+YES, NO = Status.SUCCESS, Status.TIMEOUT
+
+
+def always(path: str, seed: int, n: int) -> Statuses:
+    return arms((n, 0, 0), n)
+
+
+def never(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, 0), n)
+
+
+def no_discordance(path: str, seed: int, n: int) -> Statuses:
+    return arms((n // 2, 0, 0), n)
+
+
+def ties(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n // 2, n // 2), n)
+
+
+def for_the_repair(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n, 0), n)
+
+
+def against_it_when_shared(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, n) if path == SHARED else (0, n, 0), n)
+
+
+def against_it_without_a_fault(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, n) if path == CORRECT else (0, n, 0), n)
+
+
+def near_the_floor(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n // 12, 0), n)
+
+
+def near_the_ceiling(path: str, seed: int, n: int) -> Statuses:
+    return arms((n - n // 12, 0, n // 12), n)
+
+
+def by_chance(path: str, seed: int, n: int) -> Statuses:
+    stream = generator("test/words", path, seed)
+    return {v: [YES if x else NO for x in stream.random(n) < 0.5] for v in (REPAIR, BASELINE)}
+
+
+def leaning(path: str, seed: int, n: int) -> Statuses:
+    """Return effects of different size and side on every path, some of them detected."""
+    stream = generator("test/words", path, seed)
+    lean = {CORRECT: -0.1, "a": 0.25, "b": 0.0, SHARED: -0.3}[path]
+    chances = {REPAIR: 0.5 + lean, BASELINE: 0.5 - lean}
+    return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
+
+
+SHAPES: dict[str, Callable[[str, int, int], Statuses]] = {
+    shape.__name__: shape
+    for shape in (
+        always,
+        never,
+        no_discordance,
+        ties,
+        for_the_repair,
+        against_it_when_shared,
+        against_it_without_a_fault,
+        near_the_floor,
+        near_the_ceiling,
+        by_chance,
+        leaning,
+    )
+}
+RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one path idle")
+
+
+def run(shape: str, over: tuple[str, ...], n: int, how: str, trained: bool) -> DecisionRecord:
+    seeds = (0, 1, 2) if "seeds" in how else (0,)
+    out = []
+    for seed in seeds:
+        for path in over:
+            made = SHAPES[shape](path, 0 if how == "identical seeds" else seed, n)
+            idle = how == "never acted" or (how == "one path idle" and path == over[-1])
+            for variant, statuses in made.items():
+                ends = list(statuses)
+                if how == "void" and variant == REPAIR and path == over[-1]:
+                    ends[0] = Status.FAILED
+                out += rows(variant, path, ends, seed=seed, altered=0 if idle else None)
+    asked = question(n, seeds).model_copy(update={"trained": trained})
+    return decide(asked, paths(*over), OutcomeTable(tuple(out)))
+
+
+def sentences(made: DecisionRecord) -> Iterator[str]:
+    yield made.verdict.headline
+    yield from made.verdict.sentences
+    yield from made.verdict.would_change
+
+
+def holm(p_values: list[float]) -> list[float]:
+    order = sorted(range(len(p_values)), key=lambda i: p_values[i])
+    adjusted, worst = [0.0] * len(p_values), 0.0
+    for rank, i in enumerate(order):
+        worst = max(worst, min(1.0, (len(p_values) - rank) * p_values[i]))
+        adjusted[i] = worst
+    return adjusted
+
+
+def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
+    """Return the signs that the numbers allow, of effects and of changes, worked out anew."""
+    tested: list[Effect | Change] = [e for e in made.effects if e.acted]
+    tested += made.changes
+    signs: list[int] = []
+    for each, p in zip(tested, holm([each.p_value for each in tested]), strict=True):
+        shown = each.success if isinstance(each, Effect) else each.change
+        low, high = shown.low or 0.0, shown.high or 0.0
+        signs.append((low > 0) - (high < 0) if p <= 0.05 else 0)
+    of = {e.path: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
+    turned = dict(zip([c.isolated for c in made.changes], signs[len(of) :], strict=True))
+    return of, turned
+
+
+def claimed(text: str, who: str) -> bool:
+    """Return whether a text says of an arm that it is ahead, anywhere."""
+    return bool(re.search(rf"\b{who} (is ahead|succeeds more often|does \(|is(\.| \(for))", text))
+
+
+def check(made: DecisionRecord) -> None:
+    effects, changes = may_be_said(made)
+    whole = " ".join(sentences(made))
+    for who, sign in ((REPAIR, 1), (BASELINE, -1)):
+        assert claimed(whole, who) == (sign in effects.values()), whole
+        headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
+        assert not claimed(made.verdict.headline, who) or headed
+    for effect in made.effects:
+        sign = effects.get(effect.path, 0)
+        for who, side in ((REPAIR, 1), (BASELINE, -1)):
+            assert claimed(effect.words, who) == (sign == side)
+        assert ("no difference is detected" not in effect.words) or sign == 0
+        assert effect.acted or "nothing was tested" in effect.words
+    for change in made.changes:
+        opposite = effects[change.isolated] * effects[change.shared] < 0
+        assert ("reverses" in change.words) == opposite
+        assert ("Interaction detected" in change.words) == (
+            not opposite and changes[change.isolated] != 0
+        )
+    turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
+    extreme = {e.path for e in made.effects if e.extreme}
+    assert ("Do not" in whole) == bool(turned - extreme and SHARED not in extreme)
+    for item in made.break_even:
+        ends = {effects.get(CORRECT, 0), effects.get(item.path, 0)} - {0}
+        for who, sign in ((REPAIR, 1), (BASELINE, -1)):
+            assert not claimed(item.words, who) or sign in ends
+    if made.scenes < made.scenes_needed:
+        assert made.verdict.headline.startswith("Too few scenes to decide")
+        assert str(made.scenes_needed) in made.verdict.headline
+
+
+def reads_well(made: DecisionRecord) -> None:
+    for sentence in sentences(made):
+        assert sentence[0].isupper() or sentence.startswith((REPAIR, BASELINE))
+        assert sentence.endswith(".")
+        assert not re.search(r"  |\bnan\b|None|\.\.|,,|\bfly|(always|never) favoured", sentence)
+        assert sentence.count("(") == sentence.count(")")
+
+
+@pytest.mark.parametrize("n", [1, 2, 4, 8, 40])
+@pytest.mark.parametrize("how", RUNS)
+@pytest.mark.parametrize("over", PATHS)
+def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
+    for shape in SHAPES:
+        if how == "void" and n == 1:
+            with pytest.raises(UserError, match="no scene is left"):
+                run(shape, PATHS[over], n, how, trained=False)
+            continue
+        made = run(shape, PATHS[over], n, how, trained=n % 3 == 0)
+        check(made)
+        reads_well(made)
+
+
+def test_without_a_scene_there_is_nothing_to_say() -> None:
+    with pytest.raises(Exception, match=r"no trial|no scene"):
+        run("ties", PATHS["shared"], 0, "one seed", trained=False)
