@@ -11,15 +11,15 @@ import numpy as np
 from faultpath.evidence import Measurement
 from faultpath.record import MISSING, Entry
 from faultpath.report import wording
-from faultpath.statistics import Estimate
+from faultpath.statistics import Estimate, fewest_scenes
 from faultpath.studies.cells import Cell
 from faultpath.studies.results import NotRun, Results
 from faultpath.trials import Status
 
 P = ParamSpec("P")
 
-MIN_SCENES = 6
-"""With fewer, no interval is called a detection: even if all agree no test rejects at 0.05."""
+MIN_SCENES = fewest_scenes(1)
+"""With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
 BLANK = Entry(text="")
 """Where a column has nothing to say of a line."""
 
@@ -96,18 +96,12 @@ def time(results: Results, cell: Cell) -> Entry:
 def time_difference(results: Results, first: Cell, second: Cell) -> Entry:
     """Median difference in time over jointly successful scenes, s, with their number."""
     found = results.contrast(first, second).time()
-    text = f"{wording.with_interval(found, 2)} (n = {found.n_scenes})"
-    return Entry(text=text, detected=detected(found))
-
-
-def detected(estimate: Estimate) -> bool:
-    """Return whether a difference without a test is detected: its interval excludes 0."""
-    return estimate.n_scenes >= MIN_SCENES and estimate.detected_sign != 0
+    return Entry(text=f"{wording.with_interval(found, 2)} (n = {found.n_scenes})")
 
 
 def difference(estimate: Estimate, digits: int = 1) -> Entry:
-    """Return a difference for which the paper has no test."""
-    return Entry(text=wording.signed(estimate.value, digits), detected=detected(estimate))
+    """Return a secondary difference: it has no test, and nothing is decided from it."""
+    return Entry(text=wording.signed(estimate.value, digits))
 
 
 def interval(estimate: Estimate, digits: int = 1) -> Entry:

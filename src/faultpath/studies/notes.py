@@ -9,13 +9,15 @@ from faultpath.studies.cells import Cell
 from faultpath.studies.results import NotRun, Results
 
 INTERVALS = (
-    "Intervals: 95 % percentile bootstrap of whole scenes, for these trained models and recorded "
-    "executions. Bold: the interval excludes 0 and, for success, the paper's test rejects at 0.05 "
-    "(exact McNemar for one seed, sign test on scene means for several)."
+    "Intervals, 95 %, for these trained models and recorded executions: score intervals for "
+    "success (Tango's; over seeds cluster-robust), percentile bootstrap of whole scenes for what "
+    "has no bound. Bold: the interval excludes 0 and the paper's test rejects at 0.05 on the same side "
+    "(exact McNemar for one seed, sign test on scene means for several), each contrast by itself. "
+    "Times, distances and errors are secondary: nothing is decided from them, and none is bold."
 )
 WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
 LEAST = (
-    "Least detectable: the difference that would be detected at 0.05 with power 0.8; none: so few "
+    "Least detectable: the true difference that is detected at 0.05 with 80 % power; none: so few "
     "scenes detect no difference."
 )
 EVERY_NOISE = (

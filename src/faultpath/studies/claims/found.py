@@ -11,7 +11,7 @@ from faultpath.studies.results import Results
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
 MULTIPLE = normal_quantile(0.975) + normal_quantile(0.8)
-"""Standard errors that a difference must have to be detected at 0.05 in four runs of five."""
+"""Standard errors that a difference must have to be detected at 0.05 with 80 % power."""
 
 POINT_SCENES = 50
 """From so many scenes on an estimate decides where the paper's own does: half of the paper's

@@ -41,7 +41,7 @@ def build(results: Results) -> Built:
         published=f"e from {low} to {high}. {'; '.join(words)}.",
         notes=(
             flown(results, CELLS),
-            "Bands: 95 % percentile bootstrap of scenes, point by point.",
+            "Bands: 95 % score intervals (Wilson's), point by point.",
         ),
     )
     return (sweep,)

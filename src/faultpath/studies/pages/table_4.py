@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
-from faultpath.statistics import Estimate, difference_of_effects
+from faultpath.statistics import Estimate, compare, difference_of_effects
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
 from faultpath.studies.contrasts import (
     PublishedContrast,
@@ -115,7 +115,9 @@ def _interaction(results: Results) -> tuple[Line, ...]:
         alone, shared = joint(
             results, *(_cells("dob", "gru", path) for path in ("reconstruction-only", "shared"))
         )
-        return _shown(difference_of_effects(alone.draws, shared.draws).estimate(), 1)
+        found = compare(difference_of_effects(alone.draws, shared.draws))
+        value = Entry(text=wording.signed(found.estimate.value), detected=bool(found.side))
+        return value, interval(found.estimate)
 
     found = attempt(change, (wording.signed(paper["mean"]), bracket(paper["ci95"])))
     return _last_column("DOB minus GRU, shared minus reconstruction-only (pp)", found)
@@ -145,7 +147,7 @@ def _terminal_distance(results: Results) -> tuple[Line, ...]:
     values, intervals = zip(*columns, strict=True)
     found = attempt(change, (wording.signed(rise["mean"], 2), bracket(rise["ci95"], 2)))
     return (
-        Line(label="Terminal distance, GRU+DCC minus GRU (m)"),
+        Line(label="Terminal distance, secondary, GRU+DCC minus GRU (m)"),
         Line(label="Mean difference", entries=values),
         Line(label="95 % interval", entries=intervals),
         *_last_column("Shared minus reconstruction-only (m)", found),

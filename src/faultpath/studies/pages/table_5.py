@@ -84,11 +84,7 @@ def _difference(contrast: Contrast) -> Entry:
 
 
 def _frequency(result: BreakEven) -> str:
-    point = NO_CROSSING if result.p_star is None else wording.percent(result.p_star)
-    pieces = " or ".join(
-        f"[{wording.percent(low)}, {wording.percent(high)}]" for low, high in result.pieces
-    )
-    return f"{point} {pieces}".rstrip()
+    return NO_CROSSING if result.kind == "empty" else wording.break_even(result).replace(" %", "")
 
 
 def _published_frequency(paper: dict[str, Any]) -> str:

@@ -43,7 +43,7 @@ def _ceiling(results: Results) -> Table:
             flown(results, map(of_seed, CEILING)),
             "Without wind and with correct calibration: the four predictors, two of them with "
             "ground-truth clearance, and both repaired models.",
-            "Interval: 95 % percentile bootstrap of scenes.",
+            "Interval: 95 % score interval (Wilson's).",
         ),
     )
 
