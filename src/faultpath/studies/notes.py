@@ -11,8 +11,8 @@ from faultpath.studies.results import NotRun, Results
 INTERVALS = (
     "Intervals, 95 %, for these trained models and recorded executions: score intervals for "
     "success (Tango's; over seeds cluster-robust), percentile bootstrap of whole scenes for what "
-    "has no bound. Bold: the interval excludes 0 and the paper's test rejects at 0.05 on the same side "
-    "(exact McNemar for one seed, sign test on scene means for several), each contrast by itself. "
+    "has no bound. Bold: the interval excludes 0 and the paper's test rejects at 0.05 on the same "
+    "side (exact McNemar for one seed, sign test on scene means for several), each by itself. "
     "Times, distances and errors are secondary: nothing is decided from them, and none is bold."
 )
 WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
