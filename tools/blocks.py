@@ -64,16 +64,17 @@ def table(run: Run) -> str:
     effects = record.effects
     titles = {path.name: path.title for path in record.paths}
     rate = {(cell.variant, cell.path): wording.plain(cell.success_percent) for cell in record.cells}
-    crossing = {each.path: wording.break_even(each.result) for each in record.break_even}
+    frequencies = {each.path: wording.break_even(each.result) for each in record.break_even}
 
     def row(label: str, text: Callable[[Effect], str]) -> str:
         return f"| {label} | {' | '.join(map(text, effects))} |"
 
     def difference(effect: Effect) -> str:
         text = wording.signed(effect.success.value)
-        return f"**{text}**" if effect.detected else text
+        text = f"**{text}**" if effect.detected else text
+        why = wording.reservation(effect)
+        return f"{text} ({why})" if why else text
 
-    estimands = {effect.success.estimand for effect in effects}
     return "\n".join(
         [
             row("Success, %", lambda e: titles[e.path]),
@@ -83,12 +84,15 @@ def table(run: Run) -> str:
             row("difference, pp", difference),
             row("95 % interval", lambda e: wording.interval(e.success) or "–"),
             row("won:lost", lambda e: wording.wins_losses(e.wins, e.losses)),
-            row("break-even fault frequency", lambda e: crossing.get(e.path, "–")),
+            row("p, Holm", wording.adjusted),
+            row("fault frequency, undecided", lambda e: frequencies.get(e.path, "–")),
             "",
             f"{asked.n_scenes} scenes of `{asked.library}`, {wording.seeds(asked.seeds)}, fault "
-            f"`{asked.fault}`. Bold: a detected difference (interval and test agree). Intervals "
-            f"are for {' and '.join(sorted(estimands))}. "
-            f"Void pairs: {sum(effect.void_pairs for effect in effects)}.",
+            f"`{asked.fault}`. Bold: a detected difference (interval and test agree, and it stands "
+            f"after Holm's correction for {record.hypotheses} contrasts). Floor, ceiling: both "
+            f"below 10 % or above 90 %, no headline. Undecided: the estimate of the break-even "
+            f"frequency and the frequencies at which neither is decided to be ahead. Intervals are "
+            f"for {record.estimand}. Void pairs: {sum(effect.void_pairs for effect in effects)}.",
         ]
     )
 

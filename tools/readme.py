@@ -4,6 +4,7 @@
     python tools/readme.py --check                  exit 1 when a block or a picture is stale
     python tools/readme.py --take NAME=RUN_FOLDER   make a run folder the reference run NAME first
     python tools/readme.py --paper RUN_FOLDER       ship a run of the whole paper first
+    python tools/readme.py --conclude               decide all reference runs anew first
     python tools/readme.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
@@ -119,6 +120,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
     parser.add_argument("--images", action="store_true", help="make the pictures too")
+    parser.add_argument("--conclude", action="store_true", help="decide stored runs anew first")
     parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
     asked = parser.parse_args()
@@ -131,6 +133,12 @@ def main() -> int:
             take(what)
         if asked.paper is not None:
             take_paper(asked.paper, REFERENCE)
+        if asked.conclude:
+            from conclude import conclude_all
+
+            conclude_all(print)
+            load.cache_clear()
+            load_paper.cache_clear()
         for document in documents():
             document.write_text(filled(document.read_text("utf-8"), document), "utf-8")
         if asked.images:

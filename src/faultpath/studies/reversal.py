@@ -54,6 +54,7 @@ def decision(outcomes: OutcomeTable, leg: Leg, deliveries: Deliveries) -> Decisi
         library_hash=leg.system.library(study.library).content_hash,
         n_scenes=len(study.scenes),
         seeds=outcomes.seeds(BASELINE, CORRECT),
+        trained=leg.system.trained,
     )
     paths = [
         Path(

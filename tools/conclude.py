@@ -1,0 +1,157 @@
+"""Conclude stored reference runs anew: the same trials, decided by the code that is here.
+
+Tracks of the flights that a page shows are not stored beside it; they are read back from the page.
+"""
+
+import json
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from blocks import REFERENCE, ROOT
+from numpy.typing import NDArray
+from paper_blocks import SHIPPED
+
+from faultpath.record import DecisionRecord, Question, RunProvenance, decide
+from faultpath.record import Path as FaultPath
+from faultpath.report import ReportInput, Traces, markdown_table, report_page
+from faultpath.report.booktabs import booktabs_document
+from faultpath.report.inputs import TraceKey
+from faultpath.report.markdown_tables import markdown
+from faultpath.report.reproduction import ReproductionInput, ledger_markdown, reproduction_page
+from faultpath.store import read_outcomes, read_table
+from faultpath.store.sealed import seal
+from faultpath.studies import reversal
+from faultpath.studies.claims import ledger
+from faultpath.studies.pages import PAGES, table_4
+from faultpath.studies.run import CONCLUSIONS, plan, read_results
+from faultpath.trials import System, SystemSpec, load_system, system_shown
+
+_DATA = re.compile(r'id="viewer-data">(.*?)</script>', re.DOTALL)
+
+
+def conclude_all(tell: Callable[[str], None]) -> None:
+    """Decide every reference run anew and write its record, table and page; then the paper's."""
+    for folder in sorted(path.parent for path in REFERENCE.glob("*/record.json")):
+        before = json.loads((folder / "record.json").read_bytes())
+        record = _audit(folder, before)
+        tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
+    if (SHIPPED / CONCLUSIONS).is_file():
+        for line in _paper():
+            tell(line)
+
+
+def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
+    asked = Question.model_validate(before["question"])
+    place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
+    system = load_system(SystemSpec(name=place, options=asked.options))
+    asked = asked.model_copy(
+        update={
+            "trained": system.trained,
+            "ends": {status.value: words for status, words in system.ends.items()},
+        }
+    )
+    paths = [FaultPath.model_validate(path) for path in before["paths"]]
+    outcomes = folder / "outcomes.parquet"
+    record = decide(
+        asked, paths, read_outcomes(outcomes), findings=tuple(before.get("findings", ()))
+    )
+    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    table = read_table(outcomes.read_bytes())
+    scenes = list(dict.fromkeys(map(str, table["scene"].to_pylist())))
+    shown = system_shown(system, (asked.baseline, asked.repair), scenes)
+    page = report_page(
+        ReportInput(
+            record=record,
+            provenance=origin,
+            interface=shown.interface,
+            variants=shown.variants,
+            outcomes=table,
+            traces=Traces(_tracks(folder / "report.html"), shown.control_dt_s),
+            plans=shown.plans,
+        )
+    )
+    text = json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
+    (folder / "record.json").write_text(text, "utf-8")
+    (folder / "table.md").write_text(markdown_table(record), "utf-8")
+    (folder / "report.html").write_text(page, "utf-8")
+    _reseal(folder, origin)
+    return record
+
+
+def _paper() -> list[str]:
+    """Conclude the shipped reproduction; return what its claims were answered and now are."""
+    results, old = read_results(SHIPPED)
+    was = old.ledger
+    built = [part for page in PAGES for part in page.build(results)]
+    names = {table.name for table in old.tables}
+    found = old.model_copy(
+        update={
+            "ledger": ledger(results, was.library, was.library_hash, was.scenes, was.seeds),
+            "tables": tuple(part for part in built if part.name in names),
+            "figures": tuple(part for part in built if part.name not in names),
+        }
+    )
+    target = REFERENCE / "paper"
+    origin = RunProvenance.model_validate_json((SHIPPED / "provenance.json").read_bytes())
+    asked = plan((), old.profile)
+    leg = next(leg for leg in asked.legs() if leg.setting == table_4.WINDY)
+    outcomes = reversal.audited(results.outcomes)
+    scenes = {row.outcome.scene for row in outcomes.rows} | {each.scene for each in found.gallery}
+    page = reproduction_page(
+        ReproductionInput(
+            reproduction=found,
+            provenance=origin,
+            interface=asked.system.interface,
+            outcomes=outcomes,
+            decision=reversal.decision(outcomes, leg),
+            traces=Traces(_tracks(target / "reproduction.html"), asked.system.control_dt_s),
+            plans=_plans(asked.system, sorted(scenes)),
+        )
+    )
+    tables = found.tables
+    (SHIPPED / CONCLUSIONS).write_text(found.model_dump_json(indent=1) + "\n", "utf-8")
+    _reseal(SHIPPED, origin)
+    (target / "reproduction.html").write_text(page, "utf-8")
+    (target / "tables.tex").write_text(booktabs_document(tables), "utf-8")
+    (target / "tables.md").write_text("\n\n".join(map(markdown, tables)) + "\n", "utf-8")
+    (target / "ledger.md").write_text(ledger_markdown(found.ledger), "utf-8")
+    answers = {claim.id: claim.verdict for claim in was.claims}
+    return [
+        f"{claim.id}: {answers.get(claim.id, 'not answered')} -> {claim.verdict}"
+        for claim in found.ledger.claims
+        if claim.verdict != answers.get(claim.id)
+    ] or ["No claim changed its answer."]
+
+
+def _plans(system: System, scenes: list[str]) -> dict[str, Any]:
+    plans = ((scene, system.floor_plan(scene)) for scene in scenes)
+    return {scene: drawn for scene, drawn in plans if drawn is not None}
+
+
+def _tracks(page: Path) -> dict[TraceKey, NDArray[np.float32]]:
+    """Return the tracks that a page shows, in metres; to whole centimetres, as it holds them."""
+    held = _DATA.search(page.read_text("utf-8"))
+    if held is None:  # a system that leaves no traces
+        return {}
+    data = json.loads(held[1])
+    tracks: dict[TraceKey, NDArray[np.float32]] = {}
+    for scene in data["scenes"]:
+        for pair in scene["pairs"]:
+            for arm in ("baseline", "repair"):
+                key = (data[arm], pair["path"], scene["seed"], scene["scene"])
+                centimetres = np.array(pair[arm]["track_cm"], dtype=np.float32)
+                tracks[key] = centimetres.reshape(-1, 3) / np.float32(100.0)
+    return tracks
+
+
+def _reseal(folder: Path, origin: RunProvenance) -> None:
+    """Write the digests of what was concluded anew; a run that kept none keeps none."""
+    if not origin.files:
+        return
+    here = [name for name in origin.files if (folder / name).is_file()]
+    files = {**origin.files, **seal(folder, here)}
+    text = origin.model_copy(update={"files": files}).model_dump_json(indent=2) + "\n"
+    (folder / "provenance.json").write_text(text, "utf-8")
