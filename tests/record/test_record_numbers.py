@@ -325,6 +325,21 @@ def aa_audits(n: int, n_seeds: int, audits: int, rate: float) -> float:
     return said / audits
 
 
+def test_a_reversal_is_rarely_announced_where_the_isolated_effect_is_zero():
+    """Shared effect -20 pp, isolated 0: at most 2.5 %; 200 audits may show 5 % by chance."""
+    stream = generator("test/no-reversal", "100", 0)
+    resamples = Resamples.draw("test/aa", 100, n_resamples=10)
+    said = 0
+    for _ in range(200):
+        hard = stream.random((6, 100, 1))
+        arms = [one < rate for one, rate in zip(hard, (0.6, 0.6, 0.6, 0.6, 0.5, 0.7), strict=True)]
+        success = dict(
+            zip((CORRECT, "a", SHARED), zip(arms[::2], arms[1::2], strict=True), strict=True)
+        )
+        said += decide_paths(success, resamples=resamples).turns["a"] == "reversal"
+    assert said / 200 <= 0.05
+
+
 @pytest.mark.parametrize("n_seeds", [1, 3])
 def test_equal_methods_are_rarely_announced_to_differ(n_seeds):
     """One in twenty at most; 200 audits may show 8 % by chance."""
