@@ -1,6 +1,10 @@
 """Who reads what, in a system whose observer reconstructs wind and whose filter reads the wind."""
 
+import time
+from itertools import pairwise
+
 import pytest
+from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.interface import (
@@ -47,6 +51,53 @@ INTERFACE = Interface(
     reconstructs={"observer": "seen", "guard": "risk"},
 )
 STILL = {"mass": "mass_estimate", "thrust": "thrust_estimate", "wind": "still", "alarm": "risk"}
+
+
+def layered(layers: int, closing: bool = False) -> Interface:
+    """Return an interface of layers of two modules, each of which reads both of the layer above.
+
+    There are 2 ** layers ways from top to bottom. `closing` joins the last layer to the first.
+    """
+
+    def name(layer: int, side: str) -> str:
+        return f"m{layer}{side}"
+
+    modules_of = [[name(layer, side) for side in "ab"] for layer in range(layers)]
+    made = [f"{module}_out" for layer in modules_of for module in layer]
+    sources = (
+        source("sensor"),
+        *(Source(name=each, unit="1", provenance=Provenance.RECONSTRUCTED) for each in made),
+    )
+    channels = [Channel(name="first", sources=("sensor",), consumers=("m0a.x", "m0b.x"))]
+    for above, below in pairwise(modules_of):
+        for module in above:
+            readers = tuple(f"{reader}.{module}" for reader in below)
+            channels.append(Channel(name=module, sources=(f"{module}_out",), consumers=readers))
+    ends = ("m0a.end",) if closing else ("pilot.end",)
+    last = modules_of[-1][0]
+    channels.append(Channel(name="last", sources=(f"{last}_out",), consumers=ends))
+    return Interface(
+        name="layers",
+        sources=sources,
+        channels=tuple(channels),
+        reconstructs={m: f"{m}_out" for layer in modules_of for m in layer},
+    )
+
+
+@pytest.mark.parametrize("layers", [2, 24, 1500])
+def test_the_checks_take_no_longer_than_the_interface_is_long(layers: int) -> None:
+    began = time.process_time()
+    interface = layered(layers)
+    reached = transitive_consumers(interface, "first")
+    assert len(reached) == 2 + 4 * (layers - 1) + 1
+    assert time.process_time() - began < 5
+
+
+@pytest.mark.parametrize("layers", [1, 24, 1500])
+def test_a_long_cycle_is_found_among_many_ways(layers: int) -> None:
+    with pytest.raises(ValidationError, match=r"m0a -> .*m0a is a cycle") as told:
+        layered(layers, closing=True)
+    assert len(str(told.value)) < 600
 
 
 def test_modules_and_their_reads() -> None:

@@ -1,6 +1,6 @@
 """What must hold between the parts of an interface; each refusal says where and what to do."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
@@ -9,7 +9,10 @@ from faultpath.arrays import misfit
 from faultpath.interface.words import listed, unknown
 
 if TYPE_CHECKING:
-    from faultpath.interface.model import Channel, Interface
+    from faultpath.interface.model import Channel, Interface, Source
+
+_LONGEST_CYCLE = 10
+"""Names of a cycle that are shown."""
 
 Where = tuple[str | int, ...]
 
@@ -23,8 +26,9 @@ def check_interface(interface: "Interface") -> None:
     _check_unique("source", (s.name for s in interface.sources), "sources")
     _check_unique("channel", (c.name for c in interface.channels), "channels")
     _check_groups(interface)
+    known = {source.name: source for source in interface.sources}
     for index, channel in enumerate(interface.channels):
-        _check_channel(interface, channel, ("channels", index))
+        _check_channel(known, channel, ("channels", index))
     _check_reconstructions(interface)
     _check_cycles(interface)
 
@@ -48,8 +52,7 @@ def _check_groups(interface: "Interface") -> None:
             )
 
 
-def _check_channel(interface: "Interface", channel: "Channel", where: Where) -> None:
-    known = {source.name: source for source in interface.sources}
+def _check_channel(known: "Mapping[str, Source]", channel: "Channel", where: Where) -> None:
     _check_unique(f"channel '{channel.name}': source", channel.sources, *where, "sources")
     _check_unique(f"channel '{channel.name}': consumer", channel.consumers, *where, "consumers")
     for index, name in enumerate(channel.sources):
@@ -88,9 +91,9 @@ def _check_reconstructions(interface: "Interface") -> None:
                 f"reconstructs: module '{module}' produces source '{name}', whose provenance is "
                 f"{known[name].provenance}; make it reconstructed",
             )
+    produced = set(interface.reconstructs.values())
     for index, source in enumerate(interface.sources):
-        produced = source.name in interface.reconstructs.values()
-        if source.provenance == "reconstructed" and not produced:
+        if source.provenance == "reconstructed" and source.name not in produced:
             raise _refuse(
                 ("sources", index, "provenance"),
                 f"source '{source.name}' is reconstructed but no module produces it; add it to "
@@ -99,21 +102,37 @@ def _check_reconstructions(interface: "Interface") -> None:
 
 
 def _check_cycles(interface: "Interface") -> None:
-    from faultpath.interface.graph import feeds
+    """Look at every module and every read once, however they are joined."""
+    from faultpath.interface.graph import readers
 
-    below = {module: feeds(interface, module) for module in interface.reconstructs}
+    read_by = readers(interface)
+    below = {
+        module: [reader for reader in read_by.get(source, ()) if reader in interface.reconstructs]
+        for module, source in interface.reconstructs.items()
+    }
+    done: set[str] = set()
+    for start in below:
+        path: dict[str, Iterator[str]] = {} if start in done else {start: iter(below[start])}
+        while path:
+            module = next(reversed(path))
+            following = next(path[module], None)
+            if following is None:
+                done.add(module)
+                path.popitem()
+            elif following in path:
+                _refuse_cycle(list(path), following)
+            elif following not in done:
+                path[following] = iter(below[following])
 
-    def walk(module: str, path: tuple[str, ...]) -> None:
-        if module in path:
-            cycle = " -> ".join((*path[path.index(module) :], module))
-            raise _refuse(
-                ("reconstructs", module),
-                f"reconstructs: {cycle} is a cycle; a module that needs its own past keeps it in "
-                "its memory instead of reading it through a channel",
-            )
-        for reader in below[module]:
-            if reader in below:
-                walk(reader, (*path, module))
 
-    for module in below:
-        walk(module, ())
+def _refuse_cycle(path: list[str], module: str) -> None:
+    names = [*path[path.index(module) :], module]
+    if len(names) > _LONGEST_CYCLE:
+        half = _LONGEST_CYCLE // 2
+        names[half:-half] = [f"({len(names) - 2 * half} more)"]
+    cycle = " -> ".join(names)
+    raise _refuse(
+        ("reconstructs", module),
+        f"reconstructs: {cycle} is a cycle; a module that needs its own past keeps it in "
+        "its memory instead of reading it through a channel",
+    )

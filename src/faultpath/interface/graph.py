@@ -4,6 +4,7 @@ The paper's rule is recursive: a module that reads a channel and reconstructs a 
 channel's faults on to everything that reads its output.
 """
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -41,12 +42,30 @@ def feeds(
     every channel that the source may feed.
     """
     produced = interface.reconstructs.get(module)
-    fed = (
-        channel
-        for channel in interface.channels
-        if produced in ((bindings[channel.name],) if bindings else channel.sources)
-    )
-    return tuple(dict.fromkeys(module_of(name) for channel in fed for name in channel.consumers))
+    return () if produced is None else readers(interface, bindings).get(produced, ())
+
+
+def readers(
+    interface: "Interface", bindings: Mapping[str, str] | None = None
+) -> dict[str, tuple[str, ...]]:
+    """Return the modules that read each source, in the order of declaration; `bindings` as above.
+
+    In one pass, for whoever asks about many modules.
+    """
+    found: dict[str, dict[str, None]] = {}
+    for source, fed in _fed(interface, bindings).items():
+        names = (name for index in fed for name in interface.channels[index].consumers)
+        found[source] = dict.fromkeys(map(module_of, names))
+    return {source: tuple(names) for source, names in found.items()}
+
+
+def _fed(interface: "Interface", bindings: Mapping[str, str] | None) -> dict[str, list[int]]:
+    """Return, for each source, the places of the channels that it feeds."""
+    found: dict[str, list[int]] = {}
+    for index, channel in enumerate(interface.channels):
+        for source in (bindings[channel.name],) if bindings else channel.sources:
+            found.setdefault(source, []).append(index)
+    return found
 
 
 def direct_consumers(interface: "Interface", channel: str) -> tuple[str, ...]:
@@ -62,15 +81,18 @@ def transitive_consumers(
     `bindings` as in `feeds`. Raises `UserError` for an unknown name.
     """
     reached: dict[str, None] = {}
-    waiting = [interface.channel(channel)]
-    seen = {channel}
+    fed = _fed(interface, bindings)
+    waiting = deque([interface.channel(channel)])
+    seen, followed = {channel}, set[str]()
     while waiting:
-        here = waiting.pop(0)
+        here = waiting.popleft()
         reached.update(dict.fromkeys(here.consumers))
-        produced = {interface.reconstructs.get(module_of(name)) for name in here.consumers}
-        for other in interface.channels:
-            fed_by = (bindings[other.name],) if bindings else other.sources
-            if other.name not in seen and produced & set(fed_by):
+        produced = {interface.reconstructs.get(module_of(name), "") for name in here.consumers}
+        fresh = produced - followed
+        followed |= fresh
+        for index in sorted({index for source in fresh for index in fed.get(source, ())}):
+            other = interface.channels[index]
+            if other.name not in seen:
                 seen.add(other.name)
                 waiting.append(other)
     return tuple(reached)
