@@ -49,12 +49,12 @@ def command(
 
     options = {} if device is None else {"device": device}
     asked = plan((), profile, standing(str(library)), options)
-    folder = out or Path("runs") / f"claims-{library.stem}-{profile}"
+    folder, other = (out, "") if out else asked.folder(f"claims-{library.stem}-{profile}")
 
     from faultpath.cli.studies import carry_out, tell
 
     line = ("faultpath", *sys.argv[1:])
-    done = carry_out(asked, folder, crew(workers, device), line, quiet=as_json)
+    done = carry_out(asked, folder, crew(workers, device), line, as_json, other)
     if as_json:
         _print(done.reproduction.ledger)
     else:

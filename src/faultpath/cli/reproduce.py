@@ -20,7 +20,7 @@ def command(
         str, typer.Option(help="quick (few scenes, one seed) or paper (its size).")
     ] = "quick",
     out: Annotated[
-        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>.")
+        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>-<code>.")
     ] = None,
     library: Annotated[
         str | None,
@@ -37,11 +37,13 @@ def command(
     options = {} if device is None else {"device": device}
     asked = plan(pages or (), profile, standing(library), options)
     own = "" if library is None else f"-{asked.library().name}"
-    folder = out or Path("runs") / f"reproduction{own}-{asked.profile.name}"
+    name = f"reproduction{own}-{asked.profile.name}"
+    folder, other = (out, "") if out else asked.folder(name)
 
     from faultpath.cli.studies import carry_out, tell
 
-    done = carry_out(asked, folder, crew(workers, device), ("faultpath", *sys.argv[1:]))
+    line = ("faultpath", *sys.argv[1:])
+    done = carry_out(asked, folder, crew(workers, device), line, first=other)
     tell(asked, done)
     return FAILED_TRIALS if done.reproduction.failed_trials else 0
 

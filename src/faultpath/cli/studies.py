@@ -42,15 +42,22 @@ class Done:
 
 
 def carry_out(
-    plan: Plan, folder: Path, workers: int, command: Sequence[str], quiet: bool = False
+    plan: Plan,
+    folder: Path,
+    workers: int,
+    command: Sequence[str],
+    quiet: bool = False,
+    first: str = "",
 ) -> Done:
     """Fly, measure, conclude and write the files of a plan.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run. `quiet` leaves the
-    standard output to the caller.
+    standard output to the caller; `first` is a sentence to print before all others.
     """
     console = Console(stderr=quiet)
     stopwatch = Stopwatch()
+    if first:
+        console.print(first, markup=False, soft_wrap=True)
     legs = plan.legs()
     if note := plan.substitution():
         console.print(note, markup=False, soft_wrap=True)

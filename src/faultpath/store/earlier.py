@@ -22,22 +22,22 @@ def keyed(place: Path, name: str, code: CodeState) -> tuple[Path, str]:
     if not others:
         return folder, ""
     latest = max(others, key=lambda path: path.stat().st_mtime)
-    changed = named(others[latest].code.changed(code))
+    manifest = others[latest]
+    changed = "" if manifest is None else f" ({named(manifest.code.changed(code))})"
     return folder, (
-        f"The code has changed since {latest} ({changed}): that run is kept, and this one starts "
-        f"anew in {folder}."
+        f"The code has changed since {latest}{changed}: that run is kept, and this one starts anew "
+        f"in {folder}."
     )
 
 
-def _others(place: Path, name: str) -> dict[Path, Manifest]:
+def _others(place: Path, name: str) -> dict[Path, Manifest | None]:
+    """Return the folders of the same name, each with its manifest where it can be read."""
     key = re.compile(re.escape(name) + rf"-[0-9a-f]{{{_KEY}}}")
-    found: dict[Path, Manifest] = {}
+    found: dict[Path, Manifest | None] = {}
     for path in place.iterdir():
         if key.fullmatch(path.name):
             try:
-                manifest = read_manifest(path / "manifest.json")
-            except UserError:  # of another format, or damaged: there is nothing to compare with
-                continue
-            if manifest is not None:
-                found[path] = manifest
+                found[path] = read_manifest(path / "manifest.json")
+            except UserError:  # of another format, or damaged
+                found[path] = None
     return found

@@ -25,6 +25,7 @@ from faultpath.store import (
     write_evidence,
     write_text,
 )
+from faultpath.store.earlier import keyed
 from faultpath.store.sealed import read_regular, unseal
 from faultpath.studies import reversal, stand_in
 from faultpath.studies.cells import HELD_OUT, PROFILES, Profile
@@ -42,6 +43,7 @@ from faultpath.trials import (
     load_measurer,
     load_system,
 )
+from faultpath.trials.state import system_code
 
 EVIDENCE = "evidence.parquet"
 CONCLUSIONS = "reproduction.json"
@@ -85,6 +87,11 @@ class Plan:
     def system(self) -> System:
         """The system in its first setting, for what does not depend on the setting."""
         return load_system(SystemSpec(name=SYSTEM, options=dict(self.options)))
+
+    def folder(self, name: str) -> tuple[Path, str]:
+        """Return the run folder of that name for the code as it is, and a sentence about others."""
+        spec = SystemSpec(name=SYSTEM, options=dict(self.options))
+        return keyed(Path("runs"), name, system_code(self.system, spec).state)
 
     def library(self) -> Library:
         """Return the library that stands for the held-out one."""
