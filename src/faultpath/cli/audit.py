@@ -62,6 +62,13 @@ def command(
             help="Worker processes, 0 for none beside this one; default one a core, or one a GPU."
         ),
     ] = None,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            help="Seconds that a block of scenes may take; default 20 times the slowest so far, at "
+            "least 300, and 3600 for the first."
+        ),
+    ] = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
@@ -101,7 +108,7 @@ def command(
 
     from faultpath.cli.run import run_audit  # pages and workers; no mistake so far waits for them
 
-    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other)
+    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other, time_limit)
     return FAILED_TRIALS if failed else 0
 
 

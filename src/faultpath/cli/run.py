@@ -10,13 +10,23 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from faultpath.audit import Audit
 from faultpath.cli.pages import MADE_FROM, RECORD, SYSTEM, save_pages
 from faultpath.errors import Stopped
-from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance, run_study
+from faultpath.execution import (
+    Failure,
+    Interrupted,
+    RunResult,
+    Stopwatch,
+    run_provenance,
+    run_study,
+)
 from faultpath.execution import Progress as RunProgress
 from faultpath.record import DecisionRecord
 from faultpath.report import decision
 from faultpath.store import write_text
 from faultpath.store.sealed import seal
 from faultpath.trials import System, system_shown
+
+_SHOWN = 5
+"""Different errors told one by one."""
 
 
 def run_audit(
@@ -26,6 +36,7 @@ def run_audit(
     workers: int,
     command: Sequence[str],
     first: str = "",
+    time_limit_s: float | None = None,
 ) -> int:
     """Run, decide and write the run folder; return the number of trials that failed.
 
@@ -42,8 +53,8 @@ def run_audit(
         console.print(f"Computing with {system.backend}.", markup=False, soft_wrap=True)
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(console, system, audit, folder, workers)
-    _tell_failures(console, result)
+    result = _run(console, system, audit, folder, workers, time_limit_s)
+    _tell_failures(console, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     write_text(folder / RECORD, _json(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
@@ -56,7 +67,14 @@ def run_audit(
     return len(result.failures)
 
 
-def _run(console: Console, system: System, audit: Audit, folder: Path, workers: int) -> RunResult:
+def _run(
+    console: Console,
+    system: System,
+    audit: Audit,
+    folder: Path,
+    workers: int,
+    time_limit_s: float | None,
+) -> RunResult:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -80,7 +98,15 @@ def _run(console: Console, system: System, audit: Audit, folder: Path, workers: 
             bar.console.print(text, markup=False, soft_wrap=True)
 
         try:
-            return run_study(audit.study, folder, workers, show, notice=notice, system=system)
+            return run_study(
+                audit.study,
+                folder,
+                workers,
+                show,
+                notice=notice,
+                system=system,
+                time_limit_s=time_limit_s,
+            )
         except Interrupted as stop:
             raise Stopped(
                 f"interrupted with {stop.done} of {stop.total} blocks done and kept in {folder}; "
@@ -99,12 +125,18 @@ def _json(record: DecisionRecord) -> str:
     return json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
 
 
-def _tell_failures(console: Console, result: RunResult) -> None:
+def _tell_failures(console: Console, result: RunResult, folder: Path) -> None:
     if not result.failures:
         return
     console.print(
         f"[bold red]{len(result.failures)} trials failed and void their pairs.[/bold red]"
     )
+    alike: dict[str, list[Failure]] = {}
     for failure in result.failures:
-        line = f"  {failure.scene}: {failure.error} ({failure.details})"
+        alike.setdefault(failure.error, []).append(failure)
+    for error, (first, *more) in list(alike.items())[:_SHOWN]:
+        rest = f" and {len(more)} more trials" if more else ""
+        line = f"  {first.scene}{rest}: {' '.join(error.split())} ({first.details})"
         console.print(line, markup=False, soft_wrap=True)
+    if len(alike) > _SHOWN:
+        console.print(f"  and {len(alike) - _SHOWN} other errors, in {folder / 'failures'}")

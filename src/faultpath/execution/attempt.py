@@ -49,9 +49,11 @@ class Wrong:
 
 @dataclass(frozen=True)
 class Died:
-    """The worker process died."""
+    """The worker process died, or was stopped."""
 
     how: str
+    late: bool = False
+    """It was stopped at the time limit: another attempt at the same would take as long."""
 
 
 Reply = Done | Raised | Wrong | Died
@@ -64,9 +66,16 @@ def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | 
         outcomes, taps = _run(system, arm, scenes)
     except UserError as error:
         return Wrong(located(error))
+    except SystemExit as error:
+        return Raised(_exited(error), traceback.format_exc())
     except Exception as error:
         return Raised(_said(error), traceback.format_exc())
     return Done(outcomes, taps, time.perf_counter() - started)
+
+
+def _exited(error: SystemExit) -> str:
+    """Say that a system ended its process; that is an error, whatever the status."""
+    return f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
 
 
 def _said(error: BaseException) -> str:

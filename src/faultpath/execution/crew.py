@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 from faultpath.code import named
 from faultpath.execution.attempt import Died, Done, Raised, Wrong
 from faultpath.execution.changes import check_same
+from faultpath.execution.limits import TimeLimit
 from faultpath.execution.schedule import Task
 from faultpath.execution.worker import Hello, Order, Ready
 
@@ -51,6 +53,7 @@ class Worker:
         self.number = number
         self._greetings = 0
         self.task: Task | None = None
+        self.since = 0.0
         ours, theirs = socket.socketpair()
         lifeline, self._lifeline = os.pipe()
         path = os.pathsep.join(entry for entry in sys.path if entry)
@@ -89,7 +92,7 @@ class Worker:
 
     def send(self, task: Task) -> None:
         """Hand a task out."""
-        self.task = task
+        self.task, self.since = task, time.monotonic()
         with suppress(OSError):
             self.channel.send(Order(task.unit.arm, task.scenes))
 
@@ -152,8 +155,10 @@ class Crew:
             if worker.ready and worker.task is None:
                 yield worker
 
-    def replies(self, timeout_s: float) -> Iterator[tuple[Task, Done | Raised | Wrong | Died]]:
-        """Wait for news and yield what came of tasks."""
+    def replies(
+        self, timeout_s: float, limit: TimeLimit
+    ) -> Iterator[tuple[Task, Done | Raised | Wrong | Died]]:
+        """Wait for news and yield what came of tasks; a worker past the limit is replaced."""
         channels = {worker.channel: worker for worker in self._workers.values()}
         for channel in connections.wait(list(channels), timeout_s):
             worker = next(w for c, w in channels.items() if c is channel)
@@ -168,6 +173,17 @@ class Crew:
                 yield task, message
             else:
                 self._false_start(message)
+        yield from self._late(limit)
+
+    def _late(self, limit: TimeLimit) -> Iterator[tuple[Task, Died]]:
+        now = time.monotonic()
+        for worker in tuple(self._workers.values()):
+            if (task := worker.task) is None:
+                continue
+            allowed = limit.seconds(len(task.scenes))
+            if now - worker.since > allowed:
+                self._replace(worker)
+                yield task, Died(f"it was stopped at the time limit of {allowed:g} s", late=True)
 
     def stop(self) -> None:
         """End every worker."""

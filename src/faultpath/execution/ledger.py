@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
+from faultpath.execution.limits import FEW, NothingRuns, TimeLimit
 from faultpath.execution.schedule import Task
 from faultpath.execution.units import Unit
 from faultpath.store.folder import RunFolder
@@ -35,12 +36,19 @@ ProgressCallback = Callable[[Progress], None]
 class Ledger:
     """The state of a run: stores each unit as soon as all its scenes have an outcome."""
 
-    def __init__(self, units: Iterable[Unit], folder: RunFolder, workers: int) -> None:
+    def __init__(
+        self,
+        units: Iterable[Unit],
+        folder: RunFolder,
+        workers: int,
+        limit: TimeLimit | None = None,
+    ) -> None:
         self.units = tuple(units)
         self.outcomes: dict[tuple[str, str], Outcome] = {}
         self.taps: dict[str, tuple[TapCount, ...]] = {}
         self.kept = 0
         self.computed = 0
+        self.limit = TimeLimit() if limit is None else limit
         self._folder = folder
         self._workers = workers
         self._partial: dict[str, dict[str, Outcome]] = {}
@@ -48,6 +56,7 @@ class Ledger:
         self._tracebacks: dict[str, list[str]] = {}
         self._running: dict[tuple[str, tuple[str, ...]], float] = {}
         self._seconds, self._timed_trials = 0.0, 0
+        self._failed, self._sound = 0, False
 
     @property
     def done(self) -> int:
@@ -59,9 +68,11 @@ class Ledger:
         failed = tuple(outcome.scene for outcome in shard.outcomes if outcome.failed)
         if not failed:
             self.kept += 1
+            self._sound = True
             self._enter(unit, shard)
             return ()
         sound = tuple(outcome for outcome in shard.outcomes if not outcome.failed)
+        self._sound = self._sound or bool(sound)
         self._partial[unit.key] = {outcome.scene: outcome for outcome in sound}
         self._partial_taps[unit.key] = shard.taps
         return (Task(unit, failed),)
@@ -75,20 +86,22 @@ class Ledger:
 
         A block whose program raised an error is run again scene by scene, so that only the scenes
         at fault are lost. A block over which a worker died is run again once, and then scene by
-        scene too. `Wrong` raises its error: nothing that follows would mean anything.
+        scene too; one that took too long scene by scene at once. `Wrong` raises its error: nothing
+        that follows would mean anything. `NothingRuns` after a few failures and no trial beside.
         """
         self._running.pop((task.unit.key, task.scenes), None)
         match reply:
             case Wrong():
                 raise reply.error
             case Done():
+                self.limit.learn(reply.seconds, len(task.scenes))
                 self._seconds += reply.seconds
                 self._timed_trials += len(task.scenes)
                 for outcome in reply.outcomes:
                     if outcome.failed:
                         self._note(task.unit, outcome.scene, outcome.error or "")
                 return self._record(task.unit, reply.outcomes, reply.taps)
-            case Died() if not task.retried:
+            case Died() if not task.retried and not reply.late:
                 return (replace(task, retried=True),)
             case Died() | Raised() if len(task.scenes) > 1:
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
@@ -123,7 +136,12 @@ class Ledger:
         self, unit: Unit, outcomes: Iterable[Outcome], taps: tuple[TapCount, ...]
     ) -> tuple[Task, ...]:
         partial = self._partial.setdefault(unit.key, {})
-        partial.update((outcome.scene, outcome) for outcome in outcomes)
+        for outcome in outcomes:
+            partial[outcome.scene] = outcome
+            self._sound = self._sound or not outcome.failed
+            self._failed += outcome.failed
+        if self._failed >= FEW and not self._sound:
+            raise self._nothing_runs(unit, partial)
         counted = self._partial_taps[unit.key] = added(
             (*self._partial_taps.get(unit.key, ()), *taps)
         )
@@ -136,6 +154,18 @@ class Ledger:
             self.computed += 1
             self._enter(unit, shard)
         return ()
+
+    def _nothing_runs(self, unit: Unit, partial: dict[str, Outcome]) -> NothingRuns:
+        """Save what is known of the failures and say it in a sentence."""
+        details = "\n".join(sorted(self._tracebacks.get(unit.key, ())))
+        self._folder.save_failure(unit.key, details)
+        last = next(o for o in reversed(partial.values()) if o.failed)
+        said = " ".join((last.error or "").split())
+        return NothingRuns(
+            f"all of the first {self._failed} trials failed, and none ran to its end; in scene "
+            f"{last.scene!r}: {said[:300]}. Mend the system and run the same again; the tracebacks "
+            f"are in {self._folder.failures / unit.key}.txt"
+        )
 
     def _enter(self, unit: Unit, shard: Shard) -> None:
         key = unit.arm.key()

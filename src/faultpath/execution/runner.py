@@ -13,6 +13,7 @@ from faultpath.execution.attempt import attempt, limit_threads
 from faultpath.execution.changes import kept_trials, watched
 from faultpath.execution.crew import Crew
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
+from faultpath.execution.limits import TimeLimit
 from faultpath.execution.schedule import Schedule, Task
 from faultpath.execution.units import Unit, plan
 from faultpath.execution.worker import Hello, Ready
@@ -80,6 +81,7 @@ def run_study(
     system: System | None = None,
     shared: bool = False,
     crew: Crew | None = None,
+    time_limit_s: float | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -88,13 +90,18 @@ def run_study(
     file or another process in the folder. `system` saves building it here when the caller has.
     `shared` lets studies with other arms use the folder one after the other: an arm that one of
     them ran is there for the next; the folder's tables are those of the last. `crew` keeps the
-    worker processes for the next study; without one they end with this.
+    worker processes for the next study; without one they end with this. `time_limit_s` is how long
+    a worker may take over one block (or one scene, when a block failed) before it is stopped, in
+    seconds; by default many times as long as the slowest block so far took.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
     """
     if workers < 0:
         raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    if workers == 0 and time_limit_s is not None:
+        raise UserError("a time limit needs worker processes: this one cannot stop itself")
+    limit = TimeLimit(time_limit_s)
     system = load_system(study.system) if system is None else system
     library = library_of(system, study.library)
     code = system_code(system, study.system)
@@ -109,7 +116,7 @@ def run_study(
         study=study,
     )
     run = RunFolder(Path(folder))
-    ledger = Ledger(units, run, workers)
+    ledger = Ledger(units, run, workers, limit)
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
@@ -183,7 +190,7 @@ def _run_with(crew: Crew, schedule: Schedule, ledger: Ledger, report: ProgressCa
             if task := schedule.take(worker.number):
                 ledger.start(task)
                 worker.send(task)
-        for task, reply in crew.replies(_TICK_S):
+        for task, reply in crew.replies(_TICK_S, ledger.limit):
             schedule.put(ledger.settle(task, reply))
         report(ledger.progress())
 
