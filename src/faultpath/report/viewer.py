@@ -24,6 +24,8 @@ from faultpath.report.pairing import Kind, Pair, Trial
 from faultpath.trials.floorplan import FloorPlan
 
 PARTING_M = 0.5
+_FARTHEST_M = 1e6
+"""Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
 
 
 class Audited(Protocol):
@@ -225,7 +227,8 @@ def _pair_shown(source: Audited, pair: Pair) -> PairShown:
 
 def _arm(trial: Trial | None, track: NDArray[np.float32], asked: Question) -> ArmShown:
     assert trial is not None  # a pair without both trials is void and never shown
-    centimetres: list[int] = np.rint(100.0 * np.nan_to_num(track)).astype(int).ravel().tolist()
+    held = np.clip(np.nan_to_num(track), -_FARTHEST_M, _FARTHEST_M)
+    centimetres: list[int] = np.rint(100.0 * held).astype(int).ravel().tolist()
     return {
         "status": trial.status,
         "ended": wording.ended(asked, trial.status),
