@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page
+from playwright.sync_api import Browser, Page, expect
 
 from faultpath.report import ReportInput, wording, write_report
 
@@ -93,7 +93,7 @@ def test_time_moves_the_vehicles(page: Page) -> None:
     assert page.locator("#viewer-plan").inner_html() != before
     assert page.locator("#viewer-plan .v-dot").count() == 2
     page.locator("#viewer-play").click()
-    page.wait_for_function("document.getElementById('viewer-clock').textContent !== '0.50 s'")
+    expect(page.locator("#viewer-clock")).not_to_have_text("0.50 s")
     page.locator("#viewer-play").click()
 
 
