@@ -1,5 +1,6 @@
 """`faultpath audit`: run the arms of one question, decide, report."""
 
+import hashlib
 import os
 import re
 import sys
@@ -11,6 +12,8 @@ import typer
 from faultpath.cli.options import numbers, path, settings
 
 FAILED_TRIALS = 1
+LONGEST_NAME = 180
+"""Of a run folder; file systems take 255 bytes."""
 
 
 def command(
@@ -86,7 +89,7 @@ def command(
         "planner": planner,
         "device": device,
     }
-    options = settings(set_ or []) | {k: v for k, v in named.items() if v is not None}
+    options = settings(set_ or [], {k: v for k, v in named.items() if v is not None})
     spec = SystemSpec(name=system, options=options)
     built = load_system(spec)
     audit = plan_audit(
@@ -131,4 +134,7 @@ def _name(
         parts.append(f"{scenes}-scenes")
     if seeds != "0":
         parts.append(f"seeds-{seeds}")
-    return re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
+    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
+    if len(name) > LONGEST_NAME:
+        name = f"{name[:LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+    return name

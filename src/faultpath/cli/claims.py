@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import path
+from faultpath.cli.options import path, refuse_unless
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
@@ -27,7 +27,9 @@ def command(
             parser=path, help="Fly all studies on this library in place of the held-out one."
         ),
     ] = None,
-    profile: Annotated[str, typer.Option(help="With --library: quick or paper.")] = "paper",
+    profile: Annotated[
+        str | None, typer.Option(help="With --library: quick or paper (default).")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="With --library: run folder.")
     ] = None,
@@ -43,7 +45,9 @@ def command(
             "--run reads a finished reproduction and --library makes a new one: give one of them."
         )
     if library is None:
+        refuse_unless("--library", profile=profile, out=out, workers=workers, device=device)
         return _show(run, as_json)
+    profile = profile or "paper"
     from faultpath.cli.reproduce import crew
     from faultpath.studies.run import plan, standing
 

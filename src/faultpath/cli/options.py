@@ -1,7 +1,7 @@
 """Reading what several verbs take."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import typer
@@ -11,7 +11,7 @@ from faultpath.text import one_line, steers
 
 _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
-_LARGEST = 2**63 - 1
+LARGEST = 2**63 - 1
 """What the tables hold."""
 
 
@@ -29,15 +29,18 @@ def check_arguments(arguments: Sequence[str]) -> None:
             )
 
 
-def settings(pairs: Sequence[str]) -> dict[str, str]:
-    """Read `key=value` pairs; `UserError` for one without `=` or given twice."""
-    found: dict[str, str] = {}
+def settings(pairs: Sequence[str], named: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Read `key=value` pairs, beside options that have a name of their own.
+
+    `UserError` for a pair without `=`, and for what is given twice.
+    """
+    found = dict(named or {})
     for pair in pairs:
         key, separator, value = pair.partition("=")
         if not separator or not key:
             raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
         if key in found:
-            raise UserError(f"--set gives '{key}' twice: give it once.")
+            raise UserError(f"the options name '{key}' twice: give it once.")
         found[key] = value
     return found
 
@@ -50,18 +53,25 @@ def numbers(text: str, what: str) -> tuple[int, ...]:
 def _seed(text: str, said: str) -> int:
     if not re.fullmatch(r"-?[0-9]+", text.strip()):
         raise UserError(f"{said} is not a list of whole numbers, for example 0,1,2.")
-    if len(text.strip()) > 19 or not 0 <= int(text) <= _LARGEST:
+    if len(text.strip()) > 19 or not 0 <= int(text) <= LARGEST:
         raise UserError(f"{said}: a seed lies between 0 and 2^63 - 1.")
     return int(text)
 
 
 def refuse_unless(needed: str, **given: object) -> None:
-    """Raise `UserError` for options that were given although they only go with another one."""
-    idle = [f"--{name.replace('_', '-')}" for name, value in given.items() if value is not None]
-    if idle:
-        raise UserError(
-            f"{' and '.join(idle)} would do nothing here: give it with {needed}, or leave it out."
-        )
+    """Raise `UserError` for options that were given and only go with another one."""
+    if idle := _named(given):
+        raise UserError(f"{idle} would do nothing here: give it with {needed}, or leave it out.")
+
+
+def refuse_with(other: str, **given: object) -> None:
+    """Raise `UserError` for options that were given and do nothing beside another one."""
+    if idle := _named(given):
+        raise UserError(f"{idle} would do nothing with {other}: leave it out.")
+
+
+def _named(given: Mapping[str, object]) -> str:
+    return " and ".join(f"--{name}" for name, value in given.items() if value is not None)
 
 
 def path(text: str | Path) -> Path:

@@ -5,7 +5,10 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import path
+from faultpath.cli.options import LARGEST, path
+
+MOST_SCENES = 10_000
+"""A library of more takes hours to make; statistics need a few hundred."""
 
 app = typer.Typer(help="Libraries of scenes for the quadrotor.", no_args_is_help=True)
 
@@ -13,8 +16,8 @@ app = typer.Typer(help="Libraries of scenes for the quadrotor.", no_args_is_help
 @app.command("generate")
 def generate(
     out: Annotated[Path, typer.Argument(parser=path, help="File to write, for example mine.json.")],
-    seed: Annotated[int, typer.Option(help="Seed of the library.")],
-    count: Annotated[int, typer.Option(help="Number of scenes.")] = 100,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the library.")],
+    count: Annotated[int, typer.Option(max=MOST_SCENES, help="Number of scenes.")] = 100,
 ) -> None:
     """Generate a library from a seed; audits take the file as `--library`."""
     from faultpath.errors import UserError

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import path
+from faultpath.cli.options import LARGEST, path, refuse_with
 
 FAILED_MODELS = 1
 
@@ -24,14 +24,18 @@ def command(
     ] = None,
     seeds: Annotated[
         list[int] | None,
-        typer.Option("--seed", help="Seed, repeatable; default those of the paper."),
+        typer.Option(
+            "--seed", min=0, max=LARGEST, help="Seed, repeatable; default those of the paper."
+        ),
     ] = None,
     data: Annotated[
-        Path, typer.Option(parser=path, help="Folder of the collected flights.")
-    ] = Path("data"),
-    out: Annotated[Path, typer.Option(parser=path, help="Folder for the checkpoints.")] = Path(
-        "runs/train"
-    ),
+        Path | None,
+        typer.Option(parser=path, help="Folder of the collected flights; default data."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(parser=path, help="Folder for the checkpoints; default runs/train."),
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
@@ -51,13 +55,24 @@ def command(
     from faultpath.cli.fitting import Wishes, list_models, train
 
     if list_:
+        refuse_with(
+            "--list",
+            names=names or None,
+            seed=seeds or None,
+            data=data,
+            out=out,
+            workers=workers,
+            tensorboard=tensorboard,
+            ship=ship or None,
+            force=force or None,
+        )
         list_models()
         return 0
     wishes = Wishes(
         names=tuple(names or ()),
         seeds=tuple(seeds or ()),
-        data=data,
-        out=out,
+        data=data or Path("data"),
+        out=out or Path("runs/train"),
         workers=(os.cpu_count() or 1) if workers is None else workers,
         tensorboard=tensorboard,
         ship=ship,

@@ -1,0 +1,74 @@
+"""An option that would do nothing is refused: whoever gives it believes that it did something."""
+
+import pytest
+from cli_runs import audit, faultpath
+
+IDLE = {
+    "profile": (["claims", "--profile", "nonsense"], "--profile would do nothing", "--library"),
+    "device": (["claims", "--device", "cuda"], "--device would do nothing", "--library"),
+    "out": (["claims", "--out", "x"], "--out would do nothing", "--library"),
+    "workers": (["claims", "--workers", "2", "--json"], "--workers would do nothing", "--library"),
+    "two": (
+        ["claims", "--device", "cuda", "--profile", "nonsense"],
+        "--profile and --device would do nothing",
+        "--library",
+    ),
+    "with a run": (["claims", "--run", ".", "--profile", "quick"], "--profile would", "--library"),
+    "listed models": (["train", "quadrotor", "--list", "--force"], "--force would", "--list"),
+    "listed seeds": (["train", "quadrotor", "--list", "--seed", "1"], "--seed would", "--list"),
+    "listed names": (["train", "quadrotor", "gru", "--list"], "--names would", "--list"),
+    "listed places": (["train", "quadrotor", "--list", "--out", "x"], "--out would", "--list"),
+}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.mark.parametrize(("arguments", "says", "needed"), IDLE.values(), ids=IDLE)
+def test_an_option_that_would_do_nothing(arguments, says, needed, tmp_path):
+    sentence = faultpath(*arguments).refused()
+    assert says in sentence
+    assert needed in sentence
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_option_given_by_its_name_and_by_set():
+    asked = audit("--wind", "L1", "--set", "wind=L2", system="quadrotor")
+    assert "'wind' twice" in asked.refused()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["scenes", "generate", "a.json", "--seed", "-1"], "--seed"),
+        (["scenes", "generate", "a.json", "--seed", str(2**63)], "9223372036854775807"),
+        (["scenes", "generate", "a.json", "--seed", "1", "--count", "9" * 5000], "more"),
+        (["scenes", "generate", "a.json", "--seed", "1", "--count", "10001"], "10000"),
+        (["train", "quadrotor", "--seed", str(2**64)], "9223372036854775807"),
+        (["reproduce", "x" * 5000], "too long"),
+        (["reproduce", "\udcff"], "UTF-8"),
+        (["interface", "a\x1b[31mb.py:create"], "\\x1b[31m"),
+        (["report", "a\u2028b"], "\\u2028"),
+    ],
+    ids=lambda value: str(value)[:20],
+)
+def test_numbers_and_names_beyond_all_bounds(arguments, says, tmp_path):
+    sentence = faultpath(*arguments).refused()
+    assert says in sentence
+    assert len(sentence) < 800
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("seeds", [str(2**63), "-1", "9" * 4000, "٣", "1_0"])
+def test_seeds_that_no_table_holds(seeds):
+    assert "--seeds" in audit(seeds=seeds).refused()
+
+
+def test_a_long_question_gets_a_folder_of_a_length_that_disks_take(tmp_path):
+    fault = "gain:scale=1." + "0" * 400
+    ended = audit(fault=fault, scenes=1)
+    assert ended.status == 0, ended.err
+    (folder,) = (tmp_path / "runs").iterdir()
+    assert (folder / "record.json").is_file()
