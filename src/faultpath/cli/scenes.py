@@ -1,5 +1,7 @@
 """`faultpath scenes`: libraries of the quadrotor."""
 
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -27,12 +29,32 @@ def generate(
     if not name:
         raise UserError(f"the file {str(out)!r} gives the library no name: call it mine.json, say.")
     try:
-        write_library(out, seed=seed, count=count, name=name)
+        with _making(count) as made:
+            write_library(out, seed=seed, count=count, name=name, progress=made)
     except OSError as error:
         raise UserError(
             f"cannot write {out} ({error.strerror}): choose a place that you may write to."
         ) from error
     typer.echo(f"Written: {out}")
+
+
+@contextmanager
+def _making(count: int) -> Generator[Callable[[int], None]]:
+    """Show on the standard error how many scenes there are, and how long the others will take."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeRemainingColumn as TimeLeft
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeLeft(),
+        TextColumn("left"),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task("Making scenes", total=count)
+        yield lambda made: bar.update(task, completed=made)
 
 
 @app.command("list")

@@ -43,7 +43,7 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 class VehicleParameters(BaseModel):
     """One vehicle as plain numbers, fit for a JSON file; a batch of them is a `Vehicle`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     mass_kg: Positive = NOMINAL_MASS_KG
     thrust_scale: Positive = 1.0

@@ -5,7 +5,7 @@ files can be made again, to the byte, from the seeds below. Only the making need
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -15,6 +15,7 @@ from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.scenes.scene import Scene, digest
+from faultpath.quadrotor.scenes.soundness import misnamed, unfit_name, unsound
 
 FORMAT = "faultpath-scenes/1"
 
@@ -54,13 +55,14 @@ class Library:
 
 
 def load_library(name: str | Path) -> Library:
-    """Return a frozen library by its name, or a library from a file.
+    """Return a frozen library by its name, or a library from a file that can be flown.
 
     Args:
         name: One of `FROZEN_SEEDS`, or the path of a file that `write_library` made.
 
     Raises:
-        UserError: If there is no such library or file, or the file is damaged.
+        UserError: If there is no such library or file, the file is damaged, or a scene cannot be
+            flown; names the scene and the field.
     """
     if isinstance(name, str) and name in FROZEN_SEEDS:
         return _read(frozen_file(name), f"frozen library {name!r}")
@@ -90,24 +92,59 @@ def _read(file: Traversable | Path, what: str) -> Library:
                 f"The {what} has the format {content['format']!r}, but this version reads "
                 f"{FORMAT!r}: {remedy}."
             )
-        scenes = tuple(Scene.model_validate(entry) for entry in content["scenes"])
-        library, promised = Library.of(content["name"], scenes), content["content_hash"]
-    except (ValueError, ValidationError, KeyError, TypeError) as error:
-        reason = str(error).splitlines()[0]
+        entries: list[object] = list(content["scenes"])
+        scenes = tuple(_scene(place, entry) for place, entry in enumerate(entries))
+        library, promised = Library.of(str(content["name"]), scenes), content["content_hash"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
         raise UserError(f"The {what} is no readable library ({reason}): {remedy}.") from error
     if library.content_hash != promised:
         raise UserError(
             f"The {what} was changed after it was written (content hash {library.content_hash}, "
             f"but the file says {promised}): {remedy}."
         )
+    if wrong := _refusal(library):
+        raise UserError(f"The {what} cannot be flown: {wrong}; correct it, or {remedy}.")
     return library
 
 
-def generate_library(name: str, seed: int, count: int) -> Library:
-    """Return `count` new scenes; the same name, seed and count give the same scenes."""
+def _scene(place: int, entry: object) -> Scene:
+    try:
+        return Scene.model_validate(entry)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        field = ".".join(map(str, first["loc"])) or "all"
+        raise ValueError(f"scene {place}, field {field}: {first['msg']}") from None
+
+
+def _refusal(library: Library) -> str:
+    """Return in words why a library cannot be flown; empty for one that can."""
+    if library.name in FROZEN_SEEDS:
+        frozen = json.loads(frozen_file(library.name).read_text(encoding="utf-8"))
+        if library.content_hash != frozen["content_hash"]:
+            return f"its name {library.name!r} belongs to the package"
+    if wrong := misnamed(library.name, library.scenes):
+        return wrong
+    for place, scene in enumerate(library.scenes):
+        if wrong := unsound(scene):
+            return f"scene {place}, field {wrong}"
+    return ""
+
+
+def generate_library(
+    name: str, seed: int, count: int, progress: Callable[[int], None] = lambda made: None
+) -> Library:
+    """Return `count` new scenes; the same name, seed and count give the same scenes.
+
+    `progress` is told after each how many there are.
+    """
     from faultpath.quadrotor.scenes.generate import generate_scene
 
-    return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
+    scenes: list[Scene] = []
+    for index in range(count):
+        scenes.append(generate_scene(name, index, seed))
+        progress(len(scenes))
+    return Library.of(name, tuple(scenes))
 
 
 def as_text(library: Library) -> str:
@@ -119,7 +156,13 @@ def as_text(library: Library) -> str:
     return f'{json.dumps(head)[:-1]}, "scenes": [\n{lines}\n]}}\n'
 
 
-def write_library(path: str | Path, seed: int, count: int, name: str) -> Library:
+def write_library(
+    path: str | Path,
+    seed: int,
+    count: int,
+    name: str,
+    progress: Callable[[int], None] = lambda made: None,
+) -> Library:
     """Generate a library and write it to a file.
 
     Args:
@@ -128,12 +171,16 @@ def write_library(path: str | Path, seed: int, count: int, name: str) -> Library
         count: How many scenes.
         name: Name of the library; it becomes part of every scene's id. The names of the frozen
             libraries are taken, so that no scene of a user's can pass for one of theirs.
+        progress: Told after each scene how many there are.
 
     Raises:
-        UserError: If the name is taken, the count is not positive, or the file exists.
+        UserError: If the name is taken or none, the count is not positive, or the file exists.
+        OSError: The file's folder cannot be made, or the file not be written.
     """
     if name in FROZEN_SEEDS:
         raise UserError(f"The library name {name!r} belongs to the package: choose another name.")
+    if wrong := unfit_name(name):
+        raise UserError(f"The library cannot be made: {wrong}.")
     if count < 1:
         raise UserError(f"A library of {count} scenes cannot be made: ask for at least 1.")
     path = Path(path)
@@ -141,7 +188,7 @@ def write_library(path: str | Path, seed: int, count: int, name: str) -> Library
         raise UserError(f"The file {str(path)!r} exists already: remove it or name another.")
     from faultpath.store import write_text  # it brings pyarrow, which reading does not need
 
-    library = generate_library(name, seed, count)
     path.parent.mkdir(parents=True, exist_ok=True)
+    library = generate_library(name, seed, count, progress)
     write_text(path, as_text(library))
     return library

@@ -1,0 +1,141 @@
+"""Whether scenes of a file can be flown at all; each refusal names the scene and the field."""
+
+import re
+from collections.abc import Iterator, Sequence
+from math import ceil, cos, hypot, prod, sin
+
+from faultpath.quadrotor.scenes.scene import Box, Cylinder, Point, Scene
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+
+MOST_OBSTACLES = 256
+"""Boxes and pillars of a scene: all scenes of a block are padded to as many."""
+FURTHEST_M = 1000.0
+"""Of any coordinate: single precision then still counts tenths of a millimetre."""
+MOST_CELLS = 2**22
+"""Cells of 0.1 m in an arena: 16 MB of baked distance a scene."""
+CELL_M = 0.1
+
+_NAME = re.compile(r"\w[\w .+-]{0,63}")
+_TOUCH_M = 1e-6
+
+
+def unfit_name(name: str) -> str:
+    """Return in words why a library cannot be called `name`; empty where it can."""
+    if _NAME.fullmatch(name):
+        return ""
+    return (
+        f"its name {name!r:.80} is none; up to 64 letters, digits, spaces and . _ + - make one, a "
+        "letter or digit first"
+    )
+
+
+def misnamed(name: str, scenes: Sequence[Scene]) -> str:
+    """Return in words what is wrong with the names of a library; empty when nothing is.
+
+    A scene's id keys its wind and the planner's noise, so no id may belong to another library.
+    """
+    if wrong := unfit_name(name):
+        return wrong
+    if not scenes:
+        return "it holds no scene"
+    for place, scene in enumerate(scenes):
+        if scene.library != name:
+            return f"scene {place}, field library: {scene.library!r:.80} is not {name!r}"
+        if scene.index != place:
+            return f"scene {place}, field index: {scene.index} is not its place in the file"
+        if scene.id != f"{name}/{place:03d}":
+            return f"scene {place}, field id: {scene.id!r:.80} is not '{name}/{place:03d}'"
+    return ""
+
+
+def unsound(scene: Scene) -> str:
+    """Return field and fault of a scene that cannot be flown; empty for a sound one."""
+    return next(_faults(scene), "")
+
+
+def clearance_m(scene: Scene, point: Point) -> float:
+    """Return the signed distance from a point to the nearest surface, m; see `geometry`."""
+    low, high = scene.bounds.low_m, scene.bounds.high_m
+    walls = min(min(p - a, b - p) for p, a, b in zip(point, low, high, strict=True))
+    solids = [_outside_box(scene, box, point) for box in scene.boxes]
+    solids += [_outside_pillar(scene, pillar, point) for pillar in scene.cylinders]
+    return min(walls, *solids) if solids else walls
+
+
+def _faults(scene: Scene) -> Iterator[str]:
+    bounds = scene.bounds
+    for axis, low, high in zip("xyz", bounds.low_m, bounds.high_m, strict=True):
+        if low >= high:
+            yield f"bounds: low_m {low:g} is not below high_m {high:g} along {axis}"
+    for place, at in _points(scene):
+        if any(abs(value) > FURTHEST_M for value in at):
+            yield f"{place}: lies beyond {FURTHEST_M:g} m"
+    sides = (high - low for low, high in zip(bounds.low_m, bounds.high_m, strict=True))
+    cells = prod(ceil(side / CELL_M) for side in sides)
+    if cells > MOST_CELLS:
+        yield f"bounds: {cells:,} cells of {CELL_M} m are too many; at most {MOST_CELLS:,}"
+    count = len(scene.boxes) + len(scene.cylinders)
+    if count > MOST_OBSTACLES:
+        yield f"boxes and cylinders: {count} obstacles are too many; at most {MOST_OBSTACLES}"
+    for index, box in enumerate(scene.boxes):
+        if min(box.half_extents_m) <= 0:
+            yield f"boxes.{index}.half_extents_m: {box.half_extents_m} are not all positive"
+    for index, pillar in enumerate(scene.cylinders):
+        if pillar.low_m >= pillar.high_m:
+            yield (
+                f"cylinders.{index}: low_m {pillar.low_m:g} is not below high_m {pillar.high_m:g}"
+            )
+    for place, at in (("start_m", scene.start_m), ("goal_m", scene.goal_m)):
+        yield from _not_free(scene, place, at)
+    if not scene.vehicle.is_rigid:
+        yield "vehicle.inertia_kgm2: no rigid body has a moment above the sum of the others"
+    if scene.vehicle.thrust_to_weight <= 1:
+        ratio = scene.vehicle.thrust_to_weight
+        yield f"vehicle: thrust over weight is {ratio:.2f}, so it cannot lift itself"
+
+
+def _not_free(scene: Scene, place: str, at: Point) -> Iterator[str]:
+    bounds = scene.bounds
+    if not all(a < p < b for p, a, b in zip(at, bounds.low_m, bounds.high_m, strict=True)):
+        yield f"{place}: {at} lies outside the bounds"
+    elif (free := clearance_m(scene, at)) < COLLISION_RADIUS_M:
+        where = "lies in an obstacle" if free < 0 else f"is {free:.2f} m from a surface"
+        yield f"{place}: {at} {where}; the vehicle needs {COLLISION_RADIUS_M:g} m around it"
+
+
+def _points(scene: Scene) -> Iterator[tuple[str, tuple[float, ...]]]:
+    yield "bounds.low_m", scene.bounds.low_m
+    yield "bounds.high_m", scene.bounds.high_m
+    yield "start_m", scene.start_m
+    yield "goal_m", scene.goal_m
+    yield "start_yaw_rad", (scene.start_yaw_rad,)
+    for index, box in enumerate(scene.boxes):
+        yield f"boxes.{index}", (*box.centre_m, *box.half_extents_m, box.yaw_rad)
+    for index, pillar in enumerate(scene.cylinders):
+        sizes = (pillar.radius_m, pillar.low_m, pillar.high_m)
+        yield f"cylinders.{index}", (*pillar.centre_m, *sizes)
+
+
+def _outside_box(scene: Scene, box: Box, point: Point) -> float:
+    (x, y, z), (half_x, half_y, half_z) = box.centre_m, box.half_extents_m
+    dx, dy = point[0] - x, point[1] - y
+    c, s = cos(box.yaw_rad), sin(box.yaw_rad)
+    plan = _corner(abs(c * dx + s * dy) - half_x, abs(c * dy - s * dx) - half_y)
+    return _corner(plan, _beyond(scene, z - half_z, z + half_z, point[2]))
+
+
+def _outside_pillar(scene: Scene, pillar: Cylinder, point: Point) -> float:
+    x, y = pillar.centre_m
+    plan = hypot(point[0] - x, point[1] - y) - pillar.radius_m
+    return _corner(plan, _beyond(scene, pillar.low_m, pillar.high_m, point[2]))
+
+
+def _beyond(scene: Scene, low: float, high: float, height: float) -> float:
+    """Return how far a height is above or below a solid, which goes on where it meets a face."""
+    below = low - height if low > scene.bounds.low_m[2] + _TOUCH_M else -FURTHEST_M
+    above = height - high if high < scene.bounds.high_m[2] - _TOUCH_M else -FURTHEST_M
+    return max(below, above)
+
+
+def _corner(first: float, second: float) -> float:
+    return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)

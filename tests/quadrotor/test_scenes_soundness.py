@@ -1,0 +1,175 @@
+"""A library that cannot be flown is refused, and the scene and the field are named."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import torch
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.scenes.geometry import Geometry
+from faultpath.quadrotor.scenes.library import (
+    FROZEN_SEEDS,
+    Library,
+    as_text,
+    frozen_file,
+    load_library,
+    write_library,
+)
+from faultpath.quadrotor.scenes.scene import Box, Cylinder, Scene
+from faultpath.quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
+
+BASE = load_library("selection").scenes
+
+
+def renamed(scene: Scene, index: int, name: str = "mine") -> Scene:
+    return scene.model_copy(update={"library": name, "index": index, "id": f"{name}/{index:03d}"})
+
+
+def mine(**changed: object) -> Library:
+    """Return two sound scenes, the second with some fields changed."""
+    scenes = (renamed(BASE[0], 0), renamed(BASE[1], 1).model_copy(update=changed))
+    return Library.of("mine", scenes)
+
+
+def refused(path: Path, library: Library) -> str:
+    file = path / "mine.json"
+    file.write_text(as_text(library), encoding="utf-8")
+    with pytest.raises(UserError) as told:
+        load_library(file)
+    said = str(told.value)
+    assert "mine.json" in said
+    assert "\n" not in said
+    return said
+
+
+def test_a_library_of_ones_own_is_read(tmp_path: Path) -> None:
+    (tmp_path / "mine.json").write_text(as_text(mine()), encoding="utf-8")
+    assert load_library(tmp_path / "mine.json") == mine()
+
+
+@pytest.mark.parametrize("name", FROZEN_SEEDS)
+def test_every_frozen_scene_is_sound(name: str) -> None:
+    assert {unsound(scene) for scene in load_library(name)} == {""}
+
+
+def test_clearance_is_that_of_the_geometry() -> None:
+    stream = torch.Generator().manual_seed(3)
+    for scene in BASE[:20]:
+        low, high = (
+            torch.tensor(end).double() for end in (scene.bounds.low_m, scene.bounds.high_m)
+        )
+        points = low + (high - low) * torch.rand(50, 3, generator=stream, dtype=torch.float64)
+        exact = Geometry.stack([scene]).distance(points.T[:, None])[0]
+        for point, distance in zip(points.tolist(), exact.tolist(), strict=True):
+            found = clearance_m(scene, (point[0], point[1], point[2]))
+            assert (found > 0) == (distance > 0)
+            assert distance < 0 or found == pytest.approx(distance, abs=1e-9)
+
+
+TALL = Box(centre_m=(0.0, 0.0, 0.0), half_extents_m=(0.1, -0.1, 1.0))
+FLAT = Cylinder(centre_m=(0.0, 0.0), radius_m=0.3, low_m=2.0, high_m=2.0)
+PEBBLE = Box(centre_m=(0.0, 0.0, -5.0), half_extents_m=(0.01, 0.01, 0.01))
+BOUNDS, VEHICLE = BASE[1].bounds, BASE[1].vehicle
+LOW, HIGH = BOUNDS.low_m, BOUNDS.high_m
+FAR = (5e4, 0.0, 1.0)
+UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
+    "bounds": (
+        {"bounds": BOUNDS.model_copy(update={"low_m": HIGH, "high_m": LOW})},
+        "field bounds",
+    ),
+    "flat": ({"bounds": BOUNDS.model_copy(update={"high_m": (*HIGH[:2], LOW[2])})}, "along z"),
+    "huge": (
+        {"bounds": BOUNDS.model_copy(update={"low_m": (-900.0,) * 3, "high_m": (900.0,) * 3})},
+        "cells of 0.1 m are too many",
+    ),
+    "far": ({"goal_m": FAR}, "field goal_m: lies beyond 1000 m"),
+    "start outside": ({"start_m": (HIGH[0] + 1, 0.0, 1.0)}, "start_m: .*outside the bounds"),
+    "goal below": ({"goal_m": (*BASE[1].goal_m[:2], LOW[2] - 1)}, "goal_m: .*outside the bounds"),
+    "start at a wall": ({"start_m": (LOW[0] + 0.1, 0.0, 1.0)}, "start_m: .*needs 0.2 m"),
+    "start in a pillar": (
+        {
+            "cylinders": (
+                Cylinder(centre_m=BASE[1].start_m[:2], radius_m=0.3, low_m=LOW[2], high_m=3),
+            )
+        },
+        "start_m: .*lies in an obstacle",
+    ),
+    "goal in a box": (
+        {"boxes": (Box(centre_m=BASE[1].goal_m, half_extents_m=(0.3, 0.3, 0.3), yaw_rad=1.0),)},
+        "goal_m: .*lies in an obstacle",
+    ),
+    "a negative side": ({"boxes": (*BASE[1].boxes, TALL)}, r"boxes\.\d+\.half_extents_m"),
+    "no height": ({"cylinders": (FLAT,)}, r"cylinders\.0: low_m 2 is not below high_m 2"),
+    "crowded": ({"boxes": (PEBBLE,) * (MOST_OBSTACLES + 1)}, "257 obstacles are too many"),
+    "heavy": ({"vehicle": VEHICLE.model_copy(update={"mass_kg": 1e4})}, "cannot lift itself"),
+    "no body": (
+        {"vehicle": VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})},
+        "vehicle.inertia_kgm2",
+    ),
+    "another's id": ({"id": "held-out/001"}, "field id: 'held-out/001' is not 'mine/001'"),
+    "the same id": ({"id": "mine/000"}, "field id"),
+    "another's library": ({"library": "other"}, "field library"),
+    "another place": ({"index": 7}, "field index"),
+}
+
+
+@pytest.mark.parametrize(("changed", "says"), UNSOUND.values(), ids=UNSOUND)
+def test_a_scene_that_cannot_be_flown_is_refused(
+    tmp_path: Path, changed: dict[str, Any], says: str
+) -> None:
+    import re
+
+    said = refused(tmp_path, mine(**changed))
+    assert "scene 1" in said
+    assert re.search(says, said), said
+
+
+@pytest.mark.parametrize("number", ["NaN", "Infinity", "-Infinity", "1e999", "9" * 5000])
+@pytest.mark.parametrize("field", ["start_m", "mass_kg", "high_m"])
+def test_a_number_that_is_none_is_refused(tmp_path: Path, number: str, field: str) -> None:
+    content = json.loads(as_text(mine()))
+    scene = content["scenes"][1]
+    scene["start_m"][0] = scene["vehicle"]["mass_kg"] = scene["bounds"]["high_m"][0] = 1.5
+    place = {"start_m": scene["start_m"], "high_m": scene["bounds"]["high_m"]}
+    if field == "mass_kg":
+        scene["vehicle"]["mass_kg"] = "HERE"
+    else:
+        place[field][0] = "HERE"
+    file = tmp_path / "mine.json"
+    file.write_text(json.dumps(content).replace('"HERE"', number), encoding="utf-8")
+    with pytest.raises(UserError, match="no readable library") as told:
+        load_library(file)
+    if len(number) < 100:
+        assert "scene 1" in str(told.value)
+        assert field in str(told.value)
+
+
+@pytest.mark.parametrize("name", ["", " ", "../up", "a/b", "-x", "a" * 65, "a\nb", "a\x1b[2J"])
+def test_a_name_that_is_none_is_refused(tmp_path: Path, name: str) -> None:
+    scenes = tuple(renamed(scene, index, name) for index, scene in enumerate(BASE[:2]))
+    assert "its name" in refused(tmp_path, Library.of(name, scenes))
+    with pytest.raises(UserError, match="its name"):
+        write_library(tmp_path / "other.json", seed=1, count=1, name=name)
+
+
+def test_reserved_names_are_refused_unless_they_are_the_packages_own(tmp_path: Path) -> None:
+    scenes = tuple(renamed(scene, index, "held-out") for index, scene in enumerate(BASE[:2]))
+    assert "belongs to the package" in refused(tmp_path, Library.of("held-out", scenes))
+    copy = tmp_path / "copy.json"
+    copy.write_text(frozen_file("selection").read_text("utf-8"), encoding="utf-8")
+    assert load_library(copy) == load_library("selection")
+
+
+def test_a_library_without_scenes_and_one_too_deep_are_refused(tmp_path: Path) -> None:
+    assert "holds no scene" in refused(tmp_path, Library.of("mine", ()))
+    (tmp_path / "mine.json").write_text("[" * 100_000, encoding="utf-8")
+    with pytest.raises(UserError, match="no readable library"):
+        load_library(tmp_path / "mine.json")
+
+
+def test_progress_is_told_scene_by_scene(tmp_path: Path) -> None:
+    told: list[int] = []
+    write_library(tmp_path / "mine.json", seed=4, count=2, name="mine", progress=told.append)
+    assert told == [1, 2]
