@@ -92,3 +92,15 @@ def test_data_that_are_not_there_are_named(mine, tmp_path):
     mine.data.unlink()
     with pytest.raises(UserError, match=r"push\.txt.*data_files"):
         run_study(mine.study(), tmp_path / "run", workers=0)
+
+
+def test_a_file_that_is_read_and_not_named_is_told(mine, tmp_path):
+    told: list[str] = []
+    run_study(mine.study(), tmp_path / "named", workers=1, notice=told.append)
+    assert told == []
+    mine.file.write_text(mine.file.read_text().replace('data_files = ("push.txt",)', ""))
+    run_study(mine.study(), tmp_path / "unnamed", workers=1, notice=told.append)
+    (sentence,) = told
+    assert sentence.startswith(
+        f"The system reads {mine.data.resolve()}, not named in its data_files"
+    )

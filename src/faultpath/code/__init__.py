@@ -1,7 +1,8 @@
 """Which source decides a result: what a module imports, where it lies, and what it is made of."""
 
 from faultpath.code.graph import Root
+from faultpath.code.reads import Reads
 from faultpath.code.state import Code, CodeState, named, read_code
 from faultpath.code.watch import Watch
 
-__all__ = ["Code", "CodeState", "Root", "Watch", "named", "read_code"]
+__all__ = ["Code", "CodeState", "Reads", "Root", "Watch", "named", "read_code"]

@@ -41,3 +41,11 @@ def kept_trials(now: Progress, again: int, written: tuple[datetime, datetime]) -
     when = f"from {first}" if first == last else f"from {first} to {last}"
     tried = f"; {again} that failed are tried again" if again else ""
     return f"Kept {now.trials_done} of {now.trials_total} trials, {when} UTC{tried}."
+
+
+def unnamed(paths: Sequence[str]) -> str:
+    """Say that a system reads files whose change nobody would notice."""
+    return (
+        f"The system reads {named(paths)}, not named in its data_files: a change there would not "
+        "be noticed, and trials of before would be taken for trials of now."
+    )

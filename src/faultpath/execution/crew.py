@@ -16,7 +16,7 @@ from faultpath.execution.attempt import Died, Done, Raised, Wrong
 from faultpath.execution.changes import check_same
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.schedule import Task
-from faultpath.execution.worker import Hello, Order, Ready
+from faultpath.execution.worker import Hello, Order, Ready, Undeclared
 
 _ONE_THREAD = (
     "OMP_NUM_THREADS",
@@ -96,7 +96,7 @@ class Worker:
         with suppress(OSError):
             self.channel.send(Order(task.unit.arm, task.scenes))
 
-    def receive(self) -> Ready | Done | Raised | Wrong | Died:
+    def receive(self) -> Ready | Undeclared | Done | Raised | Wrong | Died:
         """Return the next message, or how the process ended."""
         try:
             return self.channel.recv()
@@ -131,6 +131,8 @@ class Crew:
         self._expected: Ready | None = None
         self._false_starts = 0
         self._workers: dict[int, Worker] = {}
+        self.undeclared: set[str] = set()
+        """Files that the system has read and does not name among its data files."""
 
     def begin(self, hello: Hello, expected: Ready, count: int) -> None:
         """Turn to a system, with at least `count` workers; those that are there already build it.
@@ -138,6 +140,7 @@ class Crew:
         Every task of the system before has to be settled.
         """
         self._hello, self._expected, self._false_starts = hello, expected, 0
+        self.undeclared.clear()
         for number in range(len(self._workers), count):
             self._workers[number] = Worker(number)
         for worker in self._workers.values():
@@ -165,6 +168,9 @@ class Crew:
             message = worker.receive()
             if isinstance(message, Ready):
                 self._welcome(worker, message)
+                continue
+            if isinstance(message, Undeclared):
+                self.undeclared.update(message.paths)
                 continue
             task, worker.task = worker.task, None
             if isinstance(message, Died):

@@ -10,7 +10,7 @@ import faultpath
 from faultpath.code import Code, Watch
 from faultpath.errors import UserError
 from faultpath.execution.attempt import attempt, limit_threads
-from faultpath.execution.changes import kept_trials, watched
+from faultpath.execution.changes import kept_trials, unnamed, watched
 from faultpath.execution.crew import Crew
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
 from faultpath.execution.limits import TimeLimit
@@ -130,6 +130,8 @@ def run_study(
                 with Crew() if crew is None else nullcontext(crew) as hands:
                     hands.begin(hello, expected, min(workers, len(schedule)))
                     _run_with(hands, schedule, ledger, report)
+                    if hands.undeclared:
+                        notice(unnamed(sorted(hands.undeclared)))
             table = assemble(study, library, ledger.outcomes)
             deliveries = Deliveries.of(study, ledger.taps)
             digest = run.save_tables(table, deliveries)

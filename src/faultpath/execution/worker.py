@@ -12,7 +12,7 @@ from pickle import PicklingError
 from typing import Any
 
 from faultpath.blame import described, explained
-from faultpath.code import CodeState, Watch
+from faultpath.code import Code, CodeState, Reads, Watch
 from faultpath.execution.attempt import Raised, Wrong, attempt, limit_threads
 from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
@@ -46,8 +46,16 @@ class Ready:
 
 
 @dataclass(frozen=True)
+class Undeclared:
+    """Files that the system has read and does not name among its data files."""
+
+    paths: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class _Built:
     system: System
+    code: Code
     unread: Watch
 
 
@@ -67,13 +75,17 @@ def main(channel: int, lifeline: int) -> None:
 
 def _serve(parent: "Connection[Any, Any]") -> None:
     built: _Built | None = None
+    reads = Reads()
+    reads.start()
     while True:
         message: Hello | Order = parent.recv()
         if isinstance(message, Hello):
-            built, reply = _build(message)
+            built, reply = _build(message, reads)
         else:
             assert built is not None  # whoever built none has said so and is sent nothing
             reply = watched(built.unread, attempt(built.system, message.arm, message.scenes))
+            if undeclared := reads.undeclared(built.code):
+                parent.send(Undeclared(undeclared))
         if isinstance(reply, Wrong):  # its traceback cannot be sent otherwise
             reply.error.add_note("".join(traceback.format_exception(reply.error)))
         try:
@@ -82,15 +94,18 @@ def _serve(parent: "Connection[Any, Any]") -> None:
             parent.send(Raised(f"{type(error).__name__}: {error}", traceback.format_exc()))
 
 
-def _build(hello: Hello) -> tuple[_Built | None, Ready | Wrong | Raised]:
+def _build(hello: Hello, reads: Reads) -> tuple[_Built | None, Ready | Wrong | Raised]:
     try:
         before = source_state(hello.system)
+        reads.forget()
         system = load_system(hello.system)
         limit_threads()
+        built = reads.opened()
         library = system.library(hello.library)
         code = system_code(system, hello.system)
+        reads.forget(built)  # scenes have a hash of their own
         check_same(before, code.state)
-        return _Built(system, code.unread()), Ready(code.state, library.content_hash)
+        return _Built(system, code, code.unread()), Ready(code.state, library.content_hash)
     except (Exception, SystemExit) as error:
         if mistake := explained(error):
             return None, Wrong(mistake)
