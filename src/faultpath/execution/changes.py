@@ -31,7 +31,7 @@ def under_way(names: Sequence[str]) -> str:
     """Say that files changed under a run, and what becomes of it."""
     return (
         f"{named(names)} changed while the run was under way: trials of the code before are kept "
-        "as such and not mixed with others; run the command again to fly the code as it is now"
+        "as such and not mixed with others; run the command again to run the code as it is now"
     )
 
 

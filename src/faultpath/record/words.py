@@ -66,7 +66,8 @@ def opening(about: About, seeds: tuple[int, int]) -> tuple[str, ...]:
     `seeds` are how many were run and how many of them differ.
     """
     asked, (run, differ) = about.question, seeds
-    said = [f"What is decided holds for {estimand(asked)}."]
+    holds = "The intervals hold" if about.few else "What is decided holds"
+    said = [f"{holds} for {estimand(asked)}."]
     if asked.generalise == "models" and run < FEW_TRAININGS:
         said.append(
             f"Caution: {run} trainings say little about new ones. With fewer than "
