@@ -125,6 +125,7 @@ def test_a_reversal_at_the_floor_makes_no_headline():
     assert change.turn == "reversal"
     assert change.words.endswith("this carries no headline.")
     assert made.verdict.headline == "old is ahead of new under the shared fault."
+    assert made.break_even[0].words == ""
     (floor,) = (effect for effect in made.effects if effect.path == "observer")
     assert "both arms nearly always fail there (0.0 and 9.0 % success)" in floor.words
     assert any(line.startswith("Easier scenes") for line in made.verdict.would_change)

@@ -64,7 +64,7 @@ def test_key_numbers_are_visible(page: Page, three_seeds: ReportInput) -> None:
         assert wording.interval(effect.success) in text
     assert page.get_by_text("1 of 960 pairs is void.").is_visible()
     for item in record.break_even:
-        words = (item.words or "Nothing is decided").split(",")[0]
+        words = (item.words or "No frequency is decided").split(",")[0]
         assert page.locator("svg text", has_text=words).first.is_visible()
 
 

@@ -143,7 +143,7 @@ def test_the_curve_is_coloured_where_an_arm_is_decided_to_be_ahead() -> None:
     silent = _panel("", ((0.3, 0.7),), *regions)
     assert "curve baseline" not in silent
     assert "curve repair" not in silent
-    assert "Nothing is decided." in silent
+    assert "No frequency is decided." in silent
     both = _panel("b is ahead", ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
     assert both.count('class="star-range"') == 2
 

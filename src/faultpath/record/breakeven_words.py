@@ -15,12 +15,13 @@ def clause(question: Question, regions: Sequence[Region], correct: Effect, fault
     """Return who is decided to be ahead at which fault frequencies; empty for nobody anywhere.
 
     A region counts where it reaches an end (no fault, or the fault in every episode) at which the
-    family detects an effect on the same side: inside it, no sentence contradicts that on the path.
+    family detects an effect on the same side, away from floor and ceiling: so no sentence
+    contradicts that on the path.
     """
     said: list[str] = []
     for region in regions:
-        low = region.low <= 0.0 and region.sign == correct.sign
-        high = region.high >= 1.0 and region.sign == faulty.sign
+        low = region.low <= 0.0 and correct.leads and region.sign == correct.sign
+        high = region.high >= 1.0 and faulty.leads and region.sign == faulty.sign
         winner = question.repair if region.sign > 0 else question.baseline
         if low and high:
             return f"{winner} is ahead at every frequency"
@@ -61,5 +62,5 @@ def sentences(breaks: Sequence[PathBreakEven], effects: Sequence[Effect]) -> tup
     text = f"By fault frequency: {'; '.join(clauses)}."
     silent = [where(each.path) for each in breaks if not each.words]
     if silent:
-        text += f" Nothing is decided {' or '.join(silent)}."
+        text += f" No frequency is decided {' or '.join(silent)}."
     return (text,)

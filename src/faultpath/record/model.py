@@ -142,7 +142,7 @@ class PathBreakEven(_Frozen):
     """`(p, expected difference, low, high)` in fractions and percentage points. The band touches 0
     exactly where p is in the set of `result`."""
     words: str
-    """What is decided, without the path; empty where the family detects no effect at either end."""
+    """What may be said of it, without the path; empty where no end has an effect that leads."""
 
 
 class Change(_Frozen):

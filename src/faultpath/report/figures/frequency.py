@@ -24,7 +24,7 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     curve has the colour of an arm where that arm is decided to be ahead.
     """
     shown = wording.break_even(path.result)
-    words = f"{path.words or 'Nothing is decided'}."
+    words = f"{path.words or 'No frequency is decided'}."
     svg = Svg(290, 262, f"{title}: expected success difference against fault frequency", words)
     svg.text(0, 14, shortened(title, 285, 13), "head", tip=title)
     for i, line in enumerate(wrapped(words, 285, 11, 2)):
