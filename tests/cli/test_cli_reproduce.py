@@ -24,6 +24,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
 def test_every_file_is_there(done: Done) -> None:
     assert done.folder.name == "table-4"
     assert {path.name for path in done.folder.iterdir()} == {
+        "deliveries.json",
         "evidence.parquet",
         "ledger.md",
         "outcomes.parquet",
