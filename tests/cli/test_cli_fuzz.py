@@ -1,0 +1,137 @@
+"""Wrong inputs in great numbers: one sentence and status 2, never a traceback, never a hang, and
+nothing written outside. `make fuzz` draws others; SEED repeats the seed that a failure names."""
+
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from cli_runs import audit
+from fuzz_inputs import JUNK, commands, documents, texts, wrong
+
+from faultpath.errors import UserError
+from faultpath.interface import interface_yaml, read_interface
+
+pytestmark = pytest.mark.fuzz
+CHUNKS, EACH = 4, 70
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A working directory with things in it that are not what their names say."""
+    place = tmp_path / "here"
+    (place / "folder").mkdir(parents=True)
+    (place / "folder.py").mkdir()
+    (place / "text.txt").write_text("text\n")
+    (place / "mine.json").write_text("{}")
+    (place / "broken.py").write_text("def create():\n    return 1 / 0\n")
+    for name in ("binary", "binary.py"):
+        (place / name).write_bytes(random.Random(0).randbytes(400))
+    (place / "loop").symlink_to("loop")
+    monkeypatch.chdir(place)
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
+    return place
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("fuzz") / "run"
+    assert audit(out=folder, scenes=2).status == 0
+    return folder
+
+
+@pytest.mark.parametrize("chunk", range(CHUNKS))
+def test_every_command(chunk: int, here: Path, fuzz_seed: int) -> None:
+    lines = list(commands(fuzz_seed * CHUNKS + chunk, EACH))
+    assert len(lines) * CHUNKS >= 250
+    found = [fault for line in lines if (fault := wrong(line, here))]
+    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
+
+
+def test_junk_in_the_place_of_every_word(here: Path, fuzz_seed: int) -> None:
+    lines = [[junk] for junk in JUNK] + [["report", junk] for junk in JUNK]
+    found = [fault for line in lines if (fault := wrong(line, here))]
+    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
+
+
+def test_interface_texts(fuzz_seed: int) -> None:
+    rng = random.Random(fuzz_seed)
+    from cli_runs import ROOT
+
+    sys.path.append(str(ROOT / "examples"))
+    try:
+        from toy import INTERFACE
+    finally:
+        sys.path.remove(str(ROOT / "examples"))
+    read = 0
+    for text in texts(rng, interface_yaml(INTERFACE), 300):
+        try:
+            interface = read_interface(text + "\n")
+        except UserError as refused:
+            assert str(refused).count("\n") == 0, (fuzz_seed, text)
+        except Exception as error:
+            raise AssertionError(f"seed {fuzz_seed}: {error!r} for {text!r}") from error
+        else:
+            read += 1
+            assert read_interface(interface_yaml(interface)) == interface, (fuzz_seed, text)
+    assert read < 290
+
+
+def test_run_folders(run: Path, here: Path, fuzz_seed: int) -> None:
+    rng = random.Random(fuzz_seed)
+    names = sorted(str(path.relative_to(run)) for path in run.rglob("*") if path.is_file())
+    found: list[str] = []
+    for number in range(60):
+        folder = here / f"run{number}"
+        shutil.copytree(run, folder)
+        target = folder / rng.choice([name for name in names if not name.startswith(".")])
+        data = target.read_bytes()
+        if target.suffix == ".json" and rng.random() < 0.7:
+            (text,) = documents(rng, json.loads(data), 1)
+            target.write_text(text, errors="surrogatepass")
+        else:
+            target.unlink()
+            kind = rng.randrange(4)
+            if kind == 0:
+                target.mkdir()
+            elif kind == 1:
+                os.mkfifo(target)
+            elif kind == 2:
+                at = rng.randrange(max(1, len(data)))
+                target.write_bytes(data[:at] + rng.randbytes(3) + data[at + 3 :])
+        if fault := wrong(["report", folder.name], here):
+            found.append(f"{target.relative_to(folder)}: {fault}")
+        shutil.rmtree(folder)
+    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
+
+
+def test_libraries_of_scenes(here: Path, fuzz_seed: int) -> None:
+    from faultpath.quadrotor.scenes.library import frozen_file
+
+    rng = random.Random(fuzz_seed)
+    library = json.loads(frozen_file("selection").read_text())
+    library["scenes"] = library["scenes"][:2]
+    found: list[str] = []
+    for number, text in enumerate(documents(rng, library, 60)):
+        path = here / f"library{number}.json"
+        path.write_text(text, errors="surrogatepass")
+        if fault := wrong(["scenes", "list", path.name], here):
+            found.append(f"{fault} for {text:.500}")
+    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [["audit", "\udcff"], ["report", "x" * 5000], ["interface", "broken.py:create"]],
+    ids=str,
+)
+def test_in_a_process_of_its_own(line: list[str], here: Path) -> None:
+    code = "from faultpath.cli.main import main; main()"
+    done = subprocess.run([sys.executable, "-c", code, *line], capture_output=True, timeout=60)
+    assert done.returncode == 2
+    assert len(done.stderr.splitlines()) == 1
+    assert done.stderr.startswith(b"faultpath: ")
