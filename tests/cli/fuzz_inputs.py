@@ -34,11 +34,34 @@ JUNK = (
     *("/dev/null", "/dev/zero"),
 )
 
-SYSTEMS = (TOY, "broken.py:create", "text.txt:create", "folder:create", "folder.py:create", "toy",
-           "quadcopter", "json:loads", "os:getcwd", "nowhere.py:create", f"{TOY}x", "binary.py:create")
-FAULTS = ("gain:scale=0.6", "gain:scale=", "gain:", "gain:delay=1e99", "gain:delay=99999999999",
-          "gain:noise=-1", "gain:scale=0.6@", "gain:scale=0.6@observer,onset=1e30", "gain:offset=1/2",
-          "velocity:freeze,for=0", "gain:erase", "gain:scale=0.6,for=1,recover=-1")
+SYSTEMS = (
+    TOY,
+    "broken.py:create",
+    "text.txt:create",
+    "folder:create",
+    "folder.py:create",
+    "toy",
+    "quadcopter",
+    "json:loads",
+    "os:getcwd",
+    "nowhere.py:create",
+    f"{TOY}x",
+    "binary.py:create",
+)
+FAULTS = (
+    "gain:scale=0.6",
+    "gain:scale=",
+    "gain:",
+    "gain:delay=1e99",
+    "gain:delay=99999999999",
+    "gain:noise=-1",
+    "gain:scale=0.6@",
+    "gain:scale=0.6@observer,onset=1e30",
+    "gain:offset=1/2",
+    "velocity:freeze,for=0",
+    "gain:erase",
+    "gain:scale=0.6,for=1,recover=-1",
+)
 
 VERBS: dict[str, tuple[list[str], dict[str, tuple[str, ...]]]] = {
     "audit": (
@@ -98,8 +121,30 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
 
 def texts(rng: random.Random, text: str, count: int) -> Iterator[str]:
     """Yield text with some of its characters, words and lines out of place."""
-    tokens = ("&a", "*a", "!!bool", "? ", "- ", "{", "[", "'", '"', "|", "\t", "\0", "\x85", "\ud800",
-              "9" * 5000, "[" * 500, "!!python/name:os.system ", "<<: ", "2001-99-99", "\x1b", "#", ":")
+    tokens = (
+        "&a",
+        "*a",
+        "!!bool",
+        "? ",
+        "- ",
+        "{",
+        "[",
+        "'",
+        '"',
+        "|",
+        "\t",
+        "\0",
+        "\x85",
+        "\ud800",
+        "9" * 5000,
+        "[" * 500,
+        "!!python/name:os.system ",
+        "<<: ",
+        "2001-99-99",
+        "\x1b",
+        "#",
+        ":",
+    )
     for _ in range(count):
         now = text
         for _ in range(rng.randint(1, 4)):
@@ -111,8 +156,24 @@ def texts(rng: random.Random, text: str, count: int) -> Iterator[str]:
 
 def documents(rng: random.Random, document: Any, count: int) -> Iterator[str]:
     """Yield JSON with some of its values changed, or cut short, or nested without end."""
-    values: tuple[Any, ...] = (None, "", "\ud800", "\x1b[2J", -1, 2**64, 10**400, 1e308, float("nan"),
-                               [], {}, [[]], True, "x" * 5000, "../../outside", "__class__")
+    values: tuple[Any, ...] = (
+        None,
+        "",
+        "\ud800",
+        "\x1b[2J",
+        -1,
+        2**64,
+        10**400,
+        1e308,
+        float("nan"),
+        [],
+        {},
+        [[]],
+        True,
+        "x" * 5000,
+        "../../outside",
+        "__class__",
+    )
     for _ in range(count):
         changed = copy.deepcopy(document)
         for _ in range(rng.randint(1, 3)):

@@ -72,13 +72,14 @@ def test_interface_texts(fuzz_seed: int) -> None:
         try:
             interface = read_interface(text + "\n")
         except UserError as refused:
-            assert str(refused).count("\n") == 0, (fuzz_seed, text)
+            said = str(refused)
         except Exception as error:
             raise AssertionError(f"seed {fuzz_seed}: {error!r} for {text!r}") from error
         else:
-            read += 1
+            read, said = read + 1, ""
             assert read_interface(interface_yaml(interface)) == interface, (fuzz_seed, text)
-    assert read < 290
+        assert "\n" not in said, (fuzz_seed, text)
+    assert 0 < read < 290
 
 
 def test_run_folders(run: Path, here: Path, fuzz_seed: int) -> None:

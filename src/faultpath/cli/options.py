@@ -84,4 +84,8 @@ def path(text: str | Path) -> Path:
         raise typer.BadParameter("an empty path names nothing, give one that is not empty")
     if "\0" in str(text):
         raise typer.BadParameter("a path cannot have a null character in it")
+    try:
+        Path(text).resolve()
+    except RuntimeError:  # what `resolve` raises for a link that leads back to itself
+        raise typer.BadParameter(f"the link {str(text)!r} leads back to itself") from None
     return Path(text)

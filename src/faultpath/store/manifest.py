@@ -39,7 +39,7 @@ def read_manifest(path: Path) -> Manifest | None:
         found: Any = content["format"]
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, TypeError, KeyError) as error:
+    except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
         raise _damaged(path) from error
     if found != FORMAT:
         raise UserError(

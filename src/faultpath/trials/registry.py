@@ -145,7 +145,7 @@ def _compile(place: str, name: str) -> None:
 
 
 def _file(place: str) -> Path:
-    path = Path(place).resolve()
+    path = Path(os.path.realpath(place))  # `resolve` stumbles over links to themselves
     if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
         raise UserError(f"there is no file {place!r} to load a system from: check the path")
     return path
