@@ -47,6 +47,16 @@ def test_a_mistake_in_a_library_leaves_no_folder(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_making_scenes_shows_how_many_there_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    made = faultpath("scenes", "generate", "mine.json", "--seed", "7", "--count", "2")
+    assert (made.status, made.out) == (0, "Written: mine.json\n"), made.err
+    assert "2/2" in made.err
+    assert "left" in made.err
+
+
 def test_the_shipped_claims_are_json() -> None:
     done = faultpath("claims", "--json")
     assert done.status == 0, done.err

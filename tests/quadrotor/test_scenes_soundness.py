@@ -1,6 +1,7 @@
 """A library that cannot be flown is refused, and the scene and the field are named."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -119,8 +120,6 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
 def test_a_scene_that_cannot_be_flown_is_refused(
     tmp_path: Path, changed: dict[str, Any], says: str
 ) -> None:
-    import re
-
     said = refused(tmp_path, mine(**changed))
     assert "scene 1" in said
     assert re.search(says, said), said
