@@ -7,7 +7,7 @@ import pytest
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable
 from faultpath.record import Reproduction, Table
-from faultpath.studies import flights
+from faultpath.studies import flights, stand_in
 from faultpath.studies.cells import HELD_OUT, PAPER, QUICK, SELECTION, Cell, Profile, calibration
 from faultpath.studies.flights import Flown, Pace
 from faultpath.studies.page import Page
@@ -122,6 +122,11 @@ def test_what_a_library_of_ones_own_leaves_alone_is_said() -> None:
     whole = plan([], "paper", mine).substitution()
     assert "figure-3" in whole
     assert "text-planning" in whole
+
+
+def test_a_file_is_called_by_its_name_without_folder_and_ending() -> None:
+    assert stand_in.shown("/home/somebody/mine.json") == "mine"
+    assert stand_in.shown(SELECTION) == SELECTION
 
 
 def test_a_library_that_no_page_flies_on_is_refused() -> None:

@@ -36,7 +36,7 @@ def command(
 
     options = {} if device is None else {"device": device}
     asked = plan(pages or (), profile, standing(library), options)
-    own = "" if library is None else f"-{asked.library().name}"
+    own = "" if library is None else f"-{Path(library).stem}"
     name = f"reproduction{own}-{asked.profile.name}"
     folder, other = (out, "") if out else asked.folder(name)
 

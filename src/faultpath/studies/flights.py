@@ -11,6 +11,7 @@ from pathlib import Path
 from faultpath.execution import Crew, Progress, RunResult, run_study
 from faultpath.faults import parse_fault
 from faultpath.studies.cells import Cell, Profile, Setting
+from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
 
 SYSTEM = "quadrotor"
@@ -178,7 +179,7 @@ def _leg(
         scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
         rows=tuple(_row(system, cell, seed) for cell in cells for seed in cell.seeds),
     )
-    return Leg(setting, system, study, str(replace(setting, library=library.name)))
+    return Leg(setting, system, study, str(replace(setting, library=shown(library.name))))
 
 
 def _row(system: System, cell: Cell, seed: int) -> Row:

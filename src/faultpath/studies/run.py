@@ -109,7 +109,7 @@ class Plan:
     def results(self, outcomes: OutcomeTable, evidence: EvidenceTable) -> Results:
         """Return what was flown and measured, as pages and claims ask for it."""
         library = self.library()
-        names = {HELD_OUT: library.name}
+        names = {HELD_OUT: stand_in.shown(library.name)}
         return Results(outcomes, evidence, library.content_hash, names)
 
     def _stands_in(self, measurement: Measurement) -> Measurement:
@@ -231,7 +231,7 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
         ) from None
     outcomes = read_outcomes(folder / OUTCOMES)
     evidence = read_evidence(folder / EVIDENCE)
-    names = {HELD_OUT: found.ledger.library}
+    names = {HELD_OUT: stand_in.shown(found.ledger.library)}
     return Results(outcomes, evidence, found.ledger.library_hash, names), found
 
 

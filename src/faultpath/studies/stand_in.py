@@ -1,11 +1,17 @@
 """A library of the user's own in the place of the held-out one: which pages it changes."""
 
 from collections.abc import Iterable
+from pathlib import Path
 
 from faultpath.errors import UserError
 from faultpath.studies.cells import HELD_OUT, Profile
 from faultpath.studies.page import Page
 from faultpath.trials import Library
+
+
+def shown(name: str) -> str:
+    """Return how a library is called in notes: a file without its folder and ending."""
+    return Path(name).stem
 
 
 def words(pages: Iterable[Page], profile: Profile, given: str, library: Library) -> str:
@@ -24,7 +30,7 @@ def words(pages: Iterable[Page], profile: Profile, given: str, library: Library)
             f"{', '.join(kept)} {flown} on {elsewhere}, as in the paper, so '{given}' would change "
             "nothing: leave --library out, or name a page that is flown on held-out scenes."
         )
-    said = [f"The library {library.name} takes the place of the held-out one."]
+    said = [f"The library {shown(library.name)} takes the place of the held-out one."]
     if kept:
         said.append(f"On {elsewhere} stay, as in the paper: {', '.join(kept)}.")
     if mixed:
