@@ -56,7 +56,7 @@ class Audit:
             )
             for path in self.paths
         ]
-        return decide(asked, paths, table)
+        return decide(asked, paths, table, findings=deliveries.findings)
 
 
 def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:

@@ -59,11 +59,13 @@ class Died:
 Reply = Done | Raised | Wrong | Died
 
 
-def attempt(system: System, arm: Arm, scenes: Sequence[str]) -> Done | Raised | Wrong:
-    """Run an arm over some scenes; an error comes back as a value."""
+def attempt(
+    system: System, arm: Arm, scenes: Sequence[str], guard: bool = False
+) -> Done | Raised | Wrong:
+    """Run an arm over some scenes; an error comes back as a value. `guard` is that of `Taps`."""
     started = time.perf_counter()
     try:
-        outcomes, taps = _run(system, arm, scenes)
+        outcomes, taps = _run(system, arm, scenes, guard)
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
@@ -98,7 +100,7 @@ def limit_threads() -> None:
 
 
 def _run(
-    system: System, arm: Arm, scenes: Sequence[str]
+    system: System, arm: Arm, scenes: Sequence[str], guard: bool
 ) -> tuple[tuple[Outcome, ...], tuple[TapCount, ...]]:
     variant = system.variants[arm.variant]
     taps = Taps(
@@ -110,6 +112,7 @@ def _run(
         bindings=variant.bindings,
         consumers=variant.consumers,
         privileged=variant.privileged,
+        guard=guard,
     )
     outcomes = _outcomes(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
     taps.verify(_last_steps(outcomes, system.control_dt_s))

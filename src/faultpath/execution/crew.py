@@ -15,7 +15,7 @@ from faultpath.code import named
 from faultpath.execution.attempt import Died, Done, Raised, Wrong
 from faultpath.execution.changes import check_same
 from faultpath.execution.limits import TimeLimit
-from faultpath.execution.schedule import Task
+from faultpath.execution.schedule import Recheck, Task
 from faultpath.execution.worker import Hello, Order, Ready, Undeclared
 
 _ONE_THREAD = (
@@ -94,7 +94,7 @@ class Worker:
         """Hand a task out."""
         self.task, self.since = task, time.monotonic()
         with suppress(OSError):
-            self.channel.send(Order(task.unit.arm, task.scenes))
+            self.channel.send(Order(task.unit.arm, task.scenes, task.recheck is Recheck.GUARDED))
 
     def receive(self) -> Ready | Undeclared | Done | Raised | Wrong | Died:
         """Return the next message, or how the process ended."""

@@ -14,7 +14,8 @@ from faultpath.execution.changes import kept_trials, unnamed, watched
 from faultpath.execution.crew import Crew
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
 from faultpath.execution.limits import TimeLimit
-from faultpath.execution.schedule import Schedule, Task
+from faultpath.execution.rechecks import Rechecks
+from faultpath.execution.schedule import Recheck, Schedule, Task
 from faultpath.execution.units import Unit, plan
 from faultpath.execution.worker import Hello, Ready
 from faultpath.store.folder import RunFolder
@@ -71,6 +72,12 @@ class RunResult:
     """What flew, of each run that this is made of."""
     library_hash: str
 
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """What the run found that a reader has to know: results that do not repeat or depend on
+        their block, consumers that never read or that write, hashes that prove nothing."""
+        return self.deliveries.findings
+
 
 def run_study(
     study: Study,
@@ -82,6 +89,7 @@ def run_study(
     shared: bool = False,
     crew: Crew | None = None,
     time_limit_s: float | None = None,
+    recheck: bool = True,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -92,7 +100,8 @@ def run_study(
     them ran is there for the next; the folder's tables are those of the last. `crew` keeps the
     worker processes for the next study; without one they end with this. `time_limit_s` is how long
     a worker may take over one block (or one scene, when a block failed) before it is stopped, in
-    seconds; by default many times as long as the slowest block so far took.
+    seconds; by default many times as long as the slowest block so far took. `recheck` flies one
+    block and one scene of it again and tells what differs; see `RunResult.findings`.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -122,18 +131,23 @@ def run_study(
         with run.open(manifest, notice, shared):
             schedule = _keep_finished(ledger, run, notice)
             report(ledger.progress())
+            again = Rechecks(units, run)
             if workers == 0:
                 _run_here(system, code.unread(), schedule, ledger, report)
-            elif schedule:
+                _recheck_here(system, again, ledger, recheck)
+            elif schedule or (recheck and again.tasks(ledger.outcomes)):
                 hello = Hello(study.system, study.library)
                 expected = Ready(code.state, library.content_hash)
                 with Crew() if crew is None else nullcontext(crew) as hands:
-                    hands.begin(hello, expected, min(workers, len(schedule)))
+                    hands.begin(hello, expected, min(workers, max(1, len(schedule))))
                     _run_with(hands, schedule, ledger, report)
+                    _recheck_with(hands, again, ledger, recheck)
                     if hands.undeclared:
                         notice(unnamed(sorted(hands.undeclared)))
             table = assemble(study, library, ledger.outcomes)
-            deliveries = Deliveries.of(study, ledger.taps)
+            deliveries = Deliveries.of(study, ledger.taps, table, again.findings())
+            for finding in deliveries.findings:
+                notice(finding)
             digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the ledger may have been stopped between storing and noting.
@@ -195,6 +209,26 @@ def _run_with(crew: Crew, schedule: Schedule, ledger: Ledger, report: ProgressCa
         for task, reply in crew.replies(_TICK_S, ledger.limit):
             schedule.put(ledger.settle(task, reply))
         report(ledger.progress())
+
+
+def _recheck_here(system: System, again: Rechecks, ledger: Ledger, wanted: bool) -> None:
+    for task in again.tasks(ledger.outcomes) if wanted else ():
+        guard = task.recheck is Recheck.GUARDED
+        reply = attempt(system, task.unit.arm, task.scenes, guard)
+        again.settle(task, reply, ledger.outcomes)
+
+
+def _recheck_with(crew: Crew, again: Rechecks, ledger: Ledger, wanted: bool) -> None:
+    waiting = list(again.tasks(ledger.outcomes)) if wanted else []
+    flying = 0
+    while waiting or flying:
+        for worker in crew.idle():
+            if waiting:
+                worker.send(waiting.pop(0))
+                flying += 1
+        for task, reply in crew.replies(_TICK_S, ledger.limit):
+            again.settle(task, reply, ledger.outcomes)
+            flying -= 1
 
 
 def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:

@@ -3,8 +3,18 @@
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
+from enum import StrEnum
 
 from faultpath.execution.units import Unit
+
+
+class Recheck(StrEnum):
+    """Why scenes are flown that have been flown before."""
+
+    REPEAT = "repeat"
+    ALONE = "alone"
+    GUARDED = "guarded"
+    """With `Taps(guard=True)`."""
 
 
 @dataclass(frozen=True)
@@ -15,6 +25,8 @@ class Task:
     scenes: tuple[str, ...]
     retried: bool = False
     """A worker process died over it before."""
+    recheck: Recheck | None = None
+    """Its result is compared and not stored."""
 
 
 class Schedule:

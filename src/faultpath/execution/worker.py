@@ -35,6 +35,7 @@ class Order:
 
     arm: Arm
     scenes: tuple[str, ...]
+    guard: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,7 +84,9 @@ def _serve(parent: "Connection[Any, Any]") -> None:
             built, reply = _build(message, reads)
         else:
             assert built is not None  # whoever built none has said so and is sent nothing
-            reply = watched(built.unread, attempt(built.system, message.arm, message.scenes))
+            reply = watched(
+                built.unread, attempt(built.system, message.arm, message.scenes, message.guard)
+            )
             if undeclared := reads.undeclared(built.code):
                 parent.send(Undeclared(undeclared))
         if isinstance(reply, Wrong):  # its traceback cannot be sent otherwise

@@ -40,6 +40,7 @@ class RunFolder:
         self.outcomes = path / "outcomes.parquet"
         self.traces = path / "traces.parquet"
         self.deliveries = path / "deliveries.json"
+        self.rechecks = path / "rechecks.json"
 
     @contextmanager
     def open(
@@ -110,6 +111,10 @@ class RunFolder:
             self._write(path, text.encode(errors="backslashreplace"))
         else:
             path.unlink(missing_ok=True)
+
+    def save_rechecks(self, text: str) -> None:
+        """Write what flying some trials again has found."""
+        self._write(self.rechecks, text.encode())
 
     def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""

@@ -111,7 +111,15 @@ def fly(
             place, system = folder / FLIGHTS / leg.folder, leg.system
             results.append(
                 run_study(
-                    leg.study, place, workers, clock.show, notice, system, shared=True, crew=crew
+                    leg.study,
+                    place,
+                    workers,
+                    clock.show,
+                    notice,
+                    system,
+                    shared=True,
+                    crew=crew,
+                    recheck=False,
                 )
             )
             clock.end(leg.trials)

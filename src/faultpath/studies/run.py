@@ -197,7 +197,8 @@ def save(
         for row in results.outcomes.rows
     )
     deliveries = Deliveries(
-        rows=tuple(row for result in flown.results for row in result.deliveries.rows)
+        rows=tuple(row for result in flown.results for row in result.deliveries.rows),
+        findings=tuple(dict.fromkeys(said for result in flown.results for said in result.findings)),
     )
     digest = RunFolder(folder).save_tables(OutcomeTable(slim), deliveries)
     write_evidence(folder / EVIDENCE, evidence)

@@ -7,6 +7,8 @@ from pydantic import BaseModel, ConfigDict
 
 from faultpath.taps import TapCount, added
 from faultpath.trials.arm import Study
+from faultpath.trials.findings import unproven, unread
+from faultpath.trials.table import OutcomeTable
 
 
 class RowDeliveries(BaseModel):
@@ -28,21 +30,32 @@ class Deliveries(BaseModel):
 
     format: int = 1
     rows: tuple[RowDeliveries, ...] = ()
+    findings: tuple[str, ...] = ()
+    """What the run found that a reader of its results has to know, a sentence or two each."""
 
     @classmethod
-    def of(cls, study: Study, arms: Mapping[str, tuple[TapCount, ...]]) -> Self:
-        """Lay the counts, by arm key, out in the order of the study's rows."""
-        return cls(
-            rows=tuple(
-                RowDeliveries(
-                    variant=row.variant,
-                    path=row.path,
-                    seed=row.seed,
-                    taps=arms.get(row.arm.key(), ()),
-                )
-                for row in study.rows
+    def of(
+        cls,
+        study: Study,
+        arms: Mapping[str, tuple[TapCount, ...]],
+        table: OutcomeTable,
+        findings: tuple[str, ...] = (),
+    ) -> Self:
+        """Lay the counts, by arm key, out in the order of the study's rows.
+
+        To `findings` it adds what counts and outcomes show: see `faultpath.trials.findings`.
+        """
+        rows = tuple(
+            RowDeliveries(
+                variant=row.variant,
+                path=row.path,
+                seed=row.seed,
+                taps=arms.get(row.arm.key(), ()),
             )
+            for row in study.rows
         )
+        reads = [(row.variant, tap) for row in rows for tap in row.taps]
+        return cls(rows=rows, findings=(*findings, *unread(reads), *unproven(table)))
 
     def at(self, variant: str, path: str) -> tuple[TapCount, ...]:
         """Return the taps of a variant on a path, all seeds together; `KeyError` without any."""
