@@ -91,7 +91,7 @@ def _run(
                 total=now.trials_total,
                 completed=now.trials_estimated,
                 trials=f"{now.trials_done}/{now.trials_total}",
-                left=_left(now.seconds_left),
+                left=left(now.seconds_left),
             )
 
         def notice(text: str) -> None:
@@ -114,7 +114,8 @@ def _run(
             ) from None
 
 
-def _left(seconds: float | None) -> str:
+def left(seconds: float | None) -> str:
+    """Say how long it will still take, where that is known."""
     if seconds is None:
         return ""
     minutes, rest = divmod(round(seconds), 60)

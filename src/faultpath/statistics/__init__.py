@@ -18,7 +18,7 @@ from faultpath.statistics.decisions import (
     fewest_scenes,
     turn,
 )
-from faultpath.statistics.detectable import detectable, detectable_effect
+from faultpath.statistics.detectable import detectable, detectable_models
 from faultpath.statistics.effect import (
     Effect,
     difference_of_effects,
@@ -74,7 +74,7 @@ __all__ = [
     "compare",
     "decide_family",
     "detectable",
-    "detectable_effect",
+    "detectable_models",
     "difference_of_effects",
     "discordant",
     "discordant_by_seed",

@@ -12,57 +12,51 @@ from faultpath.statistics.distributions import clopper_pearson_upper, t_power
 from faultpath.statistics.effect import Effect
 from faultpath.statistics.estimate import SCENES_AND_SEEDS, Detectable
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
-from faultpath.statistics.power import rule_power, simulated_power
-from faultpath.statistics.score import SceneValues
+from faultpath.statistics.power import rule_power, seed_mixture, simulated_power
 
-_PRECISION = 1e-4
+_PRECISION = 1e-3
+_PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
+"""What is taken to have been seen of seeds that end alike, before anything was."""
 
 
 def detectable(
     first: Numbers, second: Numbers, *, alpha: float = 0.05, power: float = 0.8
 ) -> Detectable:
-    """Return the detectable difference in success (pp) of binary arms [scenes, seeds]."""
+    """Return the detectable difference in success (pp) of binary arms [scenes, seeds].
+
+    As many pairs are taken to be discordant as were, or with all of them on one side what the
+    difference needs; without any, the upper end of the 95 % Clopper-Pearson interval of their
+    share. Seeds agree within a scene as often as was seen; copies of a seed count once.
+    """
     one, two = paired_binary(first, second)
-    n_seeds = one.shape[1]
-    scenes = SceneValues.paired((one - two).sum(axis=1) / n_seeds, 1.0, 100.0)
-    return _detectable(scenes, n_seeds, alpha, power)
-
-
-def detectable_effect(effect: Effect, *, alpha: float = 0.05, power: float = 0.8) -> Detectable:
-    """Return the detectable size of an effect that `compare` can test, differences included."""
-    if effect.estimand == SCENES_AND_SEEDS:
-        return _by_seeds(effect, alpha, power)
-    if effect.scenes is None or effect.scenes.centre:
-        raise ValueError(f"an effect in {effect.unit} by {effect.method} has no test")
-    return _detectable(effect.scenes, effect.n_seeds, alpha, power)
-
-
-def _detectable(scenes: SceneValues, n_seeds: int, alpha: float, power: float) -> Detectable:
-    n_scenes = len(scenes.values)
-    observed = np.abs(scenes.values[scenes.values != 0]) / scenes.bound
+    n_scenes, n_seeds = one.shape
+    seeds = np.unique(one - two, axis=1)
+    rate, alike = float(np.abs(seeds).mean()), 1.0
     notes: list[str] = []
-    rate = len(observed) / n_scenes
-    if not len(observed):
+    if rate == 0.0:
         rate = clopper_pearson_upper(0, n_scenes)
-        notes.append(f"no scene differs; at most {100.0 * rate:.1f} % do (Clopper-Pearson)")
-    kinds, times = np.unique(observed if len(observed) else np.ones(1), return_counts=True)
-    model = _Scenes(n_scenes, rate, kinds, times / times.sum(), alpha)
-    difference = _least(lambda size: model.power(size) >= power)
-    if not model.whole:
-        notes.append(f"a differing scene differs by {model.pp(scenes):.0f} pp on average")
-    if difference is not None and difference > model.rate * model.mean_size:
-        notes.append("more scenes differ than observed, all on one side")
-    scale = scenes.scale * scenes.bound
+        notes.append(f"no discordant pair; at most {100.0 * rate:.1f} % are (Clopper-Pearson)")
+    elif seeds.shape[1] > 1:
+        alike = _alike(seeds)
+        notes.append(f"in {100.0 * alike:.0f} % of scenes all seeds end alike, as far as told")
+
+    def reached(difference: float) -> float:
+        share = min(1.0, max(rate, difference))
+        if alike == 1.0:
+            return rule_power(n_scenes, share, difference, alpha)
+        values, chances = seed_mixture(seeds.shape[1], share, difference / share, alike)
+        return simulated_power(n_scenes, values, chances, alpha)
+
+    difference = _least(lambda size: reached(size) >= power)
+    if difference is not None and difference > rate:
+        notes.append("discordant rate raised to the difference, all discordants on one side")
     return Detectable(
-        value=None if difference is None else scale * difference,
-        reason=None
-        if difference is not None
-        else f"with {n_scenes} scenes the test cannot reject at {alpha:.2g} with power {power:g}, "
-        "whatever the difference",
+        value=None if difference is None else 100.0 * difference,
+        reason=_never(n_scenes, alpha, power) if difference is None else None,
         alpha=alpha,
         power=power,
         method=f"power of {'exact McNemar' if n_seeds == 1 else 'the sign test'} and the score "
-        f"interval, {'exact' if model.whole else 'simulated'}",
+        f"interval, {'exact' if alike == 1.0 else 'simulated'}",
         n_scenes=n_scenes,
         n_seeds=n_seeds,
         discordant_rate=rate,
@@ -70,36 +64,33 @@ def _detectable(scenes: SceneValues, n_seeds: int, alpha: float, power: float) -
     )
 
 
-class _Scenes:
-    """Scenes that differ as the observed ones do, and lean as a given difference needs."""
+def detectable_models(effect: Effect, *, alpha: float = 0.05, power: float = 0.8) -> Detectable:
+    """Return what the t test of the seeds' effects detects; `effect` resamples seeds."""
+    if effect.estimand != SCENES_AND_SEEDS:
+        raise ValueError("the effect speaks of these trained models: use `detectable`")
+    return _by_seeds(effect, alpha, power)
 
-    def __init__(
-        self, n_scenes: int, rate: float, sizes: Floats, shares: Floats, alpha: float
-    ) -> None:
-        self.n_scenes, self.rate, self.alpha = n_scenes, rate, alpha
-        self.sizes, self.shares = sizes, shares
-        self.mean_size = float(sizes @ shares)
-        self.whole = bool((sizes == 1.0).all())
 
-    def pp(self, scenes: SceneValues) -> float:
-        return scenes.scale * scenes.bound * self.mean_size
+def _alike(seeds: Floats) -> float:
+    """Return the share of scenes in which all seeds end alike, from differences [scenes, seeds].
 
-    def power(self, difference: float) -> float:
-        """Return the power at a difference, a fraction of the largest possible one.
+    Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. A little is added
+    as if seen, on either side, because few discordant pairs tell little.
+    """
+    n_scenes, n_seeds = seeds.shape
+    pairs = n_seeds * (n_seeds - 1)
+    products = float((seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)).sum()) / pairs
+    by_chance = n_scenes * float(seeds.mean()) ** 2
+    discordant = n_scenes * float(np.abs(seeds).mean())
+    seen = discordant - by_chance + _PRIOR_SCENES
+    return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
 
-        The share of differing scenes is the observed one; a difference that needs more has all of
-        them on one side, and where all scenes do not suffice they differ by more.
-        """
-        rate = min(1.0, max(self.rate, difference / self.mean_size))
-        if self.whole:
-            return rule_power(self.n_scenes, rate, min(difference, rate), self.alpha)
-        lean = min(1.0, difference / (rate * self.mean_size))
-        sizes, shares = self.sizes, self.shares
-        if difference > self.mean_size:
-            larger = (difference - self.mean_size) / (1.0 - self.mean_size)
-            sizes = np.append(sizes, 1.0)
-            shares = np.append(shares * (1.0 - larger), larger)
-        return simulated_power(self.n_scenes, sizes, rate * shares, lean, 1.0, self.alpha)
+
+def _never(n_scenes: int, alpha: float, power: float) -> str:
+    return (
+        f"with {n_scenes} scenes the test cannot reject at {alpha:.2g} with power {power:g}, "
+        "whatever the difference"
+    )
 
 
 def _by_seeds(effect: Effect, alpha: float, power: float) -> Detectable:

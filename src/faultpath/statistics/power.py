@@ -12,7 +12,7 @@ from faultpath.streams import generator
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""
-AUDITS = 4000
+AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 
 
@@ -52,22 +52,32 @@ def _critical(n_scenes: int, alpha: float) -> NDArray[np.int64]:
     return (tested & excluded).sum(axis=1, dtype=np.int64) - 1
 
 
-def simulated_power(
-    n_scenes: int, sizes: Floats, chances: Floats, lean: float, bound: float, alpha: float
-) -> float:
+def simulated_power(n_scenes: int, values: Floats, chances: Floats, alpha: float) -> float:
     """Return the power of sign test and score interval, from `AUDITS` simulated audits.
 
-    A scene differs by ``sizes`` [kinds] with ``chances`` [kinds] and favours either arm with
-    chances ``(1 + lean) / 2`` and ``(1 - lean) / 2``. The same stream serves every call, so that
-    the power of neighbouring differences can be compared.
+    A scene has one of ``values`` [kinds], fractions of the largest possible one, with ``chances``
+    [kinds]. The same stream serves every call, so that neighbouring powers can be compared.
     """
-    ahead, behind = chances * (1.0 + lean) / 2.0, chances * (1.0 - lean) / 2.0
-    shares = np.concatenate([ahead, behind, [max(0.0, 1.0 - float(chances.sum()))]])
     stream = generator("detectable", "", n_scenes)
-    counts = stream.multinomial(n_scenes, shares / shares.sum(), size=AUDITS).astype(np.float64)
-    values = np.concatenate([sizes, -sizes, [0.0]])
-    far = reach(np.broadcast_to(values, counts.shape), counts, bound)
+    counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
+    far = reach(np.broadcast_to(values, counts.shape), counts, 1.0)
     return float(detected(values, counts, far, alpha).mean())
+
+
+def seed_mixture(seeds: int, rate: float, lean: float, alike: float) -> tuple[Floats, Floats]:
+    """Return what scenes differ by, a fraction, and how often: ``values`` and ``chances``.
+
+    In each of ``seeds`` a share ``rate`` of the scenes is discordant and favours the first arm
+    with chance ``(1 + lean) / 2``. A share ``alike`` of the scenes treats all seeds alike, the
+    others each for itself.
+    """
+    one = np.array([rate * (1.0 - lean), 2.0 * (1.0 - rate), rate * (1.0 + lean)]) / 2.0
+    apart = np.ones(1)
+    for _ in range(seeds):
+        apart = np.convolve(apart, one)
+    chances = (1.0 - alike) * apart
+    chances[[0, seeds, 2 * seeds]] += alike * one
+    return np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
 
 
 def detected(values: Floats, counts: Floats, far: Floats, alpha: float) -> NDArray[np.bool_]:

@@ -1,0 +1,69 @@
+"""`faultpath selfcheck`: does the installed code keep what it promises?"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import path
+
+BROKEN = 1
+
+app = typer.Typer(help="Check that the installed code keeps what it promises.")
+
+
+@app.callback()
+def checks() -> None:
+    """Keep `statistics` a command of its own."""
+
+
+@app.command("statistics")
+def statistics(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="A small part, in seconds, with wide limits.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="File to write the numbers to, as JSON.")
+    ] = None,
+    processes: Annotated[
+        int | None, typer.Option(min=1, help="Processes; default one a core.")
+    ] = None,
+) -> int:
+    """Simulate audits with a known truth: coverage of the intervals, power at the reported
+    detectable difference, false announcements. Exits with 1 where a promise is not kept."""
+    import os
+
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    from faultpath.cli.run import left
+    from faultpath.selfcheck import check_statistics, failures
+    from faultpath.selfcheck.terminal import show
+    from faultpath.store import write_text
+
+    console = Console()
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total} settings"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+    )
+    with Progress(*columns, console=console) as bar:
+        task = bar.add_task("Simulating", total=None, left="")
+
+        def note(done: int, total: int, seconds: float | None) -> None:
+            bar.update(task, total=total, completed=done, left=left(seconds))
+
+        report = check_statistics(
+            "quick" if quick else "full", processes or os.cpu_count() or 1, note
+        )
+    if out is not None:
+        write_text(out, report.text())
+    show(report, console)
+    broken = failures(report)
+    for line in broken:
+        console.print(f"Not kept: {line}", markup=False, soft_wrap=True)
+    if not broken:
+        console.print("Every promise was kept.")
+    return BROKEN if broken else 0

@@ -1,0 +1,130 @@
+"""How often the intervals of an effect and of a break-even frequency hold the truth."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from faultpath.selfcheck.model import Measured
+from faultpath.selfcheck.populations import RATES, Population, joint
+from faultpath.statistics.distributions import multinomial_pmf
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.score import quantile, reach, rejects
+from faultpath.streams import generator
+
+Z = quantile(0.95)
+LEANS = (0.0, 0.5, 1.0)
+INTERVAL, BREAK_EVEN = "interval", "break-even"
+
+
+@dataclass(frozen=True)
+class IntervalCoverage:
+    """Coverage of the 95 % interval of an effect; exact for one seed."""
+
+    scenes: int
+    population: Population
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return the coverage."""
+        truth, sizes = self.population, self.population.sizes
+        if truth.seeds == 1:
+            counts = tables(self.scenes)
+            weight = multinomial_pmf(counts, truth.chances())
+            runs = 0
+        else:
+            stream = generator("selfcheck", repr(self), 0)
+            drawn = stream.multinomial(self.scenes, truth.chances(), size=self.runs)
+            counts, times = np.unique(drawn.astype(np.float64), axis=0, return_counts=True)
+            weight, runs = times / self.runs, self.runs
+        far = reach(np.broadcast_to(sizes, counts.shape), counts, 1.0)
+        covered = ~rejects(sizes, counts, truth.mean, far, Z)
+        setting = {
+            "scenes": self.scenes,
+            "seeds": truth.seeds,
+            "rate": truth.rate,
+            "lean": truth.lean,
+            "alike": truth.alike,
+            "seed effects": int(truth.seed_effects),
+            "differing": round(self.scenes * (1.0 - float(truth.chances()[truth.seeds])), 3),
+        }
+        return Measured(INTERVAL, setting, float(weight @ covered), runs)
+
+
+@dataclass(frozen=True)
+class BreakEvenCoverage:
+    """Coverage of the set of frequencies at which it is not decided who is ahead."""
+
+    scenes: int
+    correct: Population
+    faulty: Population
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return how often the true frequency is in the set: the mixture there is not rejected."""
+        first, second = self.correct, self.faulty
+        p = first.mean / (first.mean - second.mean)
+        kinds = len(first.sizes)
+        stream = generator("selfcheck", repr(self), 0)
+        drawn = stream.multinomial(
+            self.scenes, joint(first, second, 0.5).ravel(), size=self.runs
+        ).astype(np.float64)
+        counts, times = np.unique(drawn, axis=0, return_counts=True)
+        square = counts.reshape(-1, kinds, kinds)
+        far_0 = _reach(first, square.sum(axis=2))
+        far_f = _reach(second, square.sum(axis=1))
+        mixed = (1.0 - p) * first.sizes[:, np.newaxis] + p * second.sizes
+        far = (1.0 - p) * far_0 + p * far_f
+        covered = ~rejects(mixed.ravel().round(9), counts, 0.0, far, Z)
+        setting = {
+            "scenes": self.scenes,
+            "seeds": first.seeds,
+            "cost rate": first.rate,
+            "cost lean": first.lean,
+            "gain rate": second.rate,
+            "alike": first.alike,
+            "seed effects": int(first.seed_effects),
+        }
+        return Measured(BREAK_EVEN, setting, float(times @ covered) / self.runs, self.runs)
+
+
+def interval_grid(scenes: tuple[int, ...], runs: int) -> Iterator[IntervalCoverage]:
+    """Yield the grid of the effect's interval."""
+    for n in scenes:
+        for seeds, alike, effects in _structures((0.0, 0.5, 1.0)):
+            for rate in RATES:
+                for lean in LEANS:
+                    yield IntervalCoverage(n, Population(rate, lean, seeds, alike, effects), runs)
+
+
+def break_even_grid(scenes: tuple[int, ...], runs: int) -> Iterator[BreakEvenCoverage]:
+    """Yield the grid of the break-even frequency: costs of all sizes, gains of 5 and 30 %."""
+    for n in scenes:
+        for seeds, alike, effects in _structures((0.0, 0.5)):
+            for rate in RATES:
+                for lean in LEANS:
+                    for gain in (0.05, 0.3):
+                        correct = Population(rate, -lean, seeds, alike, effects)
+                        faulty = Population(gain, 1.0, seeds, alike, effects)
+                        if correct.mean <= 0.0:
+                            yield BreakEvenCoverage(n, correct, faulty, runs)
+
+
+def _structures(alike: tuple[float, ...]) -> Iterator[tuple[int, float, bool]]:
+    yield 1, 0.0, False
+    for seeds in (3, 5):
+        for share in alike:
+            for effects in (False, True):
+                yield seeds, share, effects
+
+
+def _reach(population: Population, counts: Floats) -> Floats:
+    return reach(np.broadcast_to(population.sizes, counts.shape), counts, 1.0)
+
+
+def tables(n: int) -> Floats:
+    """Return every table of ``n`` scenes of one seed: second only, neither, first only."""
+    first, second = np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij")
+    fits = first + second <= n
+    first, second = first[fits], second[fits]
+    return np.stack([second, n - first - second, first], axis=1).astype(np.float64)

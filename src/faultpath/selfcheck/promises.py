@@ -1,0 +1,79 @@
+"""What the statistics promise, and which settings broke it by more than chance."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import sqrt
+
+from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
+from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL
+from faultpath.selfcheck.detection import DETECTION
+from faultpath.selfcheck.model import Report, Value
+
+Cell = dict[str, Value]
+
+
+@dataclass(frozen=True)
+class Promise:
+    """The rate of every setting of a section lies between two limits."""
+
+    section: str
+    what: str
+    least: float = 0.0
+    most: float = 1.0
+    concerns: Callable[[Cell], bool] = lambda _: True
+
+    def broken(self, cell: Cell) -> bool:
+        """Return whether a rate is beyond a limit by more than three standard errors."""
+        rate, runs = float(cell["measured"]), float(cell["runs"])
+        slack = [3.0 * sqrt(p * (1.0 - p) / runs) if runs else 0.0 for p in (self.least, self.most)]
+        return rate < self.least - slack[0] or rate > self.most + slack[1]
+
+
+PROMISES = (
+    Promise(INTERVAL, "the 95 % interval of an effect covers the truth", least=0.93),
+    Promise(BREAK_EVEN, "the break-even set covers the true frequency", least=0.93),
+    Promise(
+        DETECTION,
+        "a true difference of the reported size is detected",
+        0.75,
+        0.85,
+        concerns=lambda cell: cell["seeds"] == 1,
+    ),
+    Promise(
+        DETECTION,
+        "a true difference of the reported size is detected",
+        least=0.7,
+        concerns=lambda cell: cell["seeds"] != 1,
+    ),
+    Promise(EQUAL, "an audit of equal arms announces anything", most=0.05),
+    Promise(
+        REVERSAL,
+        "an audit announces a reversal that is not there",
+        most=0.025,
+        concerns=lambda cell: cell["isolated pp"] == 0,
+    ),
+    Promise(
+        TRAININGS,
+        "equal methods are told apart by their trainings",
+        most=0.05,
+        concerns=lambda cell: cell["generalise"] == "models",
+    ),
+)
+
+
+def failures(report: Report) -> list[str]:
+    """Return one sentence for each setting that breaks a promise."""
+    said: list[str] = []
+    for promise in PROMISES:
+        for cell in report.section(promise.section).cells():
+            if promise.concerns(cell) and promise.broken(cell):
+                setting = ", ".join(
+                    f"{name} {value}"
+                    for name, value in cell.items()
+                    if name not in ("measured", "runs")
+                )
+                limits = f"{promise.least:g} to {promise.most:g}"
+                said.append(
+                    f"{promise.what} in {cell['measured']} of cases, not in {limits}: {setting}."
+                )
+    return said

@@ -1,0 +1,102 @@
+"""Carrying the simulations out: which, how many, on how many processes."""
+
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from typing import Protocol
+
+from faultpath.errors import UserError
+from faultpath.selfcheck.audits import equal_grid, reversal_grid, training_grid
+from faultpath.selfcheck.coverage import break_even_grid, interval_grid
+from faultpath.selfcheck.detection import detection_grid
+from faultpath.selfcheck.model import Measured, Report, Section
+from faultpath.selfcheck.populations import SCENES
+
+
+class Task(Protocol):
+    """One setting of one simulation; the same one always gives the same rate."""
+
+    def measure(self) -> Measured:
+        """Simulate it."""
+        ...
+
+
+@dataclass(frozen=True)
+class Profile:
+    """How much is simulated: scenes of the grids, and samples of each kind a setting."""
+
+    scenes: tuple[int, ...]
+    intervals: int
+    break_even: int
+    reports: int
+    audits: int
+    trainings: int
+
+    def tasks(self) -> list[Task]:
+        """Return all settings."""
+        return [
+            *interval_grid(self.scenes, self.intervals),
+            *break_even_grid(self.scenes, self.break_even),
+            *detection_grid(self.reports),
+            *equal_grid(self.audits),
+            *reversal_grid(self.audits),
+            *training_grid(self.trainings),
+        ]
+
+
+PROFILES = {
+    "full": Profile(SCENES, 20_000, 4_000, 60, 1_000, 2_000),
+    "quick": Profile((25,), 500, 200, 1, 10, 30),
+}
+_CHUNK = 8
+
+Progress = Callable[[int, int, float | None], None]
+"""Told how many settings are done, of how many, and the seconds left as far as known."""
+
+
+def check_statistics(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
+    """Simulate everything that ``profile`` holds; `UserError` for an unknown one."""
+    if profile not in PROFILES:
+        raise UserError(f"there is no profile {profile!r}: choose {' or '.join(PROFILES)}.")
+    start = time.perf_counter()
+    tasks = PROFILES[profile].tasks()
+    # The slow ones stand at the end; mixed, the time left can be told from what is done.
+    order = sorted(range(len(tasks)), key=lambda i: (i * 7919) % len(tasks))
+    found: dict[int, Measured] = {}
+
+    def note(index: int, measured: Measured) -> None:
+        found[index] = measured
+        if progress is not None:
+            spent = time.perf_counter() - start
+            left = spent * (len(tasks) - len(found)) / len(found) if len(found) > 20 else None
+            progress(len(found), len(tasks), left)
+
+    if processes > 1:
+        with ProcessPoolExecutor(processes) as pool:
+            mixed = [tasks[i] for i in order]
+            measured = pool.map(_measure, mixed, chunksize=_CHUNK)
+            for index, each in zip(order, measured, strict=True):
+                note(index, each)
+    else:
+        for index in order:
+            note(index, tasks[index].measure())
+    done = [found[index] for index in range(len(tasks))]
+    return Report(
+        profile=profile,
+        seconds=round(time.perf_counter() - start, 1),
+        sections=tuple(_section(name, done) for name in dict.fromkeys(m.section for m in done)),
+    )
+
+
+def _measure(task: Task) -> Measured:
+    return task.measure()
+
+
+def _section(name: str, done: Sequence[Measured]) -> Section:
+    mine = [each for each in done if each.section == name]
+    return Section(
+        name=name,
+        columns=(*mine[0].setting, "measured", "runs"),
+        rows=tuple((*each.setting.values(), round(each.rate, 5), each.runs) for each in mine),
+    )
