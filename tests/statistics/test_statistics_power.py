@@ -12,9 +12,7 @@ from faultpath.statistics import (
     Resamples,
     compare,
     detectable,
-    detectable_effect,
-    difference_of_effects,
-    mean_effect,
+    detectable_models,
     rule_power,
     success_effect,
 )
@@ -93,7 +91,7 @@ def test_more_scenes_detect_less_and_a_stricter_level_more():
 
 def test_without_discordant_pairs_an_upper_bound_stands_in():
     least = found((0, 0))
-    assert "at most 3.6 % do (Clopper-Pearson)" in least.note
+    assert "at most 3.6 % are (Clopper-Pearson)" in least.note
     # Fewer than six discordants never reject, so at least six of 100 must be expected.
     assert least.value > 6
     # Twelve scenes: the bound, 26 %, is still below what one-sided discordance needs.
@@ -119,27 +117,18 @@ def test_copying_a_seed_does_not_shrink_it(n_seeds):
     assert copied.value == once.value
 
 
-def test_seeds_that_differ_alone_are_smaller_differences():
+def test_seeds_that_end_alike_are_told_from_seeds_that_do_not():
     first, second = np.zeros((2, 100, 3))
     assert detectable(first, second).value == found((0, 0)).value
-    first[:9, 0] = 1
-    few = detectable(first, second)
-    assert few.note.startswith("a differing scene differs by 33 pp on average")
+    rng = np.random.default_rng(0)
+    apart = rng.random((2, 100, 3)) < [[[0.55]], [[0.45]]]
+    together = np.repeat(apart[:, :, :1], 3, axis=2)
+    together[0, :2, 2] ^= True
+    few, many = detectable(*apart), detectable(*together)
     assert few.method == "power of the sign test and the score interval, simulated"
-    assert few.value < found((9, 0)).value
-    assert detectable(first, second) == few
-
-
-def test_a_difference_of_effects_has_one_too():
-    rng = np.random.default_rng(1)
-    arms = rng.random((4, 80)) < 0.5
-    resamples = Resamples.draw("change", 80, n_resamples=10)
-    one, two = (success_effect(*pair, resamples) for pair in (arms[:2], arms[2:]))
-    least = detectable_effect(difference_of_effects(one, two))
-    assert 20 < least.value < 60
-    assert detectable_effect(one) == detectable(*arms[:2])
-    with pytest.raises(ValueError, match="has no test"):
-        detectable_effect(mean_effect(np.ones(80), np.zeros(80), resamples, "m"))
+    assert few.value < many.value - 2
+    assert many.note.startswith("in 9")
+    assert detectable(*apart) == few
 
 
 def test_newly_trained_models_need_a_difference_that_the_t_test_sees():
@@ -147,7 +136,7 @@ def test_newly_trained_models_need_a_difference_that_the_t_test_sees():
     first, second = rng.random((2, 80, 5)) < 0.5
     resamples = Resamples.draw("models", 80, n_resamples=10)
     effect = success_effect(first, second, resamples, resample_seeds=True)
-    least = detectable_effect(effect)
+    least = detectable_models(effect)
     error = np.std(effect.per_seed, ddof=1) / np.sqrt(5)
     critical = student.ppf(0.975, 4)
     power = nct.sf(critical, 4, least.value / error) + nct.cdf(-critical, 4, least.value / error)
@@ -155,7 +144,9 @@ def test_newly_trained_models_need_a_difference_that_the_t_test_sees():
     same = success_effect(
         first[:, :1].repeat(2, 1), 0 * first[:, :2], resamples, resample_seeds=True
     )
-    assert detectable_effect(same).reason == "the seeds' effects do not vary"
+    assert detectable_models(same).reason == "the seeds' effects do not vary"
+    with pytest.raises(ValueError, match="use `detectable`"):
+        detectable_models(success_effect(first, second, resamples))
 
 
 def test_wrong_input_is_refused():

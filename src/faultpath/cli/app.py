@@ -8,7 +8,17 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli import audit, claims, interface, probe, report, reproduce, scenes, train
+from faultpath.cli import (
+    audit,
+    claims,
+    interface,
+    probe,
+    report,
+    reproduce,
+    scenes,
+    selfcheck,
+    train,
+)
 
 app = typer.Typer(
     name="faultpath",
@@ -23,6 +33,7 @@ app.command("probe")(probe.command)
 app.command("report")(report.command)
 app.command("reproduce")(reproduce.command)
 app.add_typer(scenes.app, name="scenes")
+app.add_typer(selfcheck.app, name="selfcheck")
 app.add_typer(train.app, name="train")
 
 

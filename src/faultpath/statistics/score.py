@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from faultpath.statistics.distributions import normal_quantile
 from faultpath.statistics.inputs import Floats
 
-_HALVINGS = 60
+_HALVINGS = 44
 _DIGITS = 9
 """Of a combined value, so that values which cancel leave exactly 0."""
 PRIOR = 3.0
