@@ -31,7 +31,7 @@ class EqualArms:
     def measure(self) -> Measured:
         """Return the share of audits that announce anything: an effect, a change, a reversal."""
         stream = generator("selfcheck", repr(self), 0)
-        paths = dict.fromkeys(PATHS, self.population)
+        paths: dict[str, Population] = dict.fromkeys(PATHS, self.population)
         announced = sum(
             decide_paths(_audit(stream, self.scenes, paths, self.together)).announces
             for _ in range(self.runs)

@@ -3,8 +3,8 @@
 A population is the distribution of the sum over seeds of (first minus second), of each scene.
 """
 
-import itertools
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -34,7 +34,7 @@ class Population:
     def mean(self) -> float:
         """Return the true difference, a fraction."""
         first, second = self._rates()
-        return float(np.round((first - second).mean(), 14))
+        return round(float((first - second).mean()), 14)
 
     @property
     def sizes(self) -> Floats:
@@ -49,7 +49,7 @@ class Population:
             apart = np.convolve(apart, [b, 1.0 - a - b, a])
         together = np.zeros(2 * self.seeds + 1)
         edges = np.unique(np.concatenate([[0.0, 1.0], first, 1.0 - second]))
-        for low, high in itertools.pairwise(edges):
+        for low, high in pairwise(edges.tolist()):
             draw = 0.5 * (low + high)
             total = int((draw < first).sum()) - int((draw > 1.0 - second).sum())
             together[total + self.seeds] += high - low
@@ -87,7 +87,7 @@ def joint(first: Population, second: Population, together: float) -> Floats:
     mixed = (1.0 - together) * np.outer(one, two)
     ends_one, ends_two = np.cumsum(one), np.cumsum(two)
     edges = np.unique(np.concatenate([[0.0], ends_one, ends_two]))
-    for low, high in itertools.pairwise(edges):
+    for low, high in pairwise(edges.tolist()):
         draw = 0.5 * (low + high)
         i = min(int(np.searchsorted(ends_one, draw)), len(one) - 1)
         j = min(int(np.searchsorted(ends_two, draw)), len(two) - 1)
