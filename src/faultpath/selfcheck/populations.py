@@ -85,11 +85,12 @@ def joint(first: Population, second: Population, together: float) -> Floats:
     """
     one, two = first.chances(), second.chances()
     mixed = (1.0 - together) * np.outer(one, two)
-    ends_one, ends_two = np.cumsum(one), np.cumsum(two)
+    ends_one: Floats = np.cumsum(one)
+    ends_two: Floats = np.cumsum(two)
     edges = np.unique(np.concatenate([[0.0], ends_one, ends_two]))
     for low, high in pairwise(edges.tolist()):
         draw = 0.5 * (low + high)
-        i = min(int(np.searchsorted(ends_one, draw)), len(one) - 1)
-        j = min(int(np.searchsorted(ends_two, draw)), len(two) - 1)
+        i = min(int((ends_one < draw).sum()), len(one) - 1)
+        j = min(int((ends_two < draw).sum()), len(two) - 1)
         mixed[i, j] += together * (high - low)
     return mixed / mixed.sum()
