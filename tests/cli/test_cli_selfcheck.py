@@ -1,0 +1,52 @@
+"""`faultpath selfcheck statistics`: numbers to a file, tables to the terminal, 1 for a failure."""
+
+import re
+
+import pytest
+
+from faultpath.cli.main import main
+from faultpath.selfcheck import PROFILES, Report
+from faultpath.selfcheck.run import Profile
+from faultpath.statistics import score
+
+SMALL = Profile((10,), 20, 10, 1, 1, 1)
+
+
+@pytest.fixture
+def check(monkeypatch, capsys):
+    """Run the command with next to no samples; return exit status and output."""
+    monkeypatch.setitem(PROFILES, "quick", SMALL)
+
+    def run(*options):
+        command = ["faultpath", "selfcheck", "statistics", "--quick", "--processes", "1", *options]
+        monkeypatch.setattr("sys.argv", command)
+        with pytest.raises(SystemExit) as ended:
+            main()
+        return ended.value.code, re.sub(r"\s+", " ", capsys.readouterr().out)
+
+    return run
+
+
+def test_numbers_are_written_and_tables_printed(check, tmp_path):
+    out = tmp_path / "found.json"
+    status, said = check("--out", str(out))
+    assert status == 0, said
+    report = Report.model_validate_json(out.read_text())
+    assert report.profile == "quick"
+    assert len(report.sections) == 6
+    for title in ("Interval of an effect, one seed", "Break-even frequency", "Reversals"):
+        assert title in said
+    assert "Every promise was kept." in said
+
+
+def test_a_wrong_interval_is_found(check, monkeypatch):
+    """Half the quantile: 67 % intervals under the name of 95 %."""
+    honest = score.rejects
+
+    def hasty(values, counts, null, far, z):
+        return honest(values, counts, null, far, z / 2)
+
+    monkeypatch.setattr("faultpath.selfcheck.coverage.rejects", hasty)
+    status, said = check()
+    assert status == 1
+    assert "Not kept: the 95 % interval of an effect covers the truth in 0." in said
