@@ -52,9 +52,18 @@ def _making(count: int) -> Generator[Callable[[int], None]]:
         TimeLeft(),
         TextColumn("left"),
     )
-    with Progress(*columns, console=Console(stderr=True)) as bar:
-        task = bar.add_task("Making scenes", total=count)
-        yield lambda made: bar.update(task, completed=made)
+    bar = Progress(*columns, console=Console(stderr=True))
+    task = bar.add_task("Making scenes", total=count)
+
+    def show(made: int) -> None:
+        bar.start()  # with the first scene: what is refused shows no bar
+        bar.update(task, completed=made)
+
+    try:
+        yield show
+    finally:
+        if bar.live.is_started:
+            bar.stop()
 
 
 @app.command("list")

@@ -20,7 +20,7 @@ _SOURCE_X, _SOURCE_W = 46.0, 214.0
 _CHANNEL_X, _CHANNEL_W = 332.0, 142.0
 _TAP_X, _BLOCK_W = 594.0, 310.0
 _PLACE_X, _READS_X = 16.0, 148.0
-_LANE = 12.0
+_LANE = 16.0
 
 
 def draw_interface(
@@ -219,7 +219,7 @@ def _reconstructions(svg: Svg, interface: Interface, layout: Layout, wiring: Wir
         words = f"{module} reconstructs {source}{wiring.module(module).words}"
         room = text_width(words, 11)
         middle = _CHANNEL_X + _CHANNEL_W / 2
-        svg.rect(middle - room / 2 - 4, below - 8, room + 8, 16, "paper")
+        svg.rect(middle - room / 2 - 4, below - 7, room + 8, 14, "paper")
         svg.text(middle, below + 4, words, "small", "middle")
 
 
