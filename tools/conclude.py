@@ -27,7 +27,15 @@ from faultpath.studies import reversal
 from faultpath.studies.claims import ledger
 from faultpath.studies.pages import PAGES, table_4
 from faultpath.studies.run import CONCLUSIONS, plan, read_results
-from faultpath.trials import System, SystemSpec, load_system, system_shown
+from faultpath.taps import TapCount
+from faultpath.trials import (
+    Deliveries,
+    RowDeliveries,
+    System,
+    SystemSpec,
+    load_system,
+    system_shown,
+)
 
 _DATA = re.compile(r'id="viewer-data">(.*?)</script>', re.DOTALL)
 
@@ -105,8 +113,9 @@ def _paper() -> list[str]:
             reproduction=found,
             provenance=origin,
             interface=asked.system.interface,
+            variants=reversal.wired(leg),
             outcomes=outcomes,
-            decision=reversal.decision(outcomes, leg),
+            decision=reversal.decision(outcomes, leg, _deliveries()),
             traces=Traces(_tracks(target / "reproduction.html"), asked.system.control_dt_s),
             plans=_plans(asked.system, sorted(scenes)),
         )
@@ -124,6 +133,31 @@ def _paper() -> list[str]:
         for claim in found.ledger.claims
         if claim.verdict != answers.get(claim.id)
     ] or ["No claim changed its answer."]
+
+
+def _deliveries() -> Deliveries:
+    """Return what the taps did in the arms of Table IV's question.
+
+    The shipped run keeps no receipts. The main job flies the same arms with its first seed, and
+    its record has theirs; without that run nothing is shown as struck.
+    """
+    record = REFERENCE / "quadrotor-L3" / "record.json"
+    paths = json.loads(record.read_bytes())["paths"] if record.is_file() else []
+    of = {path["name"]: path for path in paths}
+    rows = [
+        RowDeliveries(
+            variant=variant,
+            path=table_4.cell(variant, path).path,
+            seed=0,
+            taps=tuple(
+                TapCount(deliveries=tap["struck_steps"], **tap)
+                for tap in of.get(name, {}).get(field, ())
+            ),
+        )
+        for path, name in reversal.NAMES.items()
+        for variant, field in ((reversal.REPAIR, "struck"), (reversal.BASELINE, "baseline_struck"))
+    ]
+    return Deliveries(rows=tuple(rows))
 
 
 def _plans(system: System, scenes: list[str]) -> dict[str, Any]:
