@@ -119,8 +119,8 @@ def _by_differing(cells: Sequence[Cell]) -> Table:
         "Where the interval covers more than it says",
         "All settings of both tables above, by the expected number of scenes that differ. Where "
         "hardly any is expected, most samples hold none, and the interval of such a sample, which "
-        "has to have some width, holds every small effect: no interval that is a function of the "
-        "data alone can cover 95 % there.",
+        "has to have some width, holds every small effect: short of tossing a coin, an interval "
+        "covers more than 95 % there or far less.",
         ("differing scenes", "settings", "least", "greatest", "below .93 / above .98"),
         tuple(rows),
     )
