@@ -65,5 +65,5 @@ def statistics(
     for line in broken:
         console.print(f"Not kept: {line}", markup=False, soft_wrap=True)
     if not broken:
-        console.print("Every promise was kept.")
+        console.print("No promise is broken by more than three standard errors.")
     return BROKEN if broken else 0

@@ -55,9 +55,14 @@ def page(report: Report, broken: Sequence[str]) -> str:
         "",
     ]
     if broken:
-        lines += ["Promises that were not kept:", "", *(f"- {line}" for line in broken), ""]
+        lines += [
+            "Promises broken by more than three standard errors:",
+            "",
+            *(f"- {line}" for line in broken),
+            "",
+        ]
     else:
-        lines += ["Every promise below was kept.", ""]
+        lines += ["No promise below is broken by more than three standard errors.", ""]
     for table in tables(report):
         lines += [f"## {table.title}", "", table.note, "", *_markdown(table), ""]
     return "\n".join(lines).rstrip() + "\n"
