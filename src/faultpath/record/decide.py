@@ -1,6 +1,6 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import median
 
@@ -53,15 +53,17 @@ def decide(
     """Return the decision record of an audit.
 
     Scenes in which a pair is void on any path are left out of all of them, so that every effect
-    speaks of the same scenes. Seeds that gave the same outcomes everywhere are counted once.
-    The record carries `findings`, and what was found about its pairs. `UserError` when no scene is
-    left, for a primary path that the audit does not have, and where newly trained models are asked
-    for and all seeds gave the same.
+    speaks of the same scenes; a path that would leave no scene is left out itself, and named. Seeds
+    that gave the same outcomes everywhere are counted once. The record carries `findings`, and what
+    was found about its pairs. `UserError` when no scene is left under correct inputs, for a primary
+    path that the audit does not have, and where newly trained models are asked for and all seeds
+    gave the same.
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
     pairs = {path.name: _pair(question, path.name, table) for path in paths}
     mismatches = [each for path in pairs.values() for each in path.mismatches]
-    trials = _trials(pairs, mismatches)
+    compared = _comparable(pairs, mismatches)
+    trials = _trials(compared)
     if question.generalise == "models" and _seeds_alike(trials)[1] < 2:
         raise UserError(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
@@ -114,7 +116,11 @@ def decide(
             ),
             would_change=words.would_change(about, effects),
         ),
-        findings=(*mismatch_words(mismatches), *findings),
+        findings=(
+            *words.void_paths([name for name in pairs if name not in compared]),
+            *mismatch_words(mismatches),
+            *findings,
+        ),
     )
 
 
@@ -137,17 +143,35 @@ def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
     return pair(table, Side(question.repair, path), Side(question.baseline, path))
 
 
-def _trials(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, _Path]:
+def _comparable(
+    pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]
+) -> dict[str, Pairs]:
+    """Return the paths that have scenes in common: those with the fewest pairs go first.
+
+    A fault under which every trial fails must not cost what the other paths show.
+    """
+    left = dict(pairs)
+    while not _shared_scenes(left.values()):
+        faulty = [name for name in left if name != CORRECT]
+        if not faulty or not left[CORRECT].scenes:
+            raise UserError(
+                "no scene is left to compare, because in each of them a trial failed or the arms "
+                "met different conditions: mend what made it fail, or choose other scenes."
+                + "".join(f" {words}" for words in mismatch_words(mismatches))
+            )
+        del left[min(faulty, key=lambda name: len(left[name].scenes))]
+    return left
+
+
+def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
+    first, *others = pairs
+    every = [set(each.scenes) for each in others]
+    return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
+
+
+def _trials(pairs: Mapping[str, Pairs]) -> dict[str, _Path]:
     """Cut all paths to the scenes that every one has, and success to the seeds that differ."""
-    every = [set(each.scenes) for each in pairs.values()]
-    first = next(iter(pairs.values()))
-    kept = tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
-    if not kept:
-        raise UserError(
-            "no scene is left to compare, because in each of them a trial failed or the arms met "
-            "different conditions: mend what made it fail, or choose other scenes."
-            + "".join(f" {words}" for words in mismatch_words(mismatches))
-        )
+    kept = _shared_scenes(pairs.values())
     cut = {name: each.only(kept) for name, each in pairs.items()}
     seeds = _distinct([arm.success for each in cut.values() for arm in (each.first, each.second)])
     return {

@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 
 from faultpath.record.model import Change, Effect
-from faultpath.record.words import About, capital, where
+from faultpath.record.words import About, capital, no_pair, where
 
 
 def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change]) -> str:
     """Return the headline of an audit."""
     asked = about.question
-    main = next(effect for effect in effects if effect.path == asked.primary)
+    main = next((effect for effect in effects if effect.path == asked.primary), None)
+    if main is None:
+        return f"{capital(no_pair(asked.primary))}."
     if about.few:
         return (
             f"Too few scenes to decide: {about.scenes} compared, and this question needs at least "

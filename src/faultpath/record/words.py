@@ -157,6 +157,16 @@ def change_words(about: About, isolated: Effect, shared: Effect, change: Change)
     return f"No change is detected {between} ({shown})."
 
 
+def void_paths(paths: Sequence[str]) -> tuple[str, ...]:
+    """Name the paths on which no pair of trials could be compared."""
+    return tuple(f"{capital(no_pair(path))}: the table shows what failed." for path in paths)
+
+
+def no_pair(path: str) -> str:
+    """Say that a path has no pair of trials to compare."""
+    return f"{where(path)}, no pair of trials is left to compare and nothing is decided"
+
+
 def barely_acted(
     question: Question, paths: Sequence[Path], cells: Sequence[Cell]
 ) -> tuple[str, ...]:
