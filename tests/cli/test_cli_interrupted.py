@@ -4,6 +4,8 @@ import json
 import os
 import re
 import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -106,3 +108,31 @@ def test_ctrl_c_outside_the_run_is_a_sentence_too(monkeypatch, tmp_path):
     monkeypatch.undo()
     assert audit(out=tmp_path / "run").status == 0
     assert faultpath("report", tmp_path / "run").status == 0
+
+
+STOPPED_WHILE_LOADING = """
+import os, signal, sys
+class Stop:
+    def find_spec(self, name, *_):
+        if name == "faultpath.cli.audit":
+            try:
+                os.kill(os.getpid(), signal.SIGINT)
+                signal.sigtimedwait([], 1)
+            except KeyboardInterrupt:
+                if sys.argv.pop() == "hidden":
+                    raise ImportError("a compiled module failed to load") from None
+                raise
+sys.meta_path.insert(0, Stop())
+from faultpath.cli.main import main
+main()
+"""
+
+
+@pytest.mark.parametrize("how", ["plain", "hidden"])
+def test_ctrl_c_while_the_command_loads_is_a_sentence(how: str) -> None:
+    """Compiled modules that are stopped while they load say so with an error of their own."""
+    line = [sys.executable, "-c", STOPPED_WHILE_LOADING, "scenes", "list", how]
+    done = subprocess.run(line, capture_output=True, text=True, timeout=60)
+    assert done.returncode == INTERRUPTED
+    (said,) = done.stderr.splitlines()
+    assert said.startswith("faultpath: interrupted")
