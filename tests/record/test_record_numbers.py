@@ -164,9 +164,13 @@ def test_swapping_the_arms_flips_every_sign():
 
 
 def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
-    """Return `(correct, observer)` trials of which some failed: variant, path, scene."""
+    """Return trials on three paths of which some failed: variant, path, scene."""
     out = []
-    for path, counts in ((CORRECT, (40, 20, 10)), ("observer", (20, 10, 30))):
+    for path, counts in {
+        CORRECT: (40, 20, 10),
+        "observer": (20, 10, 30),
+        "driver": (20, 9, 3),
+    }.items():
         for variant, statuses in arms(counts).items():
             for v, p, i in failed:
                 if (v, p) == (variant, path):
@@ -202,6 +206,32 @@ def test_when_every_pair_is_void_there_is_nothing_to_decide():
     every = tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
         decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+
+
+def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
+    every = tuple((REPAIR, "observer", i) for i in range(100))
+    made = decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+    (correct,) = made.effects
+    assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
+    assert not made.break_even
+    said = "With only the observer struck, no pair of trials is left to compare"
+    assert made.verdict.headline.startswith(said)
+    assert made.findings[0].startswith(said)
+    assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {
+        (CORRECT, 0),
+        ("observer", 100),
+    }
+
+
+def test_paths_that_failed_in_different_scenes_do_not_void_each_other():
+    failed = [(REPAIR, "observer", i) for i in range(60)]
+    failed += [(REPAIR, "driver", i) for i in range(40, 100)] + [(REPAIR, "driver", 0)]
+    made = decide(question(), paths(CORRECT, "observer", "driver"), _with_failures(*failed))
+    assert [(effect.path, effect.scenes) for effect in made.effects] == [
+        (CORRECT, 40),
+        ("observer", 40),
+    ]
+    assert "driver" in made.findings[0]
 
 
 def test_trials_that_met_other_conditions_are_no_pair_and_the_record_says_so():

@@ -143,9 +143,7 @@ def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
     return pair(table, Side(question.repair, path), Side(question.baseline, path))
 
 
-def _comparable(
-    pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]
-) -> dict[str, Pairs]:
+def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
     """Return the paths that have scenes in common: those with the fewest pairs go first.
 
     A fault under which every trial fails must not cost what the other paths show.
