@@ -78,11 +78,10 @@ def _show(run: Path | None, as_json: bool) -> int:
     if as_json:
         _print(answers)
         return 0
-    from rich.console import Console
-
+    from faultpath.cli.terminal import SafeConsole
     from faultpath.report.reproduction import ledger_view
 
-    Console().print(ledger_view(answers))
+    SafeConsole().print(ledger_view(answers))
     return 0
 
 

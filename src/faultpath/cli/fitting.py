@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
 
+from faultpath.cli.terminal import SafeConsole
 from faultpath.errors import Stopped
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def list_models() -> None:
     table = _table(None, "model", "seeds", "what it is")
     for entry in ALL:
         table.add_row(entry.name, ",".join(map(str, entry.seeds)), entry.description)
-    Console().print(table)
+    SafeConsole().print(table)
 
 
 def train(wishes: Wishes) -> int:
@@ -58,7 +58,7 @@ def train(wishes: Wishes) -> int:
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.store import make_folder
 
-    console = Console()
+    console = SafeConsole()
     failed = 0
     chosen = choose(wishes.names, wishes.seeds)
     for place in (wishes.data, wishes.out, wishes.tensorboard):
@@ -89,7 +89,7 @@ def result_table(cards: Sequence[ModelCard]) -> Table:
     return table
 
 
-def _tell(console: Console, report: Report, out: Path) -> None:
+def _tell(console: SafeConsole, report: Report, out: Path) -> None:
     for failure in report.failures:
         line = f"{failure.job.stem} was not fitted: {failure.error}"
         line += f" ({failure.details})" if failure.details else ""
@@ -99,7 +99,7 @@ def _tell(console: Console, report: Report, out: Path) -> None:
         console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
 
 
-def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:
+def _collect(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> None:
     from faultpath.quadrotor.training.jobs import check_pools, collect_missing, missing_pools
 
     check_pools(jobs, wishes.data)
@@ -125,7 +125,7 @@ def _collect(console: Console, jobs: Sequence[Job], wishes: Wishes) -> None:
             ) from None
 
 
-def _fit(console: Console, jobs: Sequence[Job], wishes: Wishes) -> Report:
+def _fit(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> Report:
     from faultpath.quadrotor.training.jobs import Interrupted, run_jobs
     from faultpath.quadrotor.training.worker import Places
 
@@ -187,7 +187,7 @@ class _Board:
             )
 
 
-def _progress(console: Console) -> Progress:
+def _progress(console: SafeConsole) -> Progress:
     return Progress(
         TextColumn("{task.description}"),
         BarColumn(),

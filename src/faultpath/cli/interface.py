@@ -25,8 +25,7 @@ def command(
     ] = None,
 ) -> None:
     """Print a system's information interface, and draw it."""
-    from rich.console import Console
-
+    from faultpath.cli.terminal import SafeConsole
     from faultpath.errors import UserError
     from faultpath.interface import interface_yaml, json_schema
     from faultpath.report import draw_interface, interface_table
@@ -39,7 +38,7 @@ def command(
             "--svg, --yaml and --schema write three files: give each a path of its own."
         )
     built = load_system(SystemSpec(name=system, options=settings(set_ or [])))
-    console = Console()
+    console = SafeConsole()
     console.print(interface_table(built.interface))
     for place, text in (
         (svg, lambda: draw_interface(built.interface)),

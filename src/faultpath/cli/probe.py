@@ -74,18 +74,19 @@ def command(
     if as_json:
         typer.echo(probe.model_dump_json(indent=2))
     else:
-        from rich.console import Console
+        from faultpath.cli.terminal import SafeConsole
 
-        Console().print(_table(probe))
+        SafeConsole().print(_table(probe))
 
 
 def _measure(
     measure: "Measurer", plan: "ProbePlan", scenes: int | None, folder: Path, workers: int
 ) -> "EvidenceTable":
-    from rich.console import Console
     from rich.progress import Progress
 
-    console = Console(stderr=True)
+    from faultpath.cli.terminal import SafeConsole
+
+    console = SafeConsole(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_interactive) as bar:
         task = bar.add_task("Measuring", total=None)
         return measure(

@@ -4,11 +4,11 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from faultpath.audit import Audit
 from faultpath.cli.pages import MADE_FROM, RECORD, SYSTEM, save_pages
+from faultpath.cli.terminal import SafeConsole
 from faultpath.errors import Stopped
 from faultpath.execution import (
     Failure,
@@ -45,7 +45,7 @@ def run_audit(
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
     """
-    console = Console()
+    console = SafeConsole()
     stopwatch = Stopwatch()
     if first:
         console.print(first, markup=False, soft_wrap=True)
@@ -68,7 +68,7 @@ def run_audit(
 
 
 def _run(
-    console: Console,
+    console: SafeConsole,
     system: System,
     audit: Audit,
     folder: Path,
@@ -126,7 +126,7 @@ def _json(record: DecisionRecord) -> str:
     return json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
 
 
-def _tell_failures(console: Console, result: RunResult, folder: Path) -> None:
+def _tell_failures(console: SafeConsole, result: RunResult, folder: Path) -> None:
     if not result.failures:
         return
     console.print(

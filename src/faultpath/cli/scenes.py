@@ -41,9 +41,10 @@ def generate(
 @contextmanager
 def _making(count: int) -> Generator[Callable[[int], None]]:
     """Show on the standard error how many scenes there are, and how long the others will take."""
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
     from rich.progress import TimeRemainingColumn as TimeLeft
+
+    from faultpath.cli.terminal import SafeConsole
 
     columns = (
         TextColumn("{task.description}"),
@@ -52,7 +53,7 @@ def _making(count: int) -> Generator[Callable[[int], None]]:
         TimeLeft(),
         TextColumn("left"),
     )
-    bar = Progress(*columns, console=Console(stderr=True))
+    bar = Progress(*columns, console=SafeConsole(stderr=True))
     task = bar.add_task("Making scenes", total=count)
 
     def show(made: int) -> None:

@@ -33,15 +33,15 @@ def statistics(
     detectable difference, false announcements. Exits with 1 where a promise is not kept."""
     import os
 
-    from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     from faultpath.cli.run import left
+    from faultpath.cli.terminal import SafeConsole
     from faultpath.selfcheck import check_statistics, failures
     from faultpath.selfcheck.terminal import show
     from faultpath.store import write_text
 
-    console = Console()
+    console = SafeConsole()
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

@@ -5,9 +5,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
+from faultpath.cli.terminal import SafeConsole
 from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
@@ -54,7 +54,7 @@ def carry_out(
     Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run. `quiet` leaves the
     standard output to the caller; `first` is a sentence to print before all others.
     """
-    console = Console(stderr=quiet)
+    console = SafeConsole(stderr=quiet)
     stopwatch = Stopwatch()
     if first:
         console.print(first, markup=False, soft_wrap=True)
@@ -83,7 +83,7 @@ def carry_out(
 
 def tell(plan: Plan, done: Done) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
-    console = Console()
+    console = SafeConsole()
     if plan.whole:
         console.print(ledger_view(done.reproduction.ledger))
     for table in () if plan.whole else done.reproduction.tables:
@@ -92,7 +92,7 @@ def tell(plan: Plan, done: Done) -> None:
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
 
-def _fly(console: Console, legs: Sequence[Leg], folder: Path, workers: int) -> Flown:
+def _fly(console: SafeConsole, legs: Sequence[Leg], folder: Path, workers: int) -> Flown:
     def notice(text: str) -> None:
         console.print(text, markup=False, soft_wrap=True)
 
@@ -104,7 +104,7 @@ def _fly(console: Console, legs: Sequence[Leg], folder: Path, workers: int) -> F
         return fly(legs, folder, workers, flying, notice)
 
 
-def _measure(console: Console, plan: Plan, folder: Path, workers: int) -> EvidenceTable:
+def _measure(console: SafeConsole, plan: Plan, folder: Path, workers: int) -> EvidenceTable:
     if not plan.measurements():
         return EvidenceTable({})
     with _bar(console, "Measuring", "flights") as show:
@@ -112,7 +112,7 @@ def _measure(console: Console, plan: Plan, folder: Path, workers: int) -> Eviden
 
 
 @contextmanager
-def _bar(console: Console, what: str, unit: str) -> Generator[Show]:
+def _bar(console: SafeConsole, what: str, unit: str) -> Generator[Show]:
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -174,7 +174,7 @@ def _left(seconds: float | None) -> str:
     return f"{hours}:{minutes:02d}:{rest:02d} left"
 
 
-def _tell_failures(console: Console, result: RunResult) -> None:
+def _tell_failures(console: SafeConsole, result: RunResult) -> None:
     if result.failures:
         console.print(
             f"{len(result.failures)} trials failed and void their pairs.", style="bold red"

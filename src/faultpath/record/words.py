@@ -206,15 +206,16 @@ def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
     ):
         if any(effect.extreme == extreme for effect in tested):
             lines.append(advice + "difference can hardly show.")
-    missed = [
-        f"{math.ceil(effect.minimum_detectable_pp)} pp {where(effect.path)}"
-        for effect in tested
-        if not about.few and not effect.detected and effect.minimum_detectable_pp is not None
-    ]
+    missed: dict[int, list[str]] = {}
+    for effect in tested:
+        if not about.few and not effect.detected and effect.minimum_detectable_pp is not None:
+            least = math.ceil(effect.minimum_detectable_pp)
+            missed.setdefault(least, []).append(where(effect.path))
     if missed:
+        listed = "; ".join(f"{least} pp {' and '.join(at)}" for least, at in missed.items())
         lines.append(
-            f"More scenes: a true difference below {' or '.join(missed)} is missed more often than "
-            "one time in five."
+            f"More scenes: a smaller true difference than these is found with less than 80 % "
+            f"power: {listed}."
         )
     return (*lines, ANOTHER)
 
