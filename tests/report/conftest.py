@@ -7,6 +7,7 @@ struck, behind when the fault is shared. Names a user may give carry markup, to 
 import os
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
@@ -90,10 +91,11 @@ def make_input(
     n_scenes: int = 80,
     void: bool = True,
     library: str = "held-out " + NASTY,
+    lost: str = "",
 ) -> ReportInput:
-    """Build the audit; everything follows from the arguments."""
+    """Build the audit; everything follows from the arguments. `lost`: every trial there failed."""
     paths = _paths()
-    rows = tuple(_rows(seeds, n_scenes, void))
+    rows = tuple(_lose(row) if row.path == lost else row for row in _rows(seeds, n_scenes, void))
     question = Question(
         system="quadrotor",
         options={"wind": "L3", "predictor": "wm-a"},
@@ -120,6 +122,10 @@ def make_input(
         traces=Traces(tracks, dt_s=0.05),
         plans={_scene(i): _plan(i) for i in range(n_scenes)},
     )
+
+
+def _lose(row: TrialRow) -> TrialRow:
+    return replace(row, outcome=replace(row.outcome, status=Status.FAILED, error="no number"))
 
 
 def interface() -> Interface:

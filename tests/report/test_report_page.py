@@ -180,7 +180,7 @@ def test_fixture_has_a_reversal_a_path_without_crossing_and_a_void_pair(
 
 
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
-    pairs = read_pairs(source.outcomes, source.record.question)
+    pairs = read_pairs(source.outcomes, source.record)
     for effect in source.record.effects:
         for seed, won, lost in zip(
             source.record.question.seeds, effect.wins, effect.losses, strict=True
@@ -193,6 +193,20 @@ def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
         assert len(kinds) - kinds.count(Kind.VOID) - kinds.count(Kind.LEFT_OUT) == (
             effect.scenes * len(source.record.question.seeds)
         )
+
+
+def test_a_path_of_which_every_trial_failed_costs_the_others_nothing(
+    make: Callable[..., ReportInput],
+) -> None:
+    lost = "shared"
+    source = make(void=False, n_scenes=40, lost=lost)
+    page = Page(report_page(source))
+    assert f"40 of {40 * len(source.record.paths)} pairs are void." in page.text
+    assert "other pair" not in page.text
+    assert page.text.count("no pair of trials is left to compare") == 2  # headline and finding
+    assert {
+        p.kind for p in read_pairs(source.outcomes, source.record) if p.path != lost
+    }.isdisjoint({Kind.VOID, Kind.LEFT_OUT})
 
 
 def test_viewer_data_cannot_close_its_element(html: str) -> None:

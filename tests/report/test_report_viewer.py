@@ -11,7 +11,7 @@ from faultpath.report.viewer import choose, parting_step, viewer_data
 
 
 def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    pairs = read_pairs(one_seed.outcomes, one_seed.record)
     chosen = choose(one_seed, pairs)
     assert len(chosen) == 6
     assert [s.rank for s in chosen] == sorted(s.rank for s in chosen)
@@ -27,7 +27,7 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
     widest = next(path for path in record.paths if path.name == "predictor")
     paths = [p.model_copy(update={"consumers": widest.consumers}) for p in record.paths]
     source = replace(one_seed, record=record.model_copy(update={"paths": tuple(paths)}))
-    pairs = read_pairs(source.outcomes, source.record.question)
+    pairs = read_pairs(source.outcomes, source.record)
     for shown, told in zip(
         choose(source, pairs), viewer_data(source, choose(source, pairs))["scenes"], strict=True
     ):
@@ -37,7 +37,7 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
 
 
 def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> None:
-    pairs = read_pairs(three_seeds.outcomes, three_seeds.record.question)
+    pairs = read_pairs(three_seeds.outcomes, three_seeds.record)
     chosen = choose(three_seeds, pairs)
     scenes = [s.any_pair.scene for s in chosen]
     assert len(set(scenes)) == len(scenes) == 6
@@ -46,13 +46,13 @@ def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> 
 
 
 def test_patterns_differ_where_they_can(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    pairs = read_pairs(one_seed.outcomes, one_seed.record)
     patterns = [s.pattern for s in choose(one_seed, pairs)]
     assert len(set(patterns)) == len(patterns)
 
 
 def test_without_disagreement_the_distance_decides(one_seed: ReportInput) -> None:
-    pairs = [_concordant(p) for p in read_pairs(one_seed.outcomes, one_seed.record.question)]
+    pairs = [_concordant(p) for p in read_pairs(one_seed.outcomes, one_seed.record)]
     chosen = choose(one_seed, pairs)
     assert {s.rank for s in chosen} == {4}
     gaps = [s.gap_m for s in chosen]
@@ -70,12 +70,12 @@ def _concordant(pair: Pair) -> Pair:
 
 def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
     source = make(n_scenes=4, void=False)
-    pairs = read_pairs(source.outcomes, source.record.question)
+    pairs = read_pairs(source.outcomes, source.record)
     assert len(choose(source, pairs)) == 4
 
 
 def test_tracks_are_kept_to_the_centimetre(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record.question)
+    pairs = read_pairs(one_seed.outcomes, one_seed.record)
     chosen = choose(one_seed, pairs, count=1)
     shown = viewer_data(one_seed, chosen)["scenes"][0]
     pair = shown["pairs"][0]

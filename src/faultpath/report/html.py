@@ -19,7 +19,7 @@ _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
-    pairs = read_pairs(source.outcomes, source.record.question)
+    pairs = read_pairs(source.outcomes, source.record)
     chosen = choose(source, pairs)
     return render(
         "report.html.j2",
@@ -33,7 +33,7 @@ def report_page(source: ReportInput) -> str:
         pictures=_pictures(source, pairs),
         struck=struck_paths(source.record),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
-        n_void=sum(effect.void_pairs for effect in source.record.effects),
+        n_void=sum(pair.kind is Kind.VOID for pair in pairs),
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         break_even={b.path: b.result for b in source.record.break_even},

@@ -6,7 +6,7 @@ from typing import Any
 
 import pyarrow as pa
 
-from faultpath.record.model import Question
+from faultpath.record.model import DecisionRecord
 
 
 class Kind(StrEnum):
@@ -92,8 +92,10 @@ class Pair:
         return {Kind.REPAIR_ONLY: 1, Kind.BASELINE_ONLY: -1}.get(self.kind, 0)
 
 
-def read_pairs(outcomes: pa.Table, question: Question) -> tuple[Pair, ...]:
+def read_pairs(outcomes: pa.Table, record: DecisionRecord) -> tuple[Pair, ...]:
     """Return every pair of the table, ordered by path, topology, scene index and seed."""
+    question = record.question
+    compared = {effect.path for effect in record.effects}
     trials: dict[tuple[str, str, int, str], Trial] = {}
     places: dict[tuple[str, int, str], tuple[int, str]] = {}
     rows: list[dict[str, Any]] = outcomes.to_pylist()
@@ -114,7 +116,7 @@ def read_pairs(outcomes: pa.Table, question: Question) -> tuple[Pair, ...]:
         )
         for (path, seed, scene), (index, topology) in places.items()
     ]
-    void = {pair.scene for pair in pairs if pair.kind is Kind.VOID}
+    void = {p.scene for p in pairs if p.kind is Kind.VOID and p.path in compared}
     pairs = [replace(pair, left_out=pair.scene in void) for pair in pairs]
     return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
 

@@ -117,9 +117,7 @@ def _flights(source: ReproductionInput) -> ViewerData | None:
     if source.decision is None:
         return None
     audit = _Audit(source.decision, source.traces, source.plans)
-    chosen = choose(
-        audit, read_pairs(_trials(source.outcomes, audit.record), audit.record.question)
-    )
+    chosen = choose(audit, read_pairs(_trials(source.outcomes, audit.record), audit.record))
     return viewer_data(audit, chosen) if chosen else None
 
 
