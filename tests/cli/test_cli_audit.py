@@ -25,7 +25,7 @@ FILES = {
     "table.tex",
     "table.md",
 }
-BROKEN = f"{HERE / 'slow_toy.py'}:broken"
+BROKEN = f"{HERE / 'systems' / 'slow_toy.py'}:broken"
 
 
 @pytest.fixture(autouse=True)
@@ -260,7 +260,7 @@ def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):
         ended = audit(**options)
         assert ended.status == 1
         assert "Traceback" not in ended.out + ended.err
-        assert "cart/003: ZeroDivisionError: the [cart] has no wheels" in ended.out
+        assert re.search(r"cart/003 .*ZeroDivisionError: the \[cart\] has no wheels", ended.out)
         (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
         assert "has no wheels" in Path(place).read_text()
     effect = read_record(tmp_path / "run").effects[0]
@@ -270,8 +270,8 @@ def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):
 
 def test_when_every_trial_fails_the_failures_are_shown_and_nothing_is_decided(tmp_path):
     ended = audit(system=BROKEN, set="where=", out=tmp_path / "run", scenes=2)
-    assert "no scene is left" in ended.refused()
-    assert "cart/000: ZeroDivisionError" in ended.out
+    said = ended.refused()
+    assert "and none ran to its end; in scene 'cart/000': ZeroDivisionError" in said
     assert not (tmp_path / "run" / "record.json").exists()
 
 

@@ -33,7 +33,7 @@ def gate(tmp_path: Path) -> Path:
 
 
 def _options(gate: Path, out: Path) -> dict[str, object]:
-    system = f"{HERE / 'slow_toy.py'}:create"
+    system = f"{HERE / 'systems' / 'slow_toy.py'}:create"
     return {"system": system, "set": f"gate={gate}", "out": out, "scenes": SCENES}
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from cli_runs import HERE, TOY, audit, faultpath
 
-SLOW_TOY = f"{HERE / 'slow_toy.py'}"
+SLOW_TOY = f"{HERE / 'systems' / 'slow_toy.py'}"
 
 
 @pytest.fixture(autouse=True)

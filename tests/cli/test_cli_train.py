@@ -139,8 +139,8 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPat
     [
         (["two"], ["'two'", "one, one+dcc, bug, mistake", "both, all"]),
         (["one", "--seed", "x"], ["--seed", "`faultpath train quadrotor --help`"]),
-        (["one", "--seed", "-1"], ["-1", "negative"]),
-        (["one", "--out", "/proc/none"], ["/proc/none", "write"]),
+        (["one", "--seed", "-1"], ["--seed", "greater than or equal to 0"]),
+        (["one", "--out", "/proc/none"], ["/proc/none", "choose another path"]),
         (["one", "--fast"], ["--fast"]),
     ],
     ids=" ".join,

@@ -77,9 +77,7 @@ def command(
     alone, and under the shared fault."""
     from faultpath.audit import plan_audit
     from faultpath.faults import parse_fault
-    from faultpath.store.earlier import keyed
     from faultpath.trials import SystemSpec, library_of, load_system
-    from faultpath.trials.state import system_code
 
     named = {
         "wind": wind,
@@ -105,11 +103,15 @@ def command(
         primary=primary,
         generalise=generalise,
     )
+
+    # Pages and workers: no mistake so far waits for them.
+    from faultpath.cli.run import run_audit
+    from faultpath.store.earlier import keyed
+    from faultpath.trials.state import system_code
+
     name = _name(audit.study.name, fault, library, scenes, seeds, options)
     folder, other = (out, "") if out else keyed(Path("runs"), name, system_code(built, spec).state)
     count = _workers(options) if workers is None else workers
-
-    from faultpath.cli.run import run_audit  # pages and workers; no mistake so far waits for them
 
     failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other, time_limit)
     return FAILED_TRIALS if failed else 0

@@ -56,12 +56,15 @@ def train(wishes: Wishes) -> int:
     and data that cannot be collected.
     """
     from faultpath.quadrotor.training.catalogue import choose, stages
+    from faultpath.quadrotor.training.scalars import require_tensorboard
     from faultpath.store import make_folder
 
     console = SafeConsole()
     failed = 0
     chosen = choose(wishes.names, wishes.seeds)
-    for place in (wishes.data, wishes.out, wishes.tensorboard):
+    if wishes.tensorboard is not None:
+        require_tensorboard()
+    for place in (wishes.out, wishes.tensorboard, wishes.data):
         if place is not None:
             make_folder(place)  # before the flights: what cannot be kept need not be collected
     for jobs in stages(chosen):

@@ -6,15 +6,16 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import path
+from faultpath.errors import UserError
 
 
 def command(
     folder: Annotated[Path, typer.Argument(parser=path, help="Folder of a finished audit.")],
 ) -> None:
     """Write report and tables of a run again from what its folder holds; runs no code of it."""
-    from faultpath.cli.records import read_provenance
-
-    read_provenance(folder)  # what draws takes a second to load, and a wrong folder need not wait
+    # What draws takes a second to load, and a wrong folder need not wait.
+    if not (folder / "provenance.json").exists():
+        raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
 
     from faultpath.cli.pages import save_pages
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from faultpath.trials import System
 
-_PLACE = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+_PLACE = Path(__file__).resolve().parents[3] / "examples" / "toy.py"
 _SPEC = importlib.util.spec_from_file_location("toy_of_the_examples", _PLACE)
 assert _SPEC is not None
 assert _SPEC.loader is not None
