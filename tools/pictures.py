@@ -47,6 +47,7 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
                 reduced_motion="reduce",
                 offline=True,
                 device_scale_factor=2,
+                bypass_csp=True,  # the page's policy refuses the style that is added below
             )
             page = context.new_page()
             page.goto(report(run).as_uri())
