@@ -107,8 +107,8 @@ def _origin(found: Reproduction, origin: RunProvenance) -> str:
     commit = origin.commit[:12] if origin.commit else "unknown"
     return (
         f"Flown between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "
-        f"concluded by commit `{commit}` with {origin.workers} workers on "
-        f"{origin.processor.replace('(R)', '')}. Everything is in "
+        f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded by "
+        f"commit `{commit}`; concluded anew by the code that is here, which a test repeats. Everything is in "
         "[`docs/reference/paper`]({reference}/paper): the report, the ledger and all tables."
     )
 
