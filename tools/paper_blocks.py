@@ -108,7 +108,8 @@ def _origin(found: Reproduction, origin: RunProvenance) -> str:
     return (
         f"Flown between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "
         f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded by "
-        f"commit `{commit}`; concluded anew by the code that is here, which a test repeats. Everything is in "
+        f"commit `{commit}`; concluded anew by the code that is here, which a test repeats. "
+        "Everything is in "
         "[`docs/reference/paper`]({reference}/paper): the report, the ledger and all tables."
     )
 
