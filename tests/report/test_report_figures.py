@@ -76,7 +76,7 @@ def test_empty_interface_can_be_drawn() -> None:
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     record = one_seed.record
-    pairs = read_pairs(one_seed.outcomes, record.question)
+    pairs = read_pairs(one_seed.outcomes, record)
     rows = figures.effect_rows(record)
     drawn = [
         figures.forest(rows, "a<b", "c&d"),
