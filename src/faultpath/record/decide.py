@@ -1,13 +1,11 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
 from statistics import median
-
-import numpy as np
 
 from faultpath.errors import UserError
 from faultpath.record import breakeven_words, words
+from faultpath.record.compared import PathTrials, compared
 from faultpath.record.family import CORRECT, SHARED, Arms, Decided, Family, decide_paths, percent
 from faultpath.record.headline import headline
 from faultpath.record.model import (
@@ -31,16 +29,8 @@ from faultpath.statistics import (
     mixture_curve,
 )
 from faultpath.trials.outcome import Status
-from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
+from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
-
-
-@dataclass(frozen=True)
-class _Path:
-    """The trials of one path: all that are compared, and success by the seeds that differ."""
-
-    pairs: Pairs
-    arms: Arms
 
 
 def decide(
@@ -60,16 +50,14 @@ def decide(
     gave the same.
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    pairs = {path.name: _pair(question, path.name, table) for path in paths}
-    mismatches = [each for path in pairs.values() for each in path.mismatches]
-    compared = _comparable(pairs, mismatches)
-    trials = _trials(compared)
-    if question.generalise == "models" and _seeds_alike(trials)[1] < 2:
+    found = compared(question, paths, table)
+    trials = found.trials
+    if question.generalise == "models" and found.seeds[1] < 2:
         raise UserError(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
             "models: leave --generalise models out."
         )
-    n_scenes = len(next(iter(trials.values())).pairs.scenes)
+    n_scenes = found.scenes
     cells = tuple(
         _cell(table, variant, path.name)
         for path in paths
@@ -108,7 +96,7 @@ def decide(
         verdict=Verdict(
             headline=headline(about, effects, changes),
             sentences=(
-                *words.opening(about, _seeds_alike(trials)),
+                *words.opening(about, found.seeds),
                 *(effect.words for effect in effects),
                 *(change.words for change in changes),
                 *breakeven_words.sentences(breaks, effects),
@@ -117,8 +105,8 @@ def decide(
             would_change=words.would_change(about, effects),
         ),
         findings=(
-            *words.void_paths([name for name in pairs if name not in compared]),
-            *mismatch_words(mismatches),
+            *words.void_paths(found.void),
+            *mismatch_words(found.mismatches),
             *findings,
         ),
     )
@@ -139,60 +127,6 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
     return named or (SHARED if SHARED in names else (isolated or names)[0])
 
 
-def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
-    return pair(table, Side(question.repair, path), Side(question.baseline, path))
-
-
-def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
-    """Return the paths that have scenes in common: those with the fewest pairs go first.
-
-    A fault under which every trial fails must not cost what the other paths show.
-    """
-    left = dict(pairs)
-    while not _shared_scenes(left.values()):
-        faulty = [name for name in left if name != CORRECT]
-        if not faulty or not left[CORRECT].scenes:
-            raise UserError(
-                "no scene is left to compare, because in each of them a trial failed or the arms "
-                "met different conditions: mend what made it fail, or choose other scenes."
-                + "".join(f" {words}" for words in mismatch_words(mismatches))
-            )
-        del left[min(faulty, key=lambda name: len(left[name].scenes))]
-    return left
-
-
-def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
-    first, *others = pairs
-    every = [set(each.scenes) for each in others]
-    return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
-
-
-def _trials(pairs: Mapping[str, Pairs]) -> dict[str, _Path]:
-    """Cut all paths to the scenes that every one has, and success to the seeds that differ."""
-    kept = _shared_scenes(pairs.values())
-    cut = {name: each.only(kept) for name, each in pairs.items()}
-    seeds = _distinct([arm.success for each in cut.values() for arm in (each.first, each.second)])
-    return {
-        name: _Path(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
-        for name, each in cut.items()
-    }
-
-
-def _distinct(arms: Sequence[Bools]) -> list[int]:
-    """Return the seeds without those that repeat an earlier one in every arm and scene."""
-    stacked = np.concatenate(arms)
-    seen: dict[bytes, int] = {}
-    for seed, column in enumerate(stacked.T):
-        seen.setdefault(column.tobytes(), seed)
-    return list(seen.values())
-
-
-def _seeds_alike(trials: Mapping[str, _Path]) -> tuple[int, int]:
-    """Return how many seeds were run and how many of them differ."""
-    first = next(iter(trials.values()))
-    return first.pairs.first.success.shape[1], first.arms[0].shape[1]
-
-
 def _untested(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
     """Return the paths on which the fault changed nothing in any trial."""
     acted = {cell.path for cell in cells if cell.altered_trials}
@@ -202,7 +136,7 @@ def _untested(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
 def _effect(
     about: words.About,
     path: str,
-    trials: _Path,
+    trials: PathTrials,
     family: Family,
     resamples: Resamples,
     untested: Collection[str],

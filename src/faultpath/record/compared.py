@@ -1,0 +1,98 @@
+"""Which trials an audit compares: the pairs of all paths, cut to what they have in common."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from faultpath.errors import UserError
+from faultpath.record.family import CORRECT, Arms
+from faultpath.record.model import Path, Question
+from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
+from faultpath.trials.table import OutcomeTable
+
+
+@dataclass(frozen=True)
+class PathTrials:
+    """The trials of one path: all that are compared, and success by the seeds that differ."""
+
+    pairs: Pairs
+    arms: Arms
+
+
+@dataclass(frozen=True)
+class Compared:
+    """What is compared, path by path, and what is not."""
+
+    trials: Mapping[str, PathTrials]
+    void: tuple[str, ...]
+    """Paths of which no pair is left beside the others."""
+    mismatches: tuple[Mismatch, ...]
+
+    @property
+    def scenes(self) -> int:
+        """Scenes that every path compared has."""
+        return len(next(iter(self.trials.values())).pairs.scenes)
+
+    @property
+    def seeds(self) -> tuple[int, int]:
+        """How many seeds were run and how many of them differ."""
+        first = next(iter(self.trials.values()))
+        return first.pairs.first.success.shape[1], first.arms[0].shape[1]
+
+
+def compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
+    """Return the trials that `decide` compares; `UserError` when no scene is left."""
+    pairs = {path.name: _pair(question, path.name, table) for path in paths}
+    mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
+    left = _comparable(pairs, mismatches)
+    void = tuple(name for name in pairs if name not in left)
+    return Compared(_trials(left), void, mismatches)
+
+
+def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
+    return pair(table, Side(question.repair, path), Side(question.baseline, path))
+
+
+def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
+    """Return the paths that have scenes in common: those with the fewest pairs go first.
+
+    A fault under which every trial fails must not cost what the other paths show.
+    """
+    left = dict(pairs)
+    while not _shared_scenes(left.values()):
+        faulty = [name for name in left if name != CORRECT]
+        if not faulty or not left[CORRECT].scenes:
+            raise UserError(
+                "no scene is left to compare, because in each of them a trial failed or the arms "
+                "met different conditions: mend what made it fail, or choose other scenes."
+                + "".join(f" {words}" for words in mismatch_words(mismatches))
+            )
+        del left[min(faulty, key=lambda name: len(left[name].scenes))]
+    return left
+
+
+def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
+    first, *others = pairs
+    every = [set(each.scenes) for each in others]
+    return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
+
+
+def _trials(pairs: Mapping[str, Pairs]) -> dict[str, PathTrials]:
+    """Cut all paths to the scenes that every one has, and success to the seeds that differ."""
+    kept = _shared_scenes(pairs.values())
+    cut = {name: each.only(kept) for name, each in pairs.items()}
+    seeds = _distinct([arm.success for each in cut.values() for arm in (each.first, each.second)])
+    return {
+        name: PathTrials(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
+        for name, each in cut.items()
+    }
+
+
+def _distinct(arms: Sequence[Bools]) -> list[int]:
+    """Return the seeds without those that repeat an earlier one in every arm and scene."""
+    stacked = np.concatenate(arms)
+    seen: dict[bytes, int] = {}
+    for seed, column in enumerate(stacked.T):
+        seen.setdefault(column.tobytes(), seed)
+    return list(seen.values())
