@@ -39,6 +39,16 @@ def test_numbers_are_written_and_tables_printed(check, tmp_path):
     assert "No promise is broken by more than three standard errors." in said
 
 
+@pytest.mark.parametrize("out", ["", "nowhere/found.json", "."])
+def test_a_place_that_cannot_be_written_is_refused_before_the_work(out, monkeypatch, capsys):
+    monkeypatch.setattr("faultpath.selfcheck.check_statistics", lambda *_: pytest.fail("worked"))
+    monkeypatch.setattr("sys.argv", ["faultpath", "selfcheck", "statistics", "--out", out])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert ended.value.code == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
 def test_a_wrong_interval_is_found(check, monkeypatch):
     """Half the quantile: 67 % intervals under the name of 95 %."""
     honest = score.rejects

@@ -39,8 +39,10 @@ def statistics(
     from faultpath.cli.terminal import SafeConsole
     from faultpath.selfcheck import check_statistics, failures
     from faultpath.selfcheck.terminal import show
-    from faultpath.store import write_text
+    from faultpath.store import check_writable, write_text
 
+    if out is not None:
+        check_writable(out)
     console = SafeConsole()
     columns = (
         TextColumn("{task.description}"),
@@ -58,9 +60,9 @@ def statistics(
         report = check_statistics(
             "quick" if quick else "full", processes or os.cpu_count() or 1, note
         )
+    show(report, console)
     if out is not None:
         write_text(out, report.text())
-    show(report, console)
     broken = failures(report)
     for line in broken:
         console.print(f"Not kept: {line}", markup=False, soft_wrap=True)

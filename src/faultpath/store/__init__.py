@@ -1,6 +1,6 @@
 """What a run leaves behind: a folder of shards, and the tables assembled from them."""
 
-from faultpath.store.atomic import make_folder, write_text
+from faultpath.store.atomic import check_writable, make_folder, write_text
 from faultpath.store.deliveries import read_deliveries
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.folder import RunFolder
@@ -14,6 +14,7 @@ __all__ = [
     "RunFolder",
     "Shard",
     "TrialAddress",
+    "check_writable",
     "make_folder",
     "read_deliveries",
     "read_evidence",

@@ -54,9 +54,19 @@ def write_text(path: Path, text: str, inside: Path | None = None) -> None:
     try:
         write(path, text.encode(), inside)
     except OSError as error:
-        raise UserError(
-            f"cannot write {path} ({error.strerror}): choose a place that you may write to"
-        ) from error
+        raise _unwritable(path, error) from error
+
+
+def check_writable(path: Path) -> None:
+    """Raise `UserError` where no file can be written, before the work that is to go into it."""
+    try:
+        place = _place(path, None)
+        if not place.parent.is_dir():
+            raise OSError(errno.ENOENT, "there is no such folder")
+        if not os.access(place.parent, os.W_OK | os.X_OK):
+            raise OSError(errno.EACCES, "permission denied")
+    except OSError as error:
+        raise _unwritable(path, error) from error
 
 
 def make_folder(path: Path) -> None:
@@ -73,6 +83,12 @@ def sweep(folder: Path) -> None:
     """Remove what killed writers left in a folder. Call it with the folder locked."""
     for leftover in folder.glob(_PREFIX + "*"):
         leftover.unlink(missing_ok=True)
+
+
+def _unwritable(path: Path, error: OSError) -> UserError:
+    return UserError(
+        f"cannot write {path} ({error.strerror}): choose a place that you may write to"
+    )
 
 
 def _place(path: Path, inside: Path | None) -> Path:
