@@ -100,7 +100,7 @@ def replaced_step() -> Predictor:
 def own_kinematics() -> Predictor:
     class Integrator(KinematicIntegrator):
         def advance(self, *given: object, **named: object) -> State:
-            ahead = super().advance(*given, **named)  # type: ignore[arg-type]
+            ahead = super().advance(*given, **named)
             return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate)
 
     model = predictor("wm-a-wind")
@@ -110,7 +110,7 @@ def own_kinematics() -> Predictor:
 
 
 OWN: dict[str, Callable[[], Predictor]] = {
-    "anchored": lambda: Anchored(predictor("wm-a").network, wind=True),  # type: ignore[attr-defined]
+    "anchored": lambda: Anchored(predictor("wm-a").network, wind=True),
     "kinematic": Kinematic,
     "a step of its own on the instance": replaced_step,
     "kinematics of its own": own_kinematics,

@@ -8,7 +8,9 @@ from faultpath.statistics import (
     Effect,
     Resamples,
     TestResult,
+    difference_of_effects,
     mean_effect,
+    success_effect,
     weighted_sum,
 )
 from faultpath.studies.claims.found import MULTIPLE, POINT_SCENES, Found, of_effect
@@ -278,3 +280,17 @@ def test_effects_that_cancel_leave_exactly_nothing() -> None:
     gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])
     assert gone.value == 0
     assert not gone.draws.any()
+
+
+def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
+    """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
+    drawn = Resamples.draw("claims", 25)
+    arms = np.ones((25, 1), dtype=bool)
+    change = difference_of_effects(
+        success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)
+    )
+    found = of_effect(change)
+    assert found.interval is not None
+    low, high = found.interval
+    assert found.mde == pytest.approx(MULTIPLE * (high - low) / (2 * 1.959964), rel=1e-5)
+    assert found.mde > high

@@ -10,7 +10,9 @@ from faultpath.studies.results import Results
 
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
-MULTIPLE = normal_quantile(0.975) + normal_quantile(0.8)
+HALF_WIDTH = normal_quantile(0.975)
+"""Standard errors from the middle of a 95 % interval to its ends."""
+MULTIPLE = HALF_WIDTH + normal_quantile(0.8)
 """Standard errors that a difference must have to be detected at 0.05 with 80 % power."""
 
 POINT_SCENES = 50
@@ -89,12 +91,15 @@ Quantity = Callable[[Results], Found]
 
 
 def of_effect(effect: Effect, telling_mde: float | None = None) -> Found:
-    """Return an effect without a test: its interval decides."""
+    """Return an effect without a test: its interval decides, and gives the standard error."""
     enough = effect.n_scenes >= MIN_SCENES
-    spread = float(effect.draws.std())
+    low, high = effect.interval()
+    # What has no bound has a bootstrap interval, whose ends say less of its spread than the draws.
+    bounded = effect.scenes is not None
+    spread = (high - low) / (2.0 * HALF_WIDTH) if bounded else float(effect.draws.std())
     return Found(
         value=effect.value,
-        interval=effect.estimate().interval if enough else None,
+        interval=(low, high) if enough else None,
         unit=effect.unit,
         n_scenes=effect.n_scenes,
         mde=MULTIPLE * spread if enough and spread > ROUNDING else None,
