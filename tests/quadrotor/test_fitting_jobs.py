@@ -10,11 +10,12 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training import catalogue, jobs, trajectories
+from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
 from faultpath.quadrotor.training.fitting import Moment, fit
-from faultpath.quadrotor.training.jobs import Interrupted, Report, missing_pools, run_jobs
+from faultpath.quadrotor.training.job_pools import missing_pools
+from faultpath.quadrotor.training.jobs import Interrupted, Report, run_jobs
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.quadrotor.training.pace import Overview, Pace
 from faultpath.quadrotor.training.provenance import Provenance
@@ -88,7 +89,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(
 ) -> None:
     model = {"nominal": "wm-a", "trajectory": "gru-trajectory"}[pool]
     wanted = [job for job in choose([model]) if job.seed == 0]
-    code = {"nominal": jobs, "trajectory": trajectories}[pool].code_sha256()
+    code = {"nominal": job_pools, "trajectory": trajectories}[pool].code_sha256()
     provenance = Provenance(
         pool=pool,
         episodes=1,
@@ -105,7 +106,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(
     )
     path = tmp_path / f"{pool}.json"
     path.write_bytes(provenance.encode())
-    jobs.check_pools(wanted, tmp_path)
+    job_pools.check_pools(wanted, tmp_path)
     path.write_bytes(provenance.model_copy(update={"code_sha256": "other"}).encode())
     with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
         run_jobs(wanted, Places(tmp_path, tmp_path / "out"), 0, print, print)
@@ -125,16 +126,16 @@ def test_each_missing_pool_is_made_by_its_own_collector(
         made.append(f"{folder.name}/images by {workers}")
         progress(3, 4)
 
-    monkeypatch.setattr(jobs, "collect", flights)
+    monkeypatch.setattr(job_pools, "collect", flights)
 
     def closed_loop(folder: Path, workers: int, progress) -> None:
         made.append(f"{folder.name}/closed loop by {workers}")
         progress(5, 6)
 
-    monkeypatch.setattr(jobs.clearance_data, "collect", images)
-    monkeypatch.setattr(jobs.trajectories, "record", closed_loop)
+    monkeypatch.setattr(job_pools.clearance_data, "collect", images)
+    monkeypatch.setattr(job_pools.trajectories, "record", closed_loop)
     (tmp_path / "wind.json").touch()
-    jobs.collect_missing(choose([]), tmp_path, 2, lambda *news: told.append(news))
+    job_pools.collect_missing(choose([]), tmp_path, 2, lambda *news: told.append(news))
     what = ("nominal", "closed loop", "images")
     assert made == [f"{tmp_path.name}/{each} by 2" for each in what]
     assert told == [("nominal", 1.0, 2.0), ("trajectory", 5, 6), ("clearance", 3, 4)]

@@ -103,7 +103,11 @@ def _tell(console: SafeConsole, report: Report, out: Path) -> None:
 
 
 def _collect(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> None:
-    from faultpath.quadrotor.training.jobs import check_pools, collect_missing, missing_pools
+    from faultpath.quadrotor.training.job_pools import (
+        check_pools,
+        collect_missing,
+        missing_pools,
+    )
 
     check_pools(jobs, wishes.data)
     missing = missing_pools(jobs, wishes.data)

@@ -1,0 +1,54 @@
+"""The pools of data that models are fitted on: which are there, of which code, and making them."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.training import clearance_data, trajectories
+from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
+from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.pool import provenance_path
+from faultpath.quadrotor.training.provenance import code_sha256, read_provenance
+
+
+def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
+    """Return the pools that some jobs need and the folder does not hold whole."""
+    pools = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
+    return tuple(pool for pool in pools if not provenance_path(data / pool).is_file())
+
+
+def check_pools(jobs: Sequence[Job], data: Path) -> None:
+    """Raise `UserError` where a pool that some jobs need was collected by other code than this."""
+    needed = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
+    for pool in needed:
+        path = data / f"{pool}.parquet"
+        if pool == CLEARANCE_POOL or (found := read_provenance(path)) is None:
+            continue  # the depth images are checked where they are read
+        code = trajectories.code_sha256() if pool == trajectories.POOL else code_sha256()
+        if found.code_sha256 != code:
+            raise UserError(
+                f"the pool at {path} was collected by other code than this, with faultpath "
+                f"{found.faultpath_version}: delete {path.with_suffix('.json')} to collect it "
+                "again, or give another folder of data"
+            )
+
+
+def collect_missing(
+    jobs: Sequence[Job],
+    data: Path,
+    workers: int,
+    progress: Callable[[str, float, float], None] | None = None,
+) -> None:
+    """Collect the pools that are missing: training flights, closed-loop flights, depth images.
+
+    `progress` is called with the name of a pool, what is done of it and what was asked for.
+    """
+    for pool in missing_pools(jobs, data):
+        report = None if progress is None else partial(progress, pool)
+        if pool == CLEARANCE_POOL:
+            clearance_data.collect(data, workers=max(workers, 1), progress=report)
+        elif pool == trajectories.POOL:
+            trajectories.record(data, max(workers, 1), progress=report)
+        else:
+            collect(data, [pool], max(workers, 1), progress=report)
