@@ -8,6 +8,7 @@ IDLE = {
     "device": (["claims", "--device", "cuda"], "--device would do nothing", "--library"),
     "out": (["claims", "--out", "x"], "--out would do nothing", "--library"),
     "workers": (["claims", "--workers", "2", "--json"], "--workers would do nothing", "--library"),
+    "limit": (["claims", "--time-limit", "9"], "--time-limit would do nothing", "--library"),
     "two": (
         ["claims", "--device", "cuda", "--profile", "nonsense"],
         "--profile and --device would do nothing",
@@ -58,6 +59,24 @@ def test_numbers_and_names_beyond_all_bounds(arguments, says, tmp_path):
     sentence = faultpath(*arguments).refused()
     assert says in sentence
     assert len(sentence) < 800
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "verb", [["reproduce", "table-4"], ["claims", "--library", "selection"]], ids=lambda v: v[0]
+)
+@pytest.mark.parametrize(
+    ("limit", "workers", "says"),
+    [
+        ("0", 1, "the time limit is 0 s"),
+        ("nan", 1, "the time limit is nan s"),
+        ("5", 0, "a time limit needs worker processes"),
+    ],
+)
+def test_a_time_limit_that_cannot_be_kept(verb, limit, workers, says, tmp_path):
+    """Refused where the trials fly, and so it has got there; nothing is flown or written."""
+    sentence = faultpath(*verb, "--time-limit", limit, "--workers", workers).refused()
+    assert says in sentence
     assert list(tmp_path.iterdir()) == []
 
 

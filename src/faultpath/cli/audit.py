@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import numbers, path, settings
+from faultpath.cli.options import TimeLimit, numbers, path, settings
 
 FAILED_TRIALS = 1
 LONGEST_NAME = 180
@@ -65,13 +65,7 @@ def command(
             help="Worker processes, 0 for none beside this one; default one a core, or one a GPU."
         ),
     ] = None,
-    time_limit: Annotated[
-        float | None,
-        typer.Option(
-            help="Seconds that a block of scenes may take; default 20 times the slowest so far, at "
-            "least 300, and 3600 for the first."
-        ),
-    ] = None,
+    time_limit: TimeLimit = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""

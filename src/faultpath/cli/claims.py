@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import path, refuse_unless
+from faultpath.cli.options import TimeLimit, path, refuse_unless
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
@@ -35,6 +35,7 @@ def command(
     ] = None,
     workers: Annotated[int | None, typer.Option(help="With --library: worker processes.")] = None,
     device: Annotated[str | None, typer.Option(help="With --library: cpu or cuda.")] = None,
+    time_limit: TimeLimit = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the claims as JSON.")] = False,
 ) -> int:
     """Evaluate every claim of the paper from an outcome table, or on a library of your own."""
@@ -45,7 +46,14 @@ def command(
             "--run reads a finished reproduction and --library makes a new one: give one of them."
         )
     if library is None:
-        refuse_unless("--library", profile=profile, out=out, workers=workers, device=device)
+        refuse_unless(
+            "--library",
+            profile=profile,
+            out=out,
+            workers=workers,
+            device=device,
+            time_limit=time_limit,
+        )
         return _show(run, as_json)
     profile = profile or "paper"
     from faultpath.cli.reproduce import crew
@@ -58,7 +66,7 @@ def command(
     from faultpath.cli.studies import carry_out, tell
 
     line = ("faultpath", *sys.argv[1:])
-    done = carry_out(asked, folder, crew(workers, device), line, as_json, other)
+    done = carry_out(asked, folder, crew(workers, device), line, as_json, other, time_limit)
     if as_json:
         _print(done.reproduction.ledger)
     else:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
@@ -13,6 +14,16 @@ _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
 LARGEST = 2**63 - 1
 """What the tables hold."""
+
+
+TimeLimit = Annotated[
+    float | None,
+    typer.Option(
+        help="Seconds that a block of scenes may take; default 20 times the slowest so far, at "
+        "least 300, and 3600 for the first."
+    ),
+]
+"""`--time-limit` of the verbs that fly."""
 
 
 def check_arguments(arguments: Sequence[str]) -> None:
@@ -71,7 +82,8 @@ def refuse_with(other: str, **given: object) -> None:
 
 
 def _named(given: Mapping[str, object]) -> str:
-    return " and ".join(f"--{name}" for name, value in given.items() if value is not None)
+    asked = (name.replace("_", "-") for name, value in given.items() if value is not None)
+    return " and ".join(f"--{name}" for name in asked)
 
 
 def path(text: str | Path) -> Path:

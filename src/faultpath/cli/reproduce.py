@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import path
+from faultpath.cli.options import TimeLimit, path
 
 FAILED_TRIALS = 1
 
@@ -30,6 +30,7 @@ def command(
         int | None, typer.Option(help="Worker processes; default one a core, or one a GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
+    time_limit: TimeLimit = None,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and set the results beside it."""
     from faultpath.studies.run import plan, standing
@@ -43,7 +44,7 @@ def command(
     from faultpath.cli.studies import carry_out, tell
 
     line = ("faultpath", *sys.argv[1:])
-    done = carry_out(asked, folder, crew(workers, device), line, first=other)
+    done = carry_out(asked, folder, crew(workers, device), line, first=other, time_limit_s=time_limit)
     tell(asked, done)
     return FAILED_TRIALS if done.reproduction.failed_trials else 0
 

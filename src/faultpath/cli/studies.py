@@ -48,11 +48,13 @@ def carry_out(
     command: Sequence[str],
     quiet: bool = False,
     first: str = "",
+    time_limit_s: float | None = None,
 ) -> Done:
     """Fly, measure, conclude and write the files of a plan.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run. `quiet` leaves the
-    standard output to the caller; `first` is a sentence to print before all others.
+    standard output to the caller; `first` is a sentence to print before all others. `time_limit_s`
+    is that of `run_study`.
     """
     console = SafeConsole(stderr=quiet)
     stopwatch = Stopwatch()
@@ -62,7 +64,7 @@ def carry_out(
     if note := plan.substitution():
         console.print(note, markup=False, soft_wrap=True)
     try:
-        flown = _fly(console, legs, folder, workers)
+        flown = _fly(console, legs, folder, workers, time_limit_s)
         evidence = _measure(console, plan, folder, workers)
     except (Interrupted, KeyboardInterrupt):
         raise Stopped(
@@ -92,7 +94,13 @@ def tell(plan: Plan, done: Done) -> None:
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
 
-def _fly(console: SafeConsole, legs: Sequence[Leg], folder: Path, workers: int) -> Flown:
+def _fly(
+    console: SafeConsole,
+    legs: Sequence[Leg],
+    folder: Path,
+    workers: int,
+    time_limit_s: float | None,
+) -> Flown:
     def notice(text: str) -> None:
         console.print(text, markup=False, soft_wrap=True)
 
@@ -101,7 +109,7 @@ def _fly(console: SafeConsole, legs: Sequence[Leg], folder: Path, workers: int) 
         def flying(now: Pace) -> None:
             show(now.trials_done, now.trials_total, f"{_left(now.seconds_left)}  {now.leg}")
 
-        return fly(legs, folder, workers, flying, notice)
+        return fly(legs, folder, workers, flying, notice, time_limit_s)
 
 
 def _measure(console: SafeConsole, plan: Plan, folder: Path, workers: int) -> EvidenceTable:

@@ -98,10 +98,11 @@ def fly(
     workers: int,
     progress: Callable[[Pace], None],
     notice: Callable[[str], None],
+    time_limit_s: float | None = None,
 ) -> Flown:
     """Fly the legs one after the other, keeping what the folder of a run already holds.
 
-    Raises as `run_study` does.
+    `time_limit_s` is that of `run_study`, for every leg. Raises as `run_study` does.
     """
     clock = _Clock(sum(leg.trials for leg in legs), progress)
     results: list[RunResult] = []
@@ -119,6 +120,7 @@ def fly(
                     system,
                     shared=True,
                     crew=crew,
+                    time_limit_s=time_limit_s,
                     recheck=False,
                 )
             )
