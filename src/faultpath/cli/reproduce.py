@@ -44,7 +44,9 @@ def command(
     from faultpath.cli.studies import carry_out, tell
 
     line = ("faultpath", *sys.argv[1:])
-    done = carry_out(asked, folder, crew(workers, device), line, first=other, time_limit_s=time_limit)
+    done = carry_out(
+        asked, folder, crew(workers, device), line, first=other, time_limit_s=time_limit
+    )
     tell(asked, done)
     return FAILED_TRIALS if done.reproduction.failed_trials else 0
 
