@@ -1,6 +1,7 @@
 """Conclude stored reference runs anew: the same trials, decided by the code that is here.
 
-Tracks of the flights that a page shows are not stored beside it; they are read back from the page.
+Where the tracks of the flights that a page shows are not stored beside it, they are read back from
+the page.
 """
 
 import json
@@ -14,14 +15,15 @@ from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
 from paper_blocks import SHIPPED
 
+from faultpath.cli.pages import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
-from faultpath.report import ReportInput, Traces, markdown_table, report_page
+from faultpath.report import ReportInput, Traces, write_report
 from faultpath.report.booktabs import booktabs_document
 from faultpath.report.inputs import TraceKey
 from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import ReproductionInput, ledger_markdown, reproduction_page
-from faultpath.store import read_outcomes, read_table
+from faultpath.store import read_outcomes, read_table, read_traces
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.claims import ledger
@@ -70,22 +72,24 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     table = read_table(outcomes.read_bytes())
     scenes = list(dict.fromkeys(map(str, table["scene"].to_pylist())))
     shown = system_shown(system, (asked.baseline, asked.repair), scenes)
-    page = report_page(
+    stored = folder / TRACES
+    tracks = read_traces(stored) if stored.is_file() else _tracks(folder / "report.html")
+    text = json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
+    (folder / RECORD).write_text(text, "utf-8")
+    if SYSTEM in origin.files:
+        (folder / SYSTEM).write_text(shown.model_dump_json(indent=1) + "\n", "utf-8")
+    write_report(
         ReportInput(
             record=record,
-            provenance=origin,
+            provenance=_reseal(folder, origin),
             interface=shown.interface,
             variants=shown.variants,
             outcomes=table,
-            traces=Traces(_tracks(folder / "report.html"), shown.control_dt_s),
+            traces=Traces({tuple(at): track for at, track in tracks.items()}, shown.control_dt_s),
             plans=shown.plans,
-        )
+        ),
+        folder,
     )
-    text = json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
-    (folder / "record.json").write_text(text, "utf-8")
-    (folder / "table.md").write_text(markdown_table(record), "utf-8")
-    (folder / "report.html").write_text(page, "utf-8")
-    _reseal(folder, origin)
     return record
 
 
@@ -181,11 +185,12 @@ def _tracks(page: Path) -> dict[TraceKey, NDArray[np.float32]]:
     return tracks
 
 
-def _reseal(folder: Path, origin: RunProvenance) -> None:
+def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:
     """Write the digests of what was concluded anew; a run that kept none keeps none."""
     if not origin.files:
-        return
+        return origin
     here = [name for name in origin.files if (folder / name).is_file()]
     files = {**origin.files, **seal(folder, here)}
-    text = origin.model_copy(update={"files": files}).model_dump_json(indent=2) + "\n"
-    (folder / "provenance.json").write_text(text, "utf-8")
+    sealed = origin.model_copy(update={"files": files})
+    (folder / "provenance.json").write_text(sealed.model_dump_json(indent=2) + "\n", "utf-8")
+    return sealed

@@ -26,7 +26,10 @@ from paper_blocks import paper
 from paper_blocks import take as take_paper
 from pictures import IMAGES, digest, made_from, make_images
 
-TAKEN = ("record.json", "provenance.json", "outcomes.parquet", "table.md", "report.html")
+from faultpath.cli.pages import MADE_FROM
+
+TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
+"""All that `faultpath report` reads of a run folder and writes there."""
 
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",

@@ -13,7 +13,7 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import audit, faultpath
 
-FILES = ("record.json", "system.json", "outcomes.parquet", "traces.parquet")
+FILES = ("record.json", "system.json", "outcomes.parquet", "traces.parquet", "deliveries.json")
 
 
 @pytest.fixture(scope="module")
@@ -127,6 +127,10 @@ def _record(change: Callable[[dict], object]) -> Callable[[Path], None]:
     return lambda run: _edit(run / "record.json", change)
 
 
+def _receipts(change: Callable[[dict], object]) -> Callable[[Path], None]:
+    return lambda run: _edit(run / "deliveries.json", change)
+
+
 def _table(name: str, change: Callable[[pa.Table], pa.Table]) -> Callable[[Path], None]:
     return lambda run: pq.write_table(change(pq.read_table(run / name)), run / name)
 
@@ -168,6 +172,16 @@ FORGED = {
                 struck=[{"channel": "x", "consumer": "y.z", "struck_steps": 1, "altered_steps": 1}]
             )
         ),
+    ),
+    "receipts of nothing": ("without receipts", _receipts(lambda c: c.update(rows=[]))),
+    "receipts of other taps": (
+        "receipts and record differ",
+        _receipts(lambda c: [row.update(taps=[]) for row in c["rows"]]),
+    ),
+    "no receipts": ("deliveries.json", lambda run: (run / "deliveries.json").write_text("[]")),
+    "a finding that is kept back": (
+        "leaves out a finding",
+        _receipts(lambda c: c.update(findings=["A trial flown again ended otherwise."])),
     ),
     "a status of its own": (
         "outcomes.parquet",

@@ -2,11 +2,13 @@
 
 import json
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from faultpath.cli.pages import save_pages
 from faultpath.record import DecisionRecord
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -44,3 +46,53 @@ def test_a_stored_run_is_decided_and_shown_anew(conclude, tmp_path: Path) -> Non
     assert kept
     assert set(again) <= set(kept)
     assert all((again[key] == kept[key]).all() for key in again)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run of the toy, as whoever makes a reference run has one."""
+    folder = tmp_path_factory.mktemp("toy") / "run"
+    line = "--baseline calibrated --repair blind --fault gain:scale=0.6 --library carts --scenes 12"
+    toy = str(Path("examples") / "toy.py") + ":create"
+    code = "from faultpath.cli.main import main; main()"
+    command = [sys.executable, "-c", code, "audit", toy, *line.split(), "--workers", "0"]
+    subprocess.run([*command, "--out", str(folder)], check=True, cwd=ROOT, capture_output=True)
+    return folder
+
+
+@pytest.fixture
+def taken(conclude, finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The reference folder that `tools/readme.py --take` makes of it."""
+    sys.modules.pop("readme", None)
+    import readme
+
+    monkeypatch.setattr(readme, "REFERENCE", tmp_path)
+    monkeypatch.setattr(readme, "load", lambda _: None)
+    readme.take(f"mine={finished}")
+    return tmp_path / "mine"
+
+
+def test_a_reference_folder_is_enough_for_report(taken: Path) -> None:
+    before = {path.name: path.read_bytes() for path in taken.iterdir()}
+    save_pages(taken)
+    assert {path.name: path.read_bytes() for path in taken.iterdir()} == before
+
+
+def test_a_run_decided_anew_is_still_enough_for_report(conclude, taken: Path) -> None:
+    """Tracks come from the folder, uncut; the digests are those of what was written anew."""
+    record = json.loads((taken / "record.json").read_bytes())
+    traces = (taken / "traces.parquet").read_bytes()
+    record["verdict"]["headline"] = "Something of before."
+    (taken / "record.json").write_text(json.dumps(record))
+    conclude.conclude_all(lambda _: None)
+    before = {path.name: path.read_bytes() for path in taken.iterdir()}
+    save_pages(taken)
+    assert {path.name: path.read_bytes() for path in taken.iterdir()} == before
+    assert b"Something of before." not in b"".join(before.values())
+    assert before["traces.parquet"] == traces
+
+
+def test_every_reference_folder_with_receipts_is_enough_for_report(tmp_path: Path) -> None:
+    for place in sorted((ROOT / "docs" / "reference").glob("*/provenance.json")):
+        if "deliveries.json" in json.loads(place.read_bytes()).get("files", {}):
+            save_pages(Path(shutil.copytree(place.parent, tmp_path / place.parent.name)))

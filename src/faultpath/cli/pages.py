@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+from faultpath.audit import struck_taps
 from faultpath.cli.records import parsed, read_provenance
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
@@ -13,16 +14,17 @@ from faultpath.store import read_table
 from faultpath.store.parquet import Unreadable
 from faultpath.store.sealed import AGAIN, unseal
 from faultpath.store.tables import decode_outcomes, decode_traces
-from faultpath.trials import OutcomeTable, SystemShown
+from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
-RECORD, SYSTEM, OUTCOMES, TRACES = (
+RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES = (
     "record.json",
     "system.json",
     "outcomes.parquet",
     "traces.parquet",
+    "deliveries.json",
 )
-MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES)
-"""The files of a run folder that its pages are made from."""
+MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
+"""The files of a run folder that its pages are made from, and checked against."""
 
 _Table = TypeVar("_Table")
 
@@ -42,9 +44,10 @@ def _read(folder: Path) -> ReportInput:
     held = unseal(folder, provenance.files, MADE_FROM)
     record = parsed(held[RECORD], folder / RECORD, DecisionRecord)
     shown = parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
+    deliveries = parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
     outcomes = _decoded(held[OUTCOMES], folder / OUTCOMES, decode_outcomes)
     traces = _decoded(held[TRACES], folder / TRACES, decode_traces)
-    doubts = _doubts(record, provenance, shown, outcomes)
+    doubts = _doubts(record, provenance, shown, outcomes) or _unlike(record, deliveries)
     if doubts:
         raise UserError(f"the files of {folder} do not belong together ({doubts}): {AGAIN}.")
     return ReportInput(
@@ -100,3 +103,20 @@ def _doubts(
         (t.channel, t.consumer) for p in record.paths for t in (*p.struck, *p.baseline_struck)
     }
     return "" if struck <= taps else "the record names taps that the interface has not got"
+
+
+def _unlike(record: DecisionRecord, deliveries: Deliveries) -> str:
+    """Say where the record tells something else than the receipts of the taps."""
+    asked = record.question
+    try:
+        for path in record.paths:
+            for variant, told in (
+                (asked.repair, path.struck),
+                (asked.baseline, path.baseline_struck),
+            ):
+                if struck_taps(deliveries.at(variant, path.name)) != told:
+                    return f"receipts and record differ about the taps that '{path.name}' struck"
+    except KeyError:
+        return "the record has arms without receipts"
+    left_out = not set(deliveries.findings) <= set(record.findings)
+    return "the record leaves out a finding of the run" if left_out else ""
