@@ -3,36 +3,58 @@
 import itertools
 import json
 import re
+import time
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import torch
 from toy_study import SCENES, UNITS, study
 from toy_system import CONSUMERS, STEPS, ToySystem
 
-from faultpath.execution import run_study
+from faultpath.execution import Interrupted, run_study
+from faultpath.execution.rechecks import SAMPLE, Rechecks
 from faultpath.taps import Reading
 
 _CALLS = itertools.count()
 
 
 class Odd(ToySystem):
-    """Has one oddity, by option."""
+    """Has one oddity, by option; `block` is the size of a block."""
+
+    def __init__(self, **options: str) -> None:
+        super().__init__(**options)
+        self.block_size = int(options.get("block", "4"))
+        self._random = np.random.default_rng(0)
+        self._calls: dict[tuple[str, ...], int] = {}
 
     def run(self, variant, scenes, taps, seed):
         outcomes = super().run(variant, scenes, taps, seed)
         match self._options["odd"]:
             case "drifts":
-                by = 1e-3 * next(_CALLS)
-                return [
-                    replace(o, terminal_distance_m=o.terminal_distance_m + by) for o in outcomes
-                ]
+                return _moved(outcomes, [1e-3 * next(_CALLS)] * len(scenes))
+            case "clock":
+                return _moved(outcomes, [1e-9 * (time.perf_counter_ns() % 10**9)] * len(scenes))
+            case "random":  # one generator for all that a process flies
+                return _moved(outcomes, self._random.normal(size=len(scenes)))
+            case "cache":  # what is made for some scenes is written to at each flight of them
+                self._calls[tuple(scenes)] = calls = self._calls.get(tuple(scenes), 0) + 1
+                return _moved(outcomes, [0.1 * calls] * len(scenes))
+            case "by-place":  # the same numbers at each call, in the order of its scenes
+                return _moved(outcomes, np.random.default_rng(seed).normal(size=len(scenes)))
             case "crowded":
                 return [replace(o, time_s=o.time_s * len(scenes)) for o in outcomes]
             case "hashless":
                 same = dict.fromkeys(("initial_hash", "disturbance_hash"), "none")
                 return [replace(o, **same) for o in outcomes]
         return outcomes
+
+
+def _moved(outcomes, by):
+    return [
+        replace(o, terminal_distance_m=o.terminal_distance_m + abs(float(by[i])))
+        for i, o in enumerate(outcomes)
+    ]
 
 
 class Scribbler(ToySystem):
@@ -47,8 +69,23 @@ class Scribbler(ToySystem):
         return outcomes
 
 
+class Plant(ToySystem):
+    """Writes into an array that it has delivered, which the consumer has kept."""
+
+    def run(self, variant, scenes, taps, seed):
+        outcomes = super().run(variant, scenes, taps, seed)
+        state = torch.ones(len(scenes))
+        kept = taps.deliver("mass", CONSUMERS[0], Reading(state, "mass", STEPS), STEPS)
+        state += 1.0
+        return _moved(outcomes, kept)
+
+
 def odd(**options: str) -> Odd:
     return Odd(**options)
+
+
+def plant(**options: str) -> Plant:
+    return Plant(**options)
 
 
 def scribbler(**options: str) -> Scribbler:
@@ -87,14 +124,86 @@ def test_an_oddity_is_named_told_and_kept(tmp_path, kind, factory, said, workers
     assert found[0] in held["findings"]
 
 
-def test_a_sound_system_has_none_and_pays_for_three_flights_once(tmp_path):
+@pytest.mark.parametrize("block", ["4", "10"])
+@pytest.mark.parametrize("kind", ["drifts", "clock", "random", "cache"])
+def test_what_does_not_repeat_is_called_that_and_nothing_else(tmp_path, kind, block):
+    asked = _study(kind, rows=slice(None), block=block)
+    (said,) = run_study(asked, tmp_path, workers=0).findings
+    assert said.startswith("Results do not repeat: '")
+
+
+@pytest.mark.parametrize("block", ["4", "10"])
+@pytest.mark.parametrize("kind", ["crowded", "by-place"])
+def test_what_depends_on_the_block_is_called_that_and_nothing_else(tmp_path, kind, block):
+    asked = _study(kind, rows=slice(None), block=block)
+    result = run_study(asked.model_copy(update={"scenes": SCENES}), tmp_path, workers=0)
+    (said,) = result.findings
+    assert re.match(r"Results depend on the block: .* came out the same\. Look for", said)
+    assert [each.why for each in result.flown_again if each.differs].count("repeat") == 0
+
+
+def test_a_reading_that_is_written_to_after_its_delivery_is_named(tmp_path):
+    (said,) = run_study(_study("", "plant"), tmp_path, workers=0).findings
+    assert re.match(r"Results depend on who else holds a reading: scene 's\d\d' of 'plain' ", said)
+
+
+def test_a_few_scenes_of_a_later_arm_are_flown_at_other_places_than_before(tmp_path):
+    result = run_study(_study("", rows=slice(None), block="10"), tmp_path, workers=0)
+    assert [each.why for each in result.flown_again].count("sample") == 1
+    few = next(each for each in result.flown_again if each.why == "sample")
+    (one,) = (each for each in result.flown_again if each is not few)
+    assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
+    assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
+    assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))
+    first = study().rows[0].arm
+    assert (few.variant, few.faults, few.seed) != (first.variant, "correct inputs", first.seed)
+
+
+@pytest.mark.parametrize("kind", ["", "crowded"])
+def test_a_run_killed_between_second_flights_ends_with_the_same_tables(tmp_path, kind, monkeypatch):
+    asked = _study(kind, rows=slice(None), block="10")
+    whole = run_study(asked, tmp_path / "whole", workers=0)
+    again = len(whole.flown_again)
+    assert again == (2 if kind == "" else 4)
+    for flights in range(again):
+        folder = tmp_path / str(flights)
+        with monkeypatch.context() as patched:
+            patched.setattr(Rechecks, "settle", _stopping(flights))
+            with pytest.raises(Interrupted):
+                run_study(asked, folder, workers=0)
+        result = run_study(asked, folder, workers=0)
+        assert result.flown_again == whole.flown_again
+        for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
+            assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def _stopping(after: int):
+    settle, flights = Rechecks.settle, itertools.count()
+
+    def stopping(self, *arguments):
+        if next(flights) == after:
+            raise KeyboardInterrupt
+        settle(self, *arguments)
+
+    return stopping
+
+
+def test_second_flights_of_an_earlier_version_are_flown_anew(tmp_path):
+    run_study(_study(""), tmp_path, workers=0)
+    kept = (tmp_path / "rechecks.json").read_bytes()
+    (tmp_path / "rechecks.json").write_text('{"format": 1, "found": {"repeat key s01": ""}}')
+    assert run_study(_study(""), tmp_path, workers=0).findings == ()
+    assert (tmp_path / "rechecks.json").read_bytes() == kept
+
+
+def test_a_sound_system_has_none_and_pays_for_two_flights_once(tmp_path):
     log = tmp_path / "log"
     asked = study(log=str(log))
     result = run_study(asked, tmp_path / "run", workers=0)
     assert result.findings == ()
-    assert len(log.read_text().splitlines()) == UNITS + 3
+    assert len(log.read_text().splitlines()) == UNITS + 2
     run_study(asked, tmp_path / "run", workers=0)
-    assert len(log.read_text().splitlines()) == UNITS + 3
+    assert len(log.read_text().splitlines()) == UNITS + 2
     bare = run_study(study(), tmp_path / "bare", workers=0, recheck=False)
     assert bare.outcomes_sha256 == result.outcomes_sha256
     assert not (tmp_path / "bare" / "rechecks.json").exists()

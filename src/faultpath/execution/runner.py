@@ -18,6 +18,7 @@ from faultpath.execution.rechecks import Rechecks
 from faultpath.execution.schedule import Recheck, Schedule, Task
 from faultpath.execution.units import Unit, plan
 from faultpath.execution.worker import Hello, Ready
+from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
 from faultpath.store.tables import Trace, TrialAddress, traces_of
@@ -71,6 +72,8 @@ class RunResult:
     code: tuple[Code, ...]
     """What flew, of each run that this is made of."""
     library_hash: str
+    flown_again: tuple[FlownAgain, ...] = ()
+    """What was flown a second time, to see whether results repeat."""
 
     @property
     def findings(self) -> tuple[str, ...]:
@@ -100,8 +103,8 @@ def run_study(
     them ran is there for the next; the folder's tables are those of the last. `crew` keeps the
     worker processes for the next study; without one they end with this. `time_limit_s` is how long
     a worker may take over one block (or one scene, when a block failed) before it is stopped, in
-    seconds; by default many times as long as the slowest block so far took. `recheck` flies one
-    block and one scene of it again and tells what differs; see `RunResult.findings`.
+    seconds; by default many times as long as the slowest block so far took. `recheck` flies a
+    few scenes of one block again and tells what differs; see `RunResult.findings`.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -134,14 +137,16 @@ def run_study(
             again = Rechecks(units, run)
             if workers == 0:
                 _run_here(system, code.unread(), schedule, ledger, report)
-                _recheck_here(system, again, ledger, recheck)
+                if recheck:
+                    _recheck_here(system, again, ledger)
             elif schedule or (recheck and again.tasks(ledger.outcomes)):
                 hello = Hello(study.system, study.library)
                 expected = Ready(code.state, library.content_hash)
                 with Crew() if crew is None else nullcontext(crew) as hands:
                     hands.begin(hello, expected, min(workers, max(1, len(schedule))))
                     _run_with(hands, schedule, ledger, report)
-                    _recheck_with(hands, again, ledger, recheck)
+                    if recheck:
+                        _recheck_with(hands, again, ledger)
                     if hands.undeclared:
                         notice(unnamed(sorted(hands.undeclared)))
             table = assemble(study, library, ledger.outcomes)
@@ -164,6 +169,7 @@ def run_study(
         system_fingerprint=fingerprint,
         code=(code,),
         library_hash=library.content_hash,
+        flown_again=again.flown(),
     )
 
 
@@ -211,24 +217,25 @@ def _run_with(crew: Crew, schedule: Schedule, ledger: Ledger, report: ProgressCa
         report(ledger.progress())
 
 
-def _recheck_here(system: System, again: Rechecks, ledger: Ledger, wanted: bool) -> None:
-    for task in again.tasks(ledger.outcomes) if wanted else ():
-        guard = task.recheck is Recheck.GUARDED
-        reply = attempt(system, task.unit.arm, task.scenes, guard)
-        again.settle(task, reply, ledger.outcomes)
-
-
-def _recheck_with(crew: Crew, again: Rechecks, ledger: Ledger, wanted: bool) -> None:
-    waiting = list(again.tasks(ledger.outcomes)) if wanted else []
-    flying = 0
-    while waiting or flying:
-        for worker in crew.idle():
-            if waiting:
-                worker.send(waiting.pop(0))
-                flying += 1
-        for task, reply in crew.replies(_TICK_S, ledger.limit):
+def _recheck_here(system: System, again: Rechecks, ledger: Ledger) -> None:
+    while tasks := again.tasks(ledger.outcomes):
+        for task in tasks:
+            guard = task.recheck is Recheck.GUARDED
+            reply = attempt(system, task.unit.arm, task.scenes, guard)
             again.settle(task, reply, ledger.outcomes)
-            flying -= 1
+
+
+def _recheck_with(crew: Crew, again: Rechecks, ledger: Ledger) -> None:
+    while waiting := list(again.tasks(ledger.outcomes)):
+        flying = 0
+        while waiting or flying:
+            for worker in crew.idle():
+                if waiting:
+                    worker.send(waiting.pop(0))
+                    flying += 1
+            for task, reply in crew.replies(_TICK_S, ledger.limit):
+                again.settle(task, reply, ledger.outcomes)
+                flying -= 1
 
 
 def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:

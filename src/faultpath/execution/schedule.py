@@ -11,10 +11,14 @@ from faultpath.execution.units import Unit
 class Recheck(StrEnum):
     """Why scenes are flown that have been flown before."""
 
-    REPEAT = "repeat"
-    ALONE = "alone"
+    SAMPLE = "sample"
+    """A few scenes of a unit, without the others."""
     GUARDED = "guarded"
-    """With `Taps(guard=True)`."""
+    """One scene by itself, with `Taps(guard=True)`."""
+    ALONE = "alone"
+    """The scene that was flown guarded, without the guard."""
+    REPEAT = "repeat"
+    """The whole unit."""
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,34 @@
 """Where a result comes from."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
 FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
 Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+
+
+class FlownAgain(BaseModel):
+    """Scenes of a finished unit that were flown a second time, and what that showed."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    why: Literal["sample", "guarded", "alone", "repeat"]
+    """A few scenes of the unit by themselves, one with guarded readings, that one without the
+    guard, or the whole unit. The last two are flown only where the first two show something."""
+    unit: str
+    """Key of the unit, which its shard is named after."""
+    variant: str
+    faults: str
+    """In words."""
+    seed: int
+    scenes: tuple[str, ...]
+    unit_scenes: int
+    """How many scenes the unit has in all."""
+    differs: str = ""
+    """How the outcomes differ from those of the run; empty where they are the same to the bit."""
+    wrote: str = ""
+    """The consumer that wrote into its reading, where the guard saw one."""
 
 
 class RunProvenance(BaseModel):
@@ -42,5 +65,7 @@ class RunProvenance(BaseModel):
     """SHA-256 of each data file that the system names."""
     library_hash: str
     outcomes_sha256: str
+    flown_again: tuple[FlownAgain, ...] = ()
+    """What was flown a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
     """The files beside this one that a report is made from, so that a change of one is seen."""
