@@ -99,6 +99,36 @@ def test_crossed_draws_resample_scenes_and_seeds(pair):
 
 
 @fewer
+@given(BINARY.filter(lambda pair: pair.shape[2] > 1))
+def test_newly_trained_models_have_the_hull_of_score_and_crossed_bootstrap(pair):
+    crossed = success_effect(*pair, RESAMPLES, resample_seeds=True)
+    change = difference_of_effects(
+        success_effect(*pair[::-1], RESAMPLES), given := success_effect(*pair, RESAMPLES)
+    )
+    other = difference_of_effects(
+        success_effect(*pair[::-1], RESAMPLES, resample_seeds=True), crossed
+    )
+    for wide, score in ((crossed, given), (other, change)):
+        low, high = percentile_interval(wide.draws)
+        ends = score.interval()
+        assert wide.interval() == (min(low, ends[0]), max(high, ends[1]))
+    backward = success_effect(*pair[::-1], RESAMPLES, resample_seeds=True)
+    assert backward.estimate() == crossed.estimate().swapped()
+    rate = success_rate(pair[0], RESAMPLES, resample_seeds=True).estimate()
+    low, high = success_rate(pair[0], RESAMPLES).interval()
+    assert rate.low <= low < high <= rate.high
+
+
+def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
+    """The crossed bootstrap alone printed [0.0, 0.0]."""
+    some = np.arange(60).reshape(N, 3) % 2
+    effect = success_effect(some, some, RESAMPLES, resample_seeds=True)
+    assert effect.interval() == success_effect(some, some, RESAMPLES).interval()
+    low, high = difference_of_effects(effect, effect).interval()
+    assert low == -high < -10
+
+
+@fewer
 @given(BINARY, st.booleans())
 def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair, as_floats):
     pair = pair * 0.1 if as_floats else pair

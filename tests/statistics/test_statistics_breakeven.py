@@ -181,3 +181,31 @@ def test_a_result_holds_no_frequency_outside_0_and_1():
         BreakEven(
             p_star=1.2, pieces=(), kind="empty", regions=(), words="", method="m", estimand="e"
         )
+
+
+def models(wins, losses):
+    """An effect for newly trained models: three trainings, a scene is won or lost by all."""
+    scene = np.repeat(np.arange(N)[:, np.newaxis], 3, axis=1)
+    arms = scene < wins, (scene >= wins) & (scene < wins + losses)
+    return success_effect(*arms, RESAMPLES, resample_seeds=True)
+
+
+def test_six_single_wins_decide_no_frequency_for_newly_trained_models():
+    """The crossed bootstrap alone put the repair ahead at every frequency."""
+    wins = np.zeros((N, 3))
+    wins[np.arange(6), np.arange(6) % 3] = 1
+    effect = success_effect(wins, 0 * wins, RESAMPLES, resample_seeds=True)
+    result = break_even(effect, effect)
+    assert (result.kind, result.regions) == ("whole", ())
+
+
+@pytest.mark.parametrize("losses", [0, 2, 30])
+def test_the_band_for_newly_trained_models_is_that_of_the_effects_and_of_the_set(losses):
+    correct, faulty = models(2, losses), models(40, 1)
+    curve = mixture_curve(correct, faulty, points=101)
+    assert curve[0][2:] == pytest.approx(correct.interval())
+    assert curve[-1][2:] == pytest.approx(faulty.interval())
+    ((first, last),) = break_even(correct, faulty).pieces
+    for p, _, low, high in curve:
+        assert low < high
+        assert (low <= 0 <= high) == (first <= p <= last)

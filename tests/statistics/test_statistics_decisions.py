@@ -180,3 +180,16 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     assert 0.005 < compare(effect).test.p_value < 0.05
     none = success_effect(0 * difference, 0 * difference, RESAMPLES, resample_seeds=True)
     assert compare(none).test.p_value == 1.0
+
+
+def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
+    """Two scenes of a hundred won in each training, others in each: bootstrap and t test agreed."""
+    wins = np.zeros((100, 3))
+    wins[np.arange(6), np.arange(6) % 3] = 1
+    resamples = Resamples.draw("hundred", 100, n_resamples=2000)
+    found = compare(success_effect(wins, 0 * wins, resamples, resample_seeds=True))
+    assert found.test.rejects()
+    assert found.leans == 1
+    assert found.side == 0
+    wins[:12] = 1
+    assert compare(success_effect(wins, 0 * wins, resamples, resample_seeds=True)).side == 1

@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import beta, binom, binomtest, nct, norm
-from scipy.stats import t as student
+from scipy.stats import beta, binom, binomtest, norm
 
 from faultpath.statistics import (
     Detectable,
     Resamples,
     compare,
     detectable,
-    detectable_models,
     rule_power,
     success_effect,
 )
@@ -129,24 +127,6 @@ def test_seeds_that_end_alike_are_told_from_seeds_that_do_not():
     assert few.value < many.value - 2
     assert many.note.startswith("in 9")
     assert detectable(*apart) == few
-
-
-def test_newly_trained_models_need_a_difference_that_the_t_test_sees():
-    rng = np.random.default_rng(2)
-    first, second = rng.random((2, 80, 5)) < 0.5
-    resamples = Resamples.draw("models", 80, n_resamples=10)
-    effect = success_effect(first, second, resamples, resample_seeds=True)
-    least = detectable_models(effect)
-    error = np.std(effect.per_seed, ddof=1) / np.sqrt(5)
-    critical = student.ppf(0.975, 4)
-    power = nct.sf(critical, 4, least.value / error) + nct.cdf(-critical, 4, least.value / error)
-    assert power == pytest.approx(0.8, abs=1e-3)
-    same = success_effect(
-        first[:, :1].repeat(2, 1), 0 * first[:, :2], resamples, resample_seeds=True
-    )
-    assert detectable_models(same).reason == "the seeds' effects do not vary"
-    with pytest.raises(ValueError, match="use `detectable`"):
-        detectable_models(success_effect(first, second, resamples))
 
 
 def test_wrong_input_is_refused():

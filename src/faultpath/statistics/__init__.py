@@ -18,7 +18,7 @@ from faultpath.statistics.decisions import (
     fewest_scenes,
     turn,
 )
-from faultpath.statistics.detectable import detectable, detectable_models
+from faultpath.statistics.detectable import detectable
 from faultpath.statistics.effect import (
     Effect,
     difference_of_effects,
@@ -74,7 +74,6 @@ __all__ = [
     "compare",
     "decide_family",
     "detectable",
-    "detectable_models",
     "difference_of_effects",
     "discordant",
     "discordant_by_seed",

@@ -16,10 +16,8 @@ def success_effect(
     """Return the difference in success in percentage points, from binary [scenes, seeds]."""
     counts = discordant_by_seed(first, second)
     one, two = paired(first, second)
-    scenes = None
-    if not resample_seeds:
-        # Summed first, so that wins and losses of a scene cancel exactly.
-        scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0)
+    # Summed first, so that wins and losses of a scene cancel exactly.
+    scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0)
     return _effect(one, two, resamples, "pp", 100.0, resample_seeds, counts, scenes)
 
 
@@ -43,10 +41,8 @@ def success_rate(
     For one seed the interval is Wilson's score interval of a proportion.
     """
     values = binary(by_scene_and_seed(outcomes), "outcomes")
-    scenes = None
-    if not resample_seeds:
-        means = values.sum(axis=1) / values.shape[1]
-        scenes = SceneValues(means - 0.5, bound=0.5, far=0.5, scale=100.0, centre=0.5)
+    means = values.sum(axis=1) / values.shape[1]
+    scenes = SceneValues(means - 0.5, bound=0.5, far=0.5, scale=100.0, centre=0.5)
     none = np.zeros_like(values)
     return _effect(values, none, resamples, "percent", 100.0, resample_seeds, None, scenes)
 
@@ -97,7 +93,10 @@ def _effect(
 
 
 def _method(scenes: SceneValues | None, n_seeds: int, resample_seeds: bool) -> str:
+    drawn = f"percentile bootstrap of {'scenes and seeds' if resample_seeds else 'scenes'}"
     if scenes is None:
-        return f"percentile bootstrap of {'scenes and seeds' if resample_seeds else 'scenes'}"
+        return drawn
     name = "Wilson" if scenes.centre else "Tango"
-    return f"score ({name})" if n_seeds == 1 else f"score on scene means ({name}'s, cluster-robust)"
+    seeds = f"score on scene means ({name}'s, cluster-robust)"
+    score = f"score ({name})" if n_seeds == 1 else seeds
+    return f"hull of {score} and {drawn}" if resample_seeds else score

@@ -82,6 +82,7 @@ class _Mixture:
         check_joint(correct, faulty)
         self.ends = correct, faulty
         self.level = level
+        self.resampled = correct.resampled or faulty.resampled
         self.scenes = None
         first, second = correct.scenes, faulty.scenes
         if first is not None and second is not None:
@@ -95,7 +96,7 @@ class _Mixture:
 
     def undecided(self, p: Floats) -> Bools:
         """Return [frequencies]: whether the difference at each is not told from 0."""
-        if self.scenes is not None:
+        if not self.resampled:
             values, counts, far = self._mixed(p)
             return ~rejects(values, counts, 0.0, far, quantile(self.level))
         low, high = self.intervals(p)
@@ -103,15 +104,16 @@ class _Mixture:
 
     def intervals(self, p: Floats) -> tuple[Floats, Floats]:
         """Return both ends [frequencies] of the difference's interval at each."""
+        ends: list[tuple[Floats, Floats]] = []
         if self.scenes is not None:
-            return interval(*self._mixed(p), quantile(self.level))
-        first, second = (end.draws for end in self.ends)
-        drawn = [
-            percentile_interval((1.0 - each) * first + each * second, self.level)
-            for each in p.tolist()
-        ]
-        low, high = np.array(drawn).T
-        return low, high
+            ends.append(interval(*self._mixed(p), quantile(self.level)))
+        if self.resampled:
+            first, second = (end.draws for end in self.ends)
+            mixed = ((1.0 - each) * first + each * second for each in p.tolist())
+            low, high = np.array([percentile_interval(draws, self.level) for draws in mixed]).T
+            ends.append((low, high))
+        lows, highs = zip(*ends, strict=True)
+        return np.minimum.reduce(lows), np.maximum.reduce(highs)
 
     def _mixed(self, p: Floats) -> tuple[Floats, Floats, Floats]:
         """Return values and counts [frequencies, kinds of scene] and the reach [frequencies]."""

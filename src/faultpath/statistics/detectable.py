@@ -2,15 +2,15 @@
 
 Reported beside every "not detected", because not detecting a difference is not equivalence. It is
 that of the rule which decides: the test at the level that its family leaves it, and the interval.
+There is none for newly trained models: a few trainings do not know their own spread.
 """
 
 from collections.abc import Callable
 
 import numpy as np
 
-from faultpath.statistics.distributions import clopper_pearson_upper, t_power
-from faultpath.statistics.effect import Effect
-from faultpath.statistics.estimate import SCENES_AND_SEEDS, Detectable
+from faultpath.statistics.distributions import clopper_pearson_upper
+from faultpath.statistics.estimate import Detectable
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.power import rule_power, seed_mixture, simulated_power
 
@@ -64,13 +64,6 @@ def detectable(
     )
 
 
-def detectable_models(effect: Effect, *, alpha: float = 0.05, power: float = 0.8) -> Detectable:
-    """Return what the t test of the seeds' effects detects; `effect` resamples seeds."""
-    if effect.estimand != SCENES_AND_SEEDS:
-        raise ValueError("the effect speaks of these trained models: use `detectable`")
-    return _by_seeds(effect, alpha, power)
-
-
 def _alike(seeds: Floats) -> float:
     """Return the share of scenes in which all seeds end alike, from differences [scenes, seeds].
 
@@ -90,28 +83,6 @@ def _never(n_scenes: int, alpha: float, power: float) -> str:
     return (
         f"with {n_scenes} scenes the test cannot reject at {alpha:.2g} with power {power:g}, "
         "whatever the difference"
-    )
-
-
-def _by_seeds(effect: Effect, alpha: float, power: float) -> Detectable:
-    """Return what the t test of the seeds' effects detects, by the noncentral t distribution."""
-    seeds = np.asarray(effect.per_seed)
-    spread = float(seeds.std(ddof=1)) if len(seeds) > 1 else 0.0
-    value = None
-    if spread > 0.0:
-        error = spread / float(np.sqrt(len(seeds)))
-        largest = 1e6 * error
-        share = _least(lambda size: t_power(len(seeds), size * largest / error, alpha) >= power)
-        value = None if share is None else share * largest
-    return Detectable(
-        value=value,
-        reason="the seeds' effects do not vary" if value is None else None,
-        unit=effect.unit,
-        alpha=alpha,
-        power=power,
-        method="power of the t test of the seeds' effects",
-        n_scenes=effect.n_scenes,
-        n_seeds=effect.n_seeds,
     )
 
 

@@ -73,19 +73,6 @@ def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
     return min(1.0, 2.0 * float(special.stdtr(len(values) - 1.0, -abs(mean) / error)))
 
 
-def t_power(n: int, shift: float, alpha: float) -> float:
-    """Return the power of the two-sided t test of ``n`` values, ``shift`` standard errors off 0."""
-    from scipy import special
-
-    freedom = n - 1.0
-    critical = float(special.stdtrit(freedom, 1.0 - alpha / 2.0))
-    # The mean over the chi distribution of the estimated error: SciPy's noncentral t fails far off.
-    chances = (np.arange(4000) + 0.5) / 4000
-    error = np.sqrt(2.0 * special.gammaincinv(freedom / 2.0, chances) / freedom)
-    beyond = special.ndtr(shift - critical * error) + special.ndtr(-shift - critical * error)
-    return float(beyond.mean())
-
-
 def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> float:
     """Return the upper end of the two-sided Clopper-Pearson interval."""
     from scipy import special

@@ -23,8 +23,8 @@ class Effect:
     """A difference, first minus second, or one arm's value.
 
     ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
-    alone, in seed order. Bounded outcomes averaged over given seeds have their ``scenes`` as well,
-    and a score interval in place of the bootstrap's.
+    alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval:
+    in place of the bootstrap's for given seeds, and beside it for new ones.
     """
 
     value: float
@@ -39,16 +39,25 @@ class Effect:
     counts: SeedCounts | None = None
     scenes: SceneValues | None = field(default=None, repr=False)
 
+    @property
+    def resampled(self) -> bool:
+        """Return whether the interval rests on ``draws``, alone or beside the score."""
+        return self.scenes is None or self.estimand == SCENES_AND_SEEDS
+
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Return the score interval, or where outcomes have no bound the percentile interval."""
-        if self.scenes is not None:
-            return self.scenes.interval(level)
-        return percentile_interval(self.draws, level)
+        """Return the score interval, or where outcomes have no bound the percentile interval.
+
+        For newly trained models it is the hull of both, which holds what either does.
+        """
+        ends = [] if self.scenes is None else [self.scenes.interval(level)]
+        if self.resampled:
+            ends.append(percentile_interval(self.draws, level))
+        return min(low for low, _ in ends), max(high for _, high in ends)
 
     def estimate(self, level: float = 0.95) -> Estimate:
         """Return the value with its interval at ``level``."""
         low, high = self.interval(level)
-        drawn = "" if self.scenes is not None else f", {self.resamples.n_resamples} resamples"
+        drawn = f", {self.resamples.n_resamples} resamples" if self.resampled else ""
         return Estimate(
             value=self.value,
             low=low,
@@ -99,7 +108,7 @@ def weighted_sum(weights: Sequence[float], effects: Sequence[Effect]) -> Effect:
             for values in by_seed
         ),
         method="score on scene differences (Tango's, cluster-robust)"
-        if scenes is not None
+        if scenes is not None and not first.resampled
         else f"combined effects, {first.method}",
         n_seeds=max(effect.n_seeds for effect in effects),
         counts=None,
