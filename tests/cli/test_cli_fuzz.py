@@ -7,17 +7,29 @@ import random
 import shutil
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import typer
 from cli_runs import audit
-from fuzz_inputs import JUNK, commands, documents, texts, wrong
+from fuzz_inputs import JUNK, VERBS, commands, documents, texts, wrong
 
+from faultpath.cli.app import app
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
+from faultpath.selfcheck import PROFILES
+from faultpath.selfcheck.run import Profile, Task
 
 pytestmark = pytest.mark.fuzz
 CHUNKS, EACH = 4, 70
+
+
+class OneOfEach(Profile):
+    """One setting of each simulation, in place of 786 and more."""
+
+    def tasks(self) -> list[Task]:
+        return list({type(task): task for task in super().tasks()}.values())
 
 
 @pytest.fixture
@@ -34,6 +46,8 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (place / "loop").symlink_to("loop")
     monkeypatch.chdir(place)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
+    for name in PROFILES:
+        monkeypatch.setitem(PROFILES, name, OneOfEach((10,), 2, 2, 1, 1, 1))
     return place
 
 
@@ -42,6 +56,17 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("fuzz") / "run"
     assert audit(out=folder, scenes=2).status == 0
     return folder
+
+
+def test_no_verb_is_left_out() -> None:
+    def leaves(command: object, *names: str) -> Iterator[str]:
+        below = getattr(command, "commands", None)
+        if below is None:
+            yield " ".join(names)
+        for name, each in (below or {}).items():
+            yield from leaves(each, *names, name)
+
+    assert set(VERBS) == set(leaves(typer.main.get_command(app)))
 
 
 @pytest.mark.parametrize("chunk", range(CHUNKS))

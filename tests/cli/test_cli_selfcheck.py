@@ -1,6 +1,7 @@
 """`faultpath selfcheck statistics`: numbers to a file, tables to the terminal, 1 for a failure."""
 
 import re
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -47,6 +48,22 @@ def test_a_place_that_cannot_be_written_is_refused_before_the_work(out, monkeypa
         main()
     assert ended.value.code == 2
     assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+def test_no_more_processes_are_started_than_there_is_work_for(check, monkeypatch):
+    """As many as asked ended in an error of the operating system's, with its traceback."""
+    started = []
+
+    class Pool(ThreadPoolExecutor):
+        def __init__(self, count):
+            started.append(count)
+            super().__init__(1)
+
+    monkeypatch.setattr("faultpath.selfcheck.run.ProcessPoolExecutor", Pool)
+    status, said = check("--processes", "9" * 30)
+    assert status == 0, said
+    (count,) = started
+    assert 1 < count <= len(SMALL.tasks())
 
 
 def test_a_wrong_interval_is_found(check, monkeypatch):

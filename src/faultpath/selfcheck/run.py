@@ -1,5 +1,6 @@
 """Carrying the simulations out: which, how many, on how many processes."""
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -56,7 +57,10 @@ Progress = Callable[[int, int, float | None], None]
 
 
 def check_statistics(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
-    """Simulate everything that ``profile`` holds; `UserError` for an unknown one."""
+    """Simulate everything that ``profile`` holds, on no more processes than it can keep busy.
+
+    `UserError` for an unknown profile.
+    """
     if profile not in PROFILES:
         raise UserError(f"there is no profile {profile!r}: choose {' or '.join(PROFILES)}.")
     start = time.perf_counter()
@@ -72,6 +76,7 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
             left = spent * (len(tasks) - len(found)) / len(found) if len(found) > 20 else None
             progress(len(found), len(tasks), left)
 
+    processes = min(processes, math.ceil(len(tasks) / _CHUNK))
     if processes > 1:
         with ProcessPoolExecutor(processes) as pool:
             mixed = [tasks[i] for i in order]
