@@ -9,7 +9,7 @@ from benchmarks.side import Side
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.perception.camera import mounted
-from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.plant import PlantState, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
@@ -37,7 +37,7 @@ class FullPlant(Side):
         self.amount = count * STEPS_PER_CONTROL
         lanes = padded_lanes(count)
         vehicle = Vehicle.stack(vehicles(count)).take(lanes)
-        self._plant = Plant(vehicle)
+        self._plant = TorchPlant(vehicle)
         still = torch.zeros(3, len(lanes), dtype=torch.float64)
         self._state = self._plant.start(State.hover(still, still[0]))
         self._command = vehicle.hover_command()

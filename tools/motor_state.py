@@ -19,7 +19,7 @@ from torch import Tensor
 from faultpath.quadrotor import native
 from faultpath.quadrotor.evidence.recording import blocks, recorded
 from faultpath.quadrotor.models import predictor
-from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.plant import PlantState, TorchPlant
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.quality_predictors import position_errors, supply
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows
@@ -58,7 +58,7 @@ def _replayed(windows: Windows, intervals: int) -> Tensor:
     """Return how far the plant ends from where the vehicle was, `[W]`, m."""
     names = ("mass_kg", "thrust_scale", "torque_scale", "inertia_kgm2")
     names += ("motor_time_constant_s", "drag_kgps")
-    plant = Plant(Vehicle(**{name: getattr(windows, name).double() for name in names}))
+    plant = TorchPlant(Vehicle(**{name: getattr(windows, name).double() for name in names}))
     still = torch.zeros(STEPS_PER_CONTROL, 3, len(windows), dtype=torch.float64)
     first = HISTORY - intervals
     motors = (0.25 * windows.motor_thrust_n[first].double()).expand(4, -1).clone()

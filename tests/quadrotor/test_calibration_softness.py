@@ -11,7 +11,7 @@ import torch
 
 from faultpath.quadrotor.options import PlannerName, QuadrotorOptions
 from faultpath.quadrotor.planner import shift
-from faultpath.quadrotor.plant import Plant
+from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
@@ -26,7 +26,7 @@ def hover_heights(planner_name):
     predictor = KinematicIntegrator(drag=True)
     planner = QuadrotorOptions(planner=planner_name).build_planner(predictor)
     lanes = 32
-    plant = Plant(Vehicle.nominal(lanes))
+    plant = TorchPlant(Vehicle.nominal(lanes))
     rest = torch.zeros(3, lanes, dtype=torch.float64)
     now = plant.start(State.hover(rest, rest[0]))
     calm = torch.zeros(STEPS_PER_CONTROL, 3, lanes, dtype=torch.float64)

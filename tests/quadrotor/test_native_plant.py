@@ -9,7 +9,7 @@ from kernel_sets import COMPILED, FUSED, PORTABLE
 from torch import Tensor
 
 from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.plant import PlantState, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
 from faultpath.quadrotor.state import State
@@ -45,7 +45,7 @@ def flown(isa: str, seed: int = 0, lanes: Tensor = EVERYONE) -> Tensor:
     vehicle = Vehicle.stack([draw(np.random.default_rng(seed + i)) for i in range(LANES)])
     start, command, winds = wild(seed)
     with native.using(isa):
-        plant = Plant(vehicle.take(lanes))
+        plant = TorchPlant(vehicle.take(lanes))
     end = plant.advance(start.take(lanes), command[:, lanes], winds[..., lanes])
     state = end.state
     parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, end.thrusts)
@@ -75,7 +75,7 @@ def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
     start, command, winds = wild(0)
     command[0, 4] = torch.nan
     with native.using(isa):
-        plant = Plant(Vehicle.nominal(LANES))
+        plant = TorchPlant(Vehicle.nominal(LANES))
     position = plant.advance(start, command, winds).state.position
     assert position.isnan().any(0).nonzero().flatten().tolist() == [4]
 
@@ -84,7 +84,7 @@ def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
     with native.using(isa):
         for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
-            plant = Plant(vehicle)
+            plant = TorchPlant(vehicle)
             still = torch.zeros(3, *vehicle.batch, dtype=vehicle.mass_kg.dtype)
             now = plant.start(State.hover(still, still[0]))
             end = plant.advance(now, vehicle.hover_command(), still.expand(5, *still.shape))
@@ -96,7 +96,7 @@ def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
 def test_a_batch_of_another_size_is_refused(isa: str) -> None:
     start, command, winds = wild(0)
     with native.using(isa):
-        plant = Plant(Vehicle.nominal(LANES - 1))
+        plant = TorchPlant(Vehicle.nominal(LANES - 1))
     with pytest.raises(RuntimeError, match="expand"):
         plant.advance(start, command, winds)
 

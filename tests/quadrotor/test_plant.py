@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.plant import PlantState, TorchPlant
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -43,7 +43,7 @@ def moving(count: int, seed: int) -> State:
 
 def test_hover_trim_stays_put():
     vehicle = drawn_vehicles(32)
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     start = plant.start(hovering(32))
     end = plant.advance(start, vehicle.hover_command(), calm(250, 32))
     assert end.state.position.abs().max() < 1e-12
@@ -55,7 +55,7 @@ def test_hover_trim_stays_put():
 def test_a_hovering_vehicle_drifts_to_the_wind_s_speed():
     vehicle = Vehicle.stack([VehicleParameters(mass_kg=0.5, drag_kgps=(0.5, 0.4, 0.3))])
     wind_mps = torch.tensor([[2.0], [-1.0], [0.5]], dtype=F64)
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     start = plant.start(State.hover(torch.zeros(3, 1, dtype=F64), torch.zeros(1, dtype=F64)))
     end = plant.advance(start, vehicle.hover_command(), wind_mps.expand(1000, 3, 1))
     gained = 1 - torch.exp(-vehicle.drag_kgps * 2.0 / vehicle.mass_kg)
@@ -67,7 +67,7 @@ def test_thrust_scale_multiplies_realised_thrust(scale):
     parameters = VehicleParameters(
         mass_kg=0.8, thrust_scale=scale, motor_time_constant_s=1e-9, drag_kgps=(1e-12,) * 3
     )
-    plant = Plant(Vehicle.stack([parameters]))
+    plant = TorchPlant(Vehicle.stack([parameters]))
     command = torch.tensor([[12.0], [0.0], [0.0], [0.0]], dtype=F64)
     end = plant.advance(plant.start(hovering(1)), command, calm(50, 1))
     expected = (scale * 12.0 / 0.8 - GRAVITY_MPS2) * 0.1
@@ -81,7 +81,7 @@ def test_torque_scale_multiplies_the_rate_loop_s_gain(axis, scale):
     vehicle = Vehicle.stack([parameters])
     command = vehicle.hover_command()
     command[1 + axis] = 0.8
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     end = plant.advance(plant.start(hovering(1)), command, calm(20, 1))
     # Sampled proportional control of an integrator: each 2 ms takes the same part of the error.
     left = (1 - scale * RATE_GAIN_PER_S[axis] * 0.002) ** 20
@@ -90,7 +90,7 @@ def test_torque_scale_multiplies_the_rate_loop_s_gain(axis, scale):
 
 
 def test_commands_are_clipped_to_the_vehicle_s_limits():
-    plant = Plant(drawn_vehicles(2))
+    plant = TorchPlant(drawn_vehicles(2))
     start = plant.start(moving(2, 0))
     wild = torch.tensor([[900.0, -5.0], [70.0, -70.0], [-9.0, 9.0], [30.0, -4.0]], dtype=F64)
     limit = torch.tensor(
@@ -103,7 +103,7 @@ def test_commands_are_clipped_to_the_vehicle_s_limits():
 
 
 def test_motors_stay_within_their_limits_and_reach_them():
-    plant = Plant(drawn_vehicles(32))
+    plant = TorchPlant(drawn_vehicles(32))
     now = plant.start(moving(32, 1))
     generator = torch.Generator().manual_seed(2)
     low, high = torch.inf, -torch.inf
@@ -119,7 +119,7 @@ def test_yaw_gives_way_before_collective_thrust_does():
     vehicle = Vehicle.nominal(1)
     command = vehicle.hover_command()
     command[3] = 3.0
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     now = plant.start(State.hover(torch.zeros(3, 1, dtype=F64), torch.zeros(1, dtype=F64)))
     now = dataclasses.replace(
         now, state=dataclasses.replace(now.state, rate=now.state.rate - 3.0 * (command[1:] > 0))
@@ -131,20 +131,17 @@ def test_yaw_gives_way_before_collective_thrust_does():
     assert end.state.rate[2] > now.state.rate[2] + 0.05
 
 
-def test_advance_is_its_steps_and_observe_sees_each():
+def test_advance_is_its_steps():
     vehicle = drawn_vehicles(32)
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     start = plant.start(moving(32, 3))
     command = vehicle.hover_command() * 1.1
     command[1] = 1.0
     winds = torch.randn(10, 3, 32, dtype=F64, generator=torch.Generator().manual_seed(4))
-    seen: list[tuple[int, State]] = []
-    end = plant.advance(start, command, winds, lambda count, state: seen.append((count, state)))
+    end = plant.advance(start, command, winds)
     now = start
-    assert [count for count, _ in seen] == list(range(1, 11))
-    for (_, state), wind_mps in zip(seen, winds, strict=True):
-        now = plant.step(now, command, wind_mps)
-        assert torch.equal(state.position, now.state.position)
+    for wind in winds.split(1):
+        now = plant.advance(now, command, wind)
     assert bits(now) == bits(end)
     halves = plant.advance(plant.advance(start, command, winds[:4]), command, winds[4:])
     assert bits(halves) == bits(end)
@@ -152,7 +149,7 @@ def test_advance_is_its_steps_and_observe_sees_each():
 
 def test_stepping_leaves_its_input_alone():
     vehicle = drawn_vehicles(32)
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     start = plant.start(moving(32, 5))
     command, winds = vehicle.hover_command(), calm(5, 32) + 3.0
     before = [x.clone() for x in (*tensors(start), command, winds)]
@@ -177,7 +174,7 @@ def fly(lanes: Tensor) -> PlantState:
     winds = 3 * torch.randn(50, 3, 70, dtype=F64, generator=generator)
     commands = torch.randn(2, 4, 70, dtype=F64, generator=generator)
     vehicle = drawn_vehicles(70)
-    plant = Plant(vehicle.take(pick))
+    plant = TorchPlant(vehicle.take(pick))
     now = PlantState(moving(70, 7), torch.rand(4, 70, dtype=F64, generator=generator)).take(pick)
     for k in range(2):
         command = vehicle.hover_command() * 1.2 + commands[k] * 4

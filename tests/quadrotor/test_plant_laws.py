@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.plant import Plant, PlantState, rigid_body
+from faultpath.quadrotor.plant import PlantState, TorchPlant, rigid_body
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
 from faultpath.quadrotor.vehicle_batch import Vehicle
@@ -21,7 +21,7 @@ def column(*values: float) -> torch.Tensor:
 
 def falling(parameters: VehicleParameters, steps: int) -> State:
     """Let a level vehicle with stopped motors go."""
-    plant = Plant(Vehicle.stack([parameters]))
+    plant = TorchPlant(Vehicle.stack([parameters]))
     start = State.hover(column(0.0, 0.0, 0.0), torch.zeros(1, dtype=F64))
     stopped = PlantState(start, torch.zeros(4, 1, dtype=F64))
     zero = torch.zeros(4, 1, dtype=F64)
@@ -49,7 +49,7 @@ def test_drag_acts_along_body_axes():
     vehicle = Vehicle.stack([VehicleParameters(drag_kgps=(0.1, 0.5, 0.3))])
     start = State.hover(column(0.0, 0.0, 0.0), torch.tensor([math.pi / 2], dtype=F64))
     start = State(start.position, column(1.0, 0.0, 0.0), start.rotation, start.rate)
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     command = vehicle.hover_command()
     end = plant.advance(plant.start(start), command, torch.zeros(500, 3, 1, dtype=F64)).state
     # World x is the vehicle's right side at a quarter turn of yaw.
@@ -98,12 +98,12 @@ def test_motor_lag_and_its_impulse_are_exact():
         mass_kg=mass, thrust_scale=scale, motor_time_constant_s=tau, drag_kgps=NO_DRAG
     )
     vehicle = Vehicle.stack([parameters])
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     now = plant.start(State.hover(column(0.0, 0.0, 0.0), torch.zeros(1, dtype=F64)))
     hover, target = mass * GRAVITY_MPS2 / scale, 16.0
     command = column(target, 0.0, 0.0, 0.0)
     for step in range(1, 51):
-        now = plant.step(now, command, torch.zeros(3, 1, dtype=F64))
+        now = plant.advance(now, command, torch.zeros(1, 3, 1, dtype=F64))
         left = math.exp(-step * 0.002 / tau)
         expected = target + (hover - target) * left
         assert now.thrusts.sum().item() == pytest.approx(expected, rel=1e-12)
@@ -123,7 +123,7 @@ def test_the_plant_is_second_order():
     )
 
     def end(dt_s: float) -> State:
-        plant = Plant(vehicle, dt_s)
+        plant = TorchPlant(vehicle, dt_s)
         winds = column(3.0, 0.0, 1.0).expand(round(0.4 / dt_s), 3, 1)
         start = PlantState(turning, torch.full((4, 1), 4.0, dtype=F64))
         return plant.advance(start, column(20.0, 0.0, 0.0, 0.0), winds).state

@@ -5,7 +5,7 @@ import pytest
 import torch
 
 from faultpath.quadrotor import so3, wind
-from faultpath.quadrotor.plant import Plant
+from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, draw
 from faultpath.quadrotor.vehicle_batch import Vehicle
@@ -51,7 +51,7 @@ def test_trajectories_agree(kind):
     commands[:, 1:] = generator.uniform(-1, 1, (CONTROLS, 3, LANES)) * [[3.5], [3.5], [2.0]]
     flow = winds(kind)
 
-    plant = Plant(vehicle)
+    plant = TorchPlant(vehicle)
     now = plant.start(start)
     for k in range(CONTROLS):
         at = slice(k * STEPS_PER_CONTROL, (k + 1) * STEPS_PER_CONTROL)

@@ -1,6 +1,7 @@
 """The plant, compiled: all steps of a control interval in one call, contact checks among them."""
 
 import ctypes
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,19 +10,17 @@ from torch import Tensor
 
 from faultpath.quadrotor.native.lending import Lent, lend
 from faultpath.quadrotor.native.library import Kernels
-from faultpath.quadrotor.scenes.geometry import Geometry
-from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
-    COLLISION_RADIUS_M,
     GRAVITY_MPS2,
     MOTOR_THRUST_MAX_N,
     RATE_GAIN_PER_S,
     RATE_LIMIT_RADPS,
 )
 
-_ROWS = (3, 3, 9, 3, 4)
-"""Rows of `Body` in `plant.hpp`: position, velocity, rotation, rate, thrusts."""
+_BODY = {"position": (3,), "velocity": (3,), "rotation": (3, 3), "rate": (3,), "thrusts": (4,)}
+"""The parts of `Body` in `plant.hpp`, and the shape of each in a lane."""
+_ROWS = tuple(math.prod(shape) for shape in _BODY.values())
 
 
 class _Law(ctypes.Structure):
@@ -40,9 +39,7 @@ class _Law(ctypes.Structure):
 class _Before(ctypes.Structure):
     """`Before` of `plant.cpp`."""
 
-    _fields_ = tuple(
-        (name, ctypes.c_void_p) for name in ("position", "velocity", "rotation", "rate", "thrust")
-    )
+    _fields_ = tuple((name, ctypes.c_void_p) for name in _BODY)
 
 
 _STANDING = (
@@ -86,62 +83,45 @@ class Watched:
     lanes: int
 
 
-class CompiledContact:
-    """What there is to touch, and where each lane's trial should end."""
+def watch(
+    solids: Tensor,
+    goal: Tensor,
+    standing: Sequence[Tensor],
+    *,
+    radius_m: float,
+    every: int,
+    made: int,
+    rate_hz: int,
+) -> Watched:
+    """Return what lets `CompiledPlant.fly` bring the trials' `standing` up to date.
 
-    def __init__(self, geometry: Geometry, goal: Tensor, every: int, rate_hz: int) -> None:
-        """Prepare checks `every` so many plant steps of `rate_hz`; `goal` is `[3, L]`, m.
+    Args:
+        solids: What there is to touch, `[K, 10, L]`, rows as `Solid` of `plant_contact.hpp`.
+        goal: Where trials should end, `[3, L]`, m.
+        standing: Running, crashed, time, distance to the goal and least clearance, `[L]` each;
+            written to.
+        radius_m: Of the vehicle.
+        every: Plant steps between two looks.
+        made: Plant steps before the call.
+        rate_hz: Plant steps a second.
 
-        Raises:
-            ValueError: `every` is not positive, or the prisms and goals are not of as many lanes.
-        """
-        if every < 1:
-            raise ValueError(f"contact is looked for every so many steps, not every {every}")
-        count, lanes = geometry.sign.shape
-        if goal.shape != (3, lanes):
-            raise ValueError(f"{lanes} scenes have goals of the shape {list(goal.shape)}")
-        rows = (
-            geometry.along_x[:1],  # the cosine of each prism's yaw
-            geometry.along_y[:1],  # and its sine
-            geometry.offset,
-            geometry.half,
-            geometry.rounding[None],
-            geometry.sign[None],
-        )
-        self._solids = torch.cat(rows).transpose(0, 1).contiguous()
-        self._goal = goal.contiguous()
-        self._shape = (count, _SOLID, lanes)
-        self._every, self._rate_hz = every, rate_hz
-
-    def watch(self, made: int, standing: Sequence[Tensor]) -> Watched:
-        """Return what lets `CompiledPlant.fly` bring the trials' `standing` up to date.
-
-        Args:
-            made: Plant steps before the call.
-            standing: Running, crashed, time, distance to the goal and least clearance, `[L]` each;
-                written to.
-
-        Raises:
-            ValueError: A tensor is not what the kernel takes; see `lend`.
-        """
-        *_, lanes = self._shape
-        solids = lend("solids", self._solids, *self._shape, dtype=torch.float64)
-        goal = lend("goal", self._goal, 3, lanes, dtype=torch.float64)
-        stand = tuple(
-            lend(name, value, lanes, dtype=dtype)
-            for (name, dtype), value in zip(_STANDING, standing, strict=True)
-        )
-        trial = _Trial(
-            solids.address,
-            len(self._solids),
-            goal.address,
-            COLLISION_RADIUS_M,
-            self._every,
-            made,
-            self._rate_hz,
-            *(part.address for part in stand),
-        )
-        return Watched(trial, (solids, goal, *stand), lanes)
+    Raises:
+        ValueError: `every` is not positive, or a tensor is not what the kernel takes; see `lend`.
+    """
+    if every < 1:
+        raise ValueError(f"contact is looked for every so many steps, not every {every}")
+    lanes = goal.shape[-1]
+    prisms = lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64)
+    goals = lend("goal", goal, 3, lanes, dtype=torch.float64)
+    stand = tuple(
+        lend(name, value, lanes, dtype=dtype)
+        for (name, dtype), value in zip(_STANDING, standing, strict=True)
+    )
+    addresses = (part.address for part in stand)
+    trial = _Trial(
+        prisms.address, len(solids), goals.address, radius_m, every, made, rate_hz, *addresses
+    )
+    return Watched(trial, (prisms, goals, *stand), lanes)
 
 
 class CompiledPlant:
@@ -164,20 +144,19 @@ class CompiledPlant:
 
     def fly(
         self,
-        state: State,
-        thrusts: Tensor,
+        before: Sequence[Tensor],
         command: Tensor,
         winds: Tensor,
         watched: Watched | None = None,
-    ) -> tuple[State, Tensor]:
-        """Return state and motor thrusts after one step for each of `winds`.
+    ) -> tuple[Tensor, ...]:
+        """Return what `before` has become after one step for each of `winds`.
 
         Args:
-            state: Batch `[L]`, float64.
-            thrusts: `[4, L]`, N.
+            before: Position, velocity and rate `[3, L]`, rotation `[3, 3, L]` and motor thrusts
+                `[4, L]`, in the order of `Body` in `plant.hpp`.
             command: `[4, L]`, of any precision; held.
             winds: `[n, 3, L]`, world frame, m/s.
-            watched: From `CompiledContact.watch`, for contact checks between the steps.
+            watched: From `watch`, for contact checks between the steps.
 
         Raises:
             RuntimeError: A tensor cannot be expanded to the lanes.
@@ -186,27 +165,24 @@ class CompiledPlant:
         lanes = self._airframes.tensor.shape[1]
         if watched is not None and watched.lanes != lanes:
             raise ValueError(f"{watched.lanes} trials are watched in {lanes} lanes")
-        before = (
-            _ready("position", state.position, 3, lanes),
-            _ready("velocity", state.velocity, 3, lanes),
-            _ready("rotation", state.rotation, 3, 3, lanes),
-            _ready("rate", state.rate, 3, lanes),
-            _ready("thrusts", thrusts, 4, lanes),
-        )
+        ready = [
+            _ready(name, part, *shape, lanes)
+            for (name, shape), part in zip(_BODY.items(), before, strict=True)
+        ]
         ends = torch.empty(sum(_ROWS), lanes, dtype=torch.float64)
         self._kernels.call(
             "faultpath_fly",
             ctypes.byref(self._law),
             self._airframes,
-            ctypes.byref(_Before(*(part.address for part in before))),
+            ctypes.byref(_Before(*(part.address for part in ready))),
             _ready("command", command, 4, lanes),
             _ready("winds", winds, len(winds), 3, lanes),
             *(len(winds), lanes),
             None if watched is None else ctypes.byref(watched.trial),
             lend("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
         )
-        position, velocity, rotation, rate, thrusts = ends.split(_ROWS)
-        return State(position, velocity, rotation.view(3, 3, lanes), rate), thrusts
+        parts = zip(ends.split(_ROWS), _BODY.values(), strict=True)
+        return tuple(part.view(*shape, lanes) for part, shape in parts)
 
 
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:

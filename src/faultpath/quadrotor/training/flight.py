@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
 from faultpath.quadrotor import native, so3, wind
-from faultpath.quadrotor.plant import Plant, PlantState
+from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import (
@@ -91,7 +91,13 @@ class _Start:
 
 @torch.inference_mode()
 @native.using(native.PORTABLE)
-def fly(pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings) -> Flights:
+def fly(
+    pool: str,
+    episodes: Sequence[int],
+    seed: int,
+    settings: FlightSettings,
+    build: Callable[[Vehicle], Plant] = TorchPlant,
+) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
@@ -102,7 +108,7 @@ def fly(pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings)
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
     course = Course.stack([start.course for start in starts]).take(lanes)
     winds = _winds(starts)
-    plant = Plant(vehicle)
+    plant = build(vehicle)
     controller = WaypointController(vehicle, course, settings.controller.arrival_m)
     now = plant.start(_stack([start.state for start in starts]).take(lanes))
 
