@@ -7,6 +7,7 @@ import numpy as np
 
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import RATES, Population, joint
+from faultpath.statistics import Resamples, success_effect
 from faultpath.statistics.distributions import multinomial_pmf
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.score import quantile, reach, rejects
@@ -14,7 +15,8 @@ from faultpath.streams import generator
 
 Z = quantile(0.95)
 LEANS = (0.0, 0.5, 1.0)
-INTERVAL, BREAK_EVEN = "interval", "break-even"
+INTERVAL, BREAK_EVEN, MODELS = "interval", "break-even", "newly trained models"
+_SLACK = 1e-9
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,39 @@ class BreakEvenCoverage:
         return Measured(BREAK_EVEN, setting, float(times @ covered) / self.runs, self.runs)
 
 
+@dataclass(frozen=True)
+class ModelsCoverage:
+    """Coverage of the 95 % interval for newly trained models; the first arm alone ever wins."""
+
+    scenes: int
+    seeds: int
+    rate: float
+    own: bool
+    """Whether each training has a rate of its own, from 0 to twice ``rate``."""
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return the coverage of the mean over all trainings that might have been."""
+        stream = generator("selfcheck", repr(self), 0)
+        resamples = Resamples.draw("selfcheck", self.scenes, n_resamples=1000)
+        covered, truth = 0, 100.0 * self.rate
+        for _ in range(self.runs):
+            rates = self.rate * (stream.uniform(0.0, 2.0, size=self.seeds) if self.own else 1.0)
+            together, alike = stream.random((2, self.scenes, 1))
+            apart = stream.random((self.scenes, self.seeds))
+            wins = np.where(alike < 0.5, together, apart) < rates
+            none = np.zeros_like(wins)
+            low, high = success_effect(wins, none, resamples, resample_seeds=True).interval()
+            covered += low - _SLACK <= truth <= high + _SLACK
+        setting = {
+            "scenes": self.scenes,
+            "seeds": self.seeds,
+            "rate": self.rate,
+            "own rates": int(self.own),
+        }
+        return Measured(MODELS, setting, covered / self.runs, self.runs)
+
+
 def interval_grid(scenes: tuple[int, ...], runs: int) -> Iterator[IntervalCoverage]:
     """Yield the grid of the effect's interval."""
     for n in scenes:
@@ -108,6 +143,15 @@ def break_even_grid(scenes: tuple[int, ...], runs: int) -> Iterator[BreakEvenCov
                         faulty = Population(gain, 1.0, seeds, alike, effects)
                         if correct.mean <= 0.0:
                             yield BreakEvenCoverage(n, correct, faulty, runs)
+
+
+def models_grid(runs: int) -> Iterator[ModelsCoverage]:
+    """Yield the grid of the interval for newly trained models."""
+    for own in (False, True):
+        for n in (25, 100):
+            for seeds in (3, 5):
+                for rate in RATES[::2]:
+                    yield ModelsCoverage(n, seeds, rate, own, runs)
 
 
 def _structures(alike: tuple[float, ...]) -> Iterator[tuple[int, float, bool]]:

@@ -5,9 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from faultpath.selfcheck.coverage import tables
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import Population
 from faultpath.statistics import detectable
+from faultpath.statistics.distributions import binomial_pmf, multinomial_pmf
+from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import detected
 from faultpath.statistics.score import reach
 from faultpath.streams import generator
@@ -27,15 +30,13 @@ class DetectionAtTheReported:
     runs: int
 
     def measure(self) -> Measured:
-        """Return the mean share of audits that detect the difference reported by others."""
-        found: list[float] = []
-        stream = generator("selfcheck", repr(self), 0)
+        """Return the mean share of audits that detect the difference reported by others.
+
+        Exact for one seed. Else the stated runs are not the reports: they are as many audits as
+        would have the standard error of the mean of the reports' shares.
+        """
         truth = self.population
-        for _ in range(self.runs):
-            difference = truth.outcomes(stream.random((self.scenes, truth.seeds + 2)))
-            least = detectable(difference > 0.0, difference < 0.0, alpha=self.alpha).value
-            if least is not None:
-                found.append(self._detected(least / 100.0, stream))
+        powers, runs = (self._exactly(), 0) if truth.seeds == 1 else self._simulated()
         setting = {
             "scenes": self.scenes,
             "seeds": truth.seeds,
@@ -43,15 +44,47 @@ class DetectionAtTheReported:
             "alike": truth.alike,
             "alpha": round(self.alpha, 4),
         }
-        return Measured(DETECTION, setting, float(np.mean(found)), self.runs)
+        return Measured(DETECTION, setting, powers, runs)
 
-    def _detected(self, difference: float, stream: np.random.Generator) -> float:
-        """Return the share at a true difference: as many scenes differ, more where it needs it."""
+    def _exactly(self) -> float:
+        """Return the mean over every number of discordant scenes, each with its chance."""
+        every, numbers = tables(self.scenes), np.arange(self.scenes + 1)
+        found = detected(self.population.sizes, every, np.ones(len(every)), self.alpha)
+        chances = binomial_pmf(numbers, self.scenes, self.population.rate)
+        total = weights = 0.0
+        for discordant, chance in enumerate(chances.tolist()):
+            least = self._reported(1.0 * (numbers[1:] <= discordant))
+            if least is not None:
+                weights += chance
+                total += chance * float(multinomial_pmf(every, self._at(least).chances()) @ found)
+        return total / weights
+
+    def _simulated(self) -> tuple[float, int]:
+        """Return the mean over simulated reports, and how many audits would be as precise."""
+        stream = generator("selfcheck", repr(self), 0)
+        truth, shares = self.population, list[float]()
+        for _ in range(self.runs):
+            difference = truth.outcomes(stream.random((self.scenes, truth.seeds + 2)))
+            least = self._reported(difference)
+            if least is not None:
+                true = self._at(least)
+                drawn = stream.multinomial(self.scenes, true.chances(), size=_AGAIN)
+                counts = drawn.astype(np.float64)
+                far = reach(np.broadcast_to(true.sizes, counts.shape), counts, 1.0)
+                shares.append(float(detected(true.sizes, counts, far, self.alpha).mean()))
+        mean = float(np.mean(shares))
+        variance = float(np.var(shares)) / len(shares)
+        return mean, round(mean * (1.0 - mean) / variance) if variance else len(shares)
+
+    def _reported(self, difference: Floats) -> float | None:
+        """Return the least detectable difference, a fraction, of outcomes [scenes, seeds]."""
+        least = detectable(difference > 0.0, difference < 0.0, alpha=self.alpha).value
+        return None if least is None else least / 100.0
+
+    def _at(self, difference: float) -> Population:
+        """Return the truth with that difference: as many scenes differ, more where it needs it."""
         rate = max(self.population.rate, difference)
-        true = replace(self.population, rate=rate, lean=min(1.0, difference / rate))
-        counts = stream.multinomial(self.scenes, true.chances(), size=_AGAIN).astype(np.float64)
-        far = reach(np.broadcast_to(true.sizes, counts.shape), counts, 1.0)
-        return float(detected(true.sizes, counts, far, self.alpha).mean())
+        return replace(self.population, rate=rate, lean=min(1.0, difference / rate))
 
 
 def detection_grid(runs: int) -> Iterator[DetectionAtTheReported]:

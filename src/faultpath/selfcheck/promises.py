@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
-from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL
+from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Report, Value
 
@@ -32,6 +32,12 @@ class Promise:
 PROMISES = (
     Promise(INTERVAL, "the 95 % interval of an effect covers the truth", least=0.93),
     Promise(BREAK_EVEN, "the break-even set covers the true frequency", least=0.93),
+    Promise(
+        MODELS,
+        "the 95 % interval for newly trained models that do not differ covers the truth",
+        least=0.93,
+        concerns=lambda cell: not cell["own rates"],
+    ),
     Promise(
         DETECTION,
         "a true difference of the reported size is detected",

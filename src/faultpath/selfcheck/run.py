@@ -9,7 +9,7 @@ from typing import Protocol
 
 from faultpath.errors import UserError
 from faultpath.selfcheck.audits import equal_grid, reversal_grid, training_grid
-from faultpath.selfcheck.coverage import break_even_grid, interval_grid
+from faultpath.selfcheck.coverage import break_even_grid, interval_grid, models_grid
 from faultpath.selfcheck.detection import detection_grid
 from faultpath.selfcheck.model import Measured, Report, Section
 from faultpath.selfcheck.populations import SCENES
@@ -30,6 +30,7 @@ class Profile:
     scenes: tuple[int, ...]
     intervals: int
     break_even: int
+    models: int
     reports: int
     audits: int
     trainings: int
@@ -39,6 +40,7 @@ class Profile:
         return [
             *interval_grid(self.scenes, self.intervals),
             *break_even_grid(self.scenes, self.break_even),
+            *models_grid(self.models),
             *detection_grid(self.reports),
             *equal_grid(self.audits),
             *reversal_grid(self.audits),
@@ -47,8 +49,8 @@ class Profile:
 
 
 PROFILES = {
-    "full": Profile(SCENES, 20_000, 4_000, 60, 1_000, 2_000),
-    "quick": Profile((25,), 500, 200, 1, 10, 30),
+    "full": Profile(SCENES, 20_000, 4_000, 500, 200, 1_000, 2_000),
+    "quick": Profile((25,), 500, 200, 20, 1, 10, 30),
 }
 _CHUNK = 8
 
