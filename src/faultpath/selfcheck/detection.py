@@ -53,7 +53,7 @@ class DetectionAtTheReported:
         chances = binomial_pmf(numbers, self.scenes, self.population.rate)
         total = weights = 0.0
         for discordant, chance in enumerate(chances.tolist()):
-            least = self._reported(1.0 * (numbers[1:] <= discordant))
+            least = self._reported((numbers[1:] <= discordant).astype(np.float64))
             if least is not None:
                 weights += chance
                 total += chance * float(multinomial_pmf(every, self._at(least).chances()) @ found)
