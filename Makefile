@@ -15,6 +15,9 @@ SOURCES := src tests examples benchmarks
 # --no-compile leaves byte code to the first import: most of what is installed is never imported.
 PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --quiet -c constraints.txt
 
+# The command refuses an option given twice, so one in ARGS takes the place of the recipe's.
+unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
+
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz bench bench-page lint format clean distclean
@@ -27,8 +30,9 @@ setup: $(STAMPS)/dev ## Create .venv with everything needed to develop
 setup-runtime: $(STAMPS)/runtime ## Create .venv with what an audit needs
 
 audit: $(STAMPS)/runtime ## Audit a repair of the quadrotor's wind reconstruction; more in ARGS="..."
-	$(BIN)/faultpath audit quadrotor --baseline gru --repair gru+dcc \
-	  --fault calibration=+0.1 --library held-out --wind L3 $(ARGS)
+	$(BIN)/faultpath audit quadrotor $(call unless_given,--baseline,gru) \
+	  $(call unless_given,--repair,gru+dcc) $(call unless_given,--fault,calibration=+0.1) \
+	  $(call unless_given,--library,held-out) $(call unless_given,--wind,L3) $(ARGS)
 
 reproduce: $(STAMPS)/runtime ## Reproduce the paper, quickly; all of it with ARGS="--profile paper"
 	$(BIN)/faultpath reproduce $(ARGS)

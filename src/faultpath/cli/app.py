@@ -19,8 +19,9 @@ from faultpath.cli import (
     selfcheck,
     train,
 )
+from faultpath.cli.verbs import Verbs
 
-app = typer.Typer(
+app = Verbs(
     name="faultpath",
     no_args_is_help=True,
     add_completion=False,

@@ -8,11 +8,12 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import LARGEST, path
+from faultpath.cli.verbs import Verbs
 
 MOST_SCENES = 10_000
 """A library of more takes hours to make; statistics need a few hundred."""
 
-app = typer.Typer(help="Libraries of scenes for the quadrotor.", no_args_is_help=True)
+app = Verbs(help="Libraries of scenes for the quadrotor.", no_args_is_help=True)
 
 
 @app.command("generate")

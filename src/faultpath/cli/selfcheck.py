@@ -6,10 +6,11 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import path
+from faultpath.cli.verbs import Verbs
 
 BROKEN = 1
 
-app = typer.Typer(help="Check that the installed code keeps what it promises.")
+app = Verbs(help="Check that the installed code keeps what it promises.")
 
 
 @app.callback()

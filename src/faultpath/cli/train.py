@@ -7,10 +7,11 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import LARGEST, path, refuse_with
+from faultpath.cli.verbs import Verbs
 
 FAILED_MODELS = 1
 
-app = typer.Typer(help="Fit the learned models of the quadrotor.", no_args_is_help=True)
+app = Verbs(help="Fit the learned models of the quadrotor.", no_args_is_help=True)
 
 
 @app.command("quadrotor")

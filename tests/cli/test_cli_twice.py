@@ -1,0 +1,60 @@
+"""An option that takes one value is given once: of two, one would be dropped without a word."""
+
+import subprocess
+from collections.abc import Iterator
+
+import pytest
+from cli_runs import ROOT, audit
+from typer.core import TyperCommand, TyperGroup, TyperOption
+from typer.main import get_command
+
+from faultpath.cli.app import app
+from faultpath.errors import UserError
+
+
+def _options(command, *words: str) -> Iterator[tuple[str, TyperCommand, TyperOption]]:
+    if isinstance(command, TyperGroup):
+        for name, verb in command.commands.items():
+            yield from _options(verb, *words, name)
+    else:
+        for option in command.params:
+            if isinstance(option, TyperOption) and not option.multiple:
+                yield " ".join((*words, option.opts[0])), command, option
+
+
+OPTIONS = list(_options(get_command(app)))
+
+
+@pytest.mark.parametrize(("_name", "verb", "option"), OPTIONS, ids=[name for name, *_ in OPTIONS])
+def test_an_option_given_twice_is_refused(_name, verb, option):
+    given = [option.opts[0]] if option.is_flag else [option.opts[0], "1"]
+    with pytest.raises(UserError, match=f"{option.opts[0]} is given twice: give it once"):
+        verb.make_context("verb", [*given, *given])
+
+
+def test_every_verb_is_among_them():
+    named = {name.split()[0] for name, *_ in OPTIONS}
+    assert named >= {"audit", "claims", "probe", "reproduce", "scenes", "train"}
+
+
+@pytest.mark.parametrize("again", [["--library", "carts"], ["--library=carts"]])
+def test_so_is_the_same_value_in_either_form(again, tmp_path):
+    said = audit(*again, out=tmp_path / "run").refused()
+    assert "--library is given twice: give it once" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_option_that_takes_several_may_be_given_several_times(tmp_path):
+    said = audit("--set", "a=1", "--set", "b=2", out=tmp_path / "run").refused()
+    assert "the options of system" in said  # the toy has neither
+
+
+@pytest.mark.parametrize("given", ["--wind L0 --seeds 0,1", "--wind=L0", "--scenes 20"])
+def test_make_audit_gives_what_its_user_does_not(given):
+    made = ["make", "--dry-run", "--always-make", "audit", f"ARGS={given}"]
+    shown = subprocess.run(made, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    words = shown.replace("\\\n", " ").partition("faultpath audit quadrotor ")[2].split()
+    assert " ".join(words).endswith(given)
+    options = [word.partition("=")[0] for word in words if word.startswith("--")]
+    assert sorted(options) == sorted(set(options))
+    assert {"--baseline", "--repair", "--fault", "--library", "--wind"} <= set(options)
