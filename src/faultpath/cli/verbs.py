@@ -26,7 +26,7 @@ class Verbs(typer.Typer):
 
     def command(self, name: str | None = None, **settings: Any) -> Any:
         """Register a function as a verb; `settings` are those of typer."""
-        return super().command(name, **{"cls": Verb} | settings)
+        return super().command(name, cls=Verb, **settings)
 
 
 def _single(parameter: object) -> bool:
