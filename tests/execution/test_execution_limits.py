@@ -1,6 +1,7 @@
 """What a system that hangs, exits or fails everywhere may cost."""
 
 import math
+import os
 import sys
 import time
 
@@ -8,6 +9,7 @@ import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
 
+from faultpath import patience
 from faultpath.errors import UserError
 from faultpath.execution import run_study
 from faultpath.execution.limits import FEW, FIRST_S, LEAST_S, TIMES, TimeLimit
@@ -31,6 +33,13 @@ class Unruly(ToySystem):
 
 def unruly(**options: str) -> Unruly:
     return Unruly(**options)
+
+
+def slow_worker(parent: str) -> ToySystem:
+    """Build the system in the process `parent`, and wait for ever in any other."""
+    if os.getpid() != int(parent):
+        time.sleep(600)
+    return ToySystem()
 
 
 def _study(scenes: tuple[str, ...] = SCENES, rows: int = 1, **options: str):
@@ -98,3 +107,18 @@ def test_a_limit_that_is_none_is_refused(tmp_path, wrong):
 def test_this_process_cannot_stop_itself(tmp_path):
     with pytest.raises(UserError, match="needs worker processes"):
         run_study(study(), tmp_path, workers=0, time_limit_s=10.0)
+
+
+def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(patience, "LEAST_S", 1.0)
+    asked = study(parent=str(os.getpid()))
+    system = asked.system.model_copy(update={"name": f"{__file__}:slow_worker"})
+    asked = asked.model_copy(update={"system": system})
+    with pytest.raises(UserError, match=r"was not built in a worker process within 2 s: look"):
+        run_study(asked, tmp_path, workers=1, time_limit_s=2.0)
+
+
+def test_building_may_take_longer_than_a_block():
+    assert TimeLimit().building_s == patience.LONGEST_S
+    assert TimeLimit(1.0).building_s == patience.LEAST_S
+    assert TimeLimit(1000.0).building_s == 1000.0

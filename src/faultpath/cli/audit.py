@@ -71,6 +71,7 @@ def command(
     alone, and under the shared fault."""
     from faultpath.audit import plan_audit
     from faultpath.faults import parse_fault
+    from faultpath.patience import patience
     from faultpath.trials import SystemSpec, library_of, load_system
 
     named = {
@@ -83,7 +84,9 @@ def command(
     }
     options = settings(set_ or [], {k: v for k, v in named.items() if v is not None})
     spec = SystemSpec(name=system, options=options)
-    built = load_system(spec)
+    with patience(system, time_limit):
+        built = load_system(spec)
+        scenes_from = library_of(built, library)
     audit = plan_audit(
         built,
         spec,
@@ -91,7 +94,7 @@ def command(
         repair=repair,
         fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
         fault_text=fault,
-        library=library_of(built, library),
+        library=scenes_from,
         scenes=scenes,
         seeds=numbers(seeds, "--seeds"),
         primary=primary,

@@ -17,6 +17,7 @@ from faultpath.execution.changes import check_same
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.schedule import Recheck, Task
 from faultpath.execution.worker import Hello, Order, Ready, Undeclared
+from faultpath.patience import too_late
 
 _ONE_THREAD = (
     "OMP_NUM_THREADS",
@@ -83,6 +84,7 @@ class Worker:
     def greet(self, hello: Hello) -> None:
         """Tell it what to build."""
         self._greetings += 1
+        self.since = time.monotonic()
         with suppress(OSError):  # a worker that died already shows when we read
             self.channel.send(hello)
 
@@ -185,6 +187,8 @@ class Crew:
         now = time.monotonic()
         for worker in tuple(self._workers.values()):
             if (task := worker.task) is None:
+                if not worker.ready and now - worker.since > limit.building_s:
+                    raise too_late(self._name, limit.building_s, " in a worker process")
                 continue
             allowed = limit.seconds(len(task.scenes))
             if now - worker.since > allowed:

@@ -3,6 +3,7 @@
 import math
 
 from faultpath.errors import UserError
+from faultpath.patience import building_s
 
 FIRST_S = 3600.0
 """Until a first block is done nobody knows how long one takes."""
@@ -21,6 +22,11 @@ class TimeLimit:
         self._asked_s = asked_s
         self._slowest_s = 0.0
         self._slowest_scene_s = 0.0
+
+    @property
+    def building_s(self) -> float:
+        """The seconds that a worker may take to build the system."""
+        return building_s(self._asked_s)
 
     def learn(self, seconds: float, scenes: int) -> None:
         """Take in how long a finished task took."""

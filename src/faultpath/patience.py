@@ -1,0 +1,60 @@
+"""How long building a system may take in a command's own process."""
+
+import signal
+import threading
+from collections.abc import Generator
+from contextlib import contextmanager
+from types import FrameType
+from typing import NoReturn
+
+from faultpath.errors import UserError
+
+LONGEST_S = 3600.0
+"""Unless the user says how long anything may take."""
+LEAST_S = 300.0
+"""Whatever the user says of a block: imports wait for a busy machine."""
+_MOST_S = 1e8
+
+
+class _TooLate(BaseException):
+    """No `Exception`: the code that it interrupts may catch those."""
+
+
+def building_s(asked_s: float | None) -> float:
+    """Return the seconds that building may take where a block may take `asked_s`."""
+    return LONGEST_S if asked_s is None else min(max(LEAST_S, asked_s), _MOST_S)
+
+
+@contextmanager
+def patience(what: str, asked_s: float | None) -> Generator[None]:
+    """Interrupt what takes too long to be built, `what` by name; `UserError` says so.
+
+    For commands: it takes the process's alarm clock, and puts it back. Python code is interrupted,
+    a library that never returns to it is not; Ctrl-C has the same bounds. Off the main thread it
+    does nothing, since signals arrive there alone.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    seconds = building_s(asked_s)
+    before = signal.signal(signal.SIGALRM, _ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    except _TooLate:
+        raise too_late(what, seconds, "") from None
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def too_late(what: str, seconds: float, where: str) -> UserError:
+    """Return what to say of a system that was not built in time."""
+    return UserError(
+        f"system {what!r} was not built{where} within {seconds:g} s: look for what its factory or "
+        "its file waits for, or allow more with --time-limit"
+    )
+
+
+def _ring(number: int, frame: FrameType | None) -> NoReturn:
+    raise _TooLate
