@@ -43,6 +43,7 @@ class ClosedLoop(Side):
     """Twenty control steps of a block; the unit is one running scene's step."""
 
     def __init__(self, clearance: str = "true") -> None:
+        torch.set_num_threads(1)
         system = create(wind="L3", predictor="wm-a-wind", clearance=clearance)
         assert isinstance(system, Quadrotor)
         self._system = system

@@ -53,7 +53,7 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
         ended = faultpath("report", run)
         assert (ended.status, ended.err) == (0, "")
         assert not harm.exists()
-        assert not {"evil", "faultpath_system_evil"} & set(sys.modules)
+        assert not [name for name in sys.modules if "evil" in name]
 
 
 def test_the_folder_is_enough_where_the_system_is_not(run: Path, monkeypatch) -> None:

@@ -10,6 +10,7 @@ import pytest
 from faultpath.errors import UserError
 from faultpath.trials import SystemSpec, load_system
 
+ROOT = Path(__file__).resolve().parents[2]
 FILE = Path(__file__).parents[1] / "execution" / "toy_system.py"
 
 
@@ -65,3 +66,152 @@ def test_naming_a_system_imports_no_torch():
         "sys.exit('torch' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def _systems(tmp_path: Path, *names: str) -> list[Path]:
+    """Folders of systems that each have a `helper_of_mine.py` of their own."""
+    for name in names:
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "helper_of_mine.py").write_text(f"WHO = {name!r}\n")
+        text = FILE.read_text() + "\nfrom helper_of_mine import WHO\nToySystem.name = WHO\n"
+        (folder / "mine.py").write_text(text)
+    return [tmp_path / name for name in names]
+
+
+@pytest.fixture
+def own_modules(monkeypatch):
+    """Leave neither modules nor places to look for them to other tests."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    before = dict(sys.modules)
+    yield
+    for name in set(sys.modules) - set(before):
+        del sys.modules[name]
+
+
+@pytest.mark.usefixtures("own_modules")
+def test_a_second_system_does_not_run_the_helper_of_the_first(tmp_path):
+    first, second = _systems(tmp_path, "first", "second")
+    assert load_system(SystemSpec(name=f"{first}/mine.py:create")).name == "first"
+    path, modules = list(sys.path), dict(sys.modules)
+    with pytest.raises(UserError, match="imports 'helper_of_mine'") as refused:
+        load_system(SystemSpec(name=f"{second}/mine.py:create"))
+    for each in (first, second):
+        assert str(each / "helper_of_mine.py") in str(refused.value)
+    assert (sys.path, sys.modules) == (path, modules)
+    assert load_system(SystemSpec(name=f"{first}/mine.py:create")).name == "first"
+
+
+@pytest.mark.usefixtures("own_modules")
+def test_a_helper_that_the_first_imports_later_is_seen_too(tmp_path):
+    first, second = _systems(tmp_path, "first", "second")
+    late = (
+        (first / "mine.py")
+        .read_text()
+        .replace(
+            "\nfrom helper_of_mine import WHO\nToySystem.name = WHO\n",
+            "\ndef later():\n    from helper_of_mine import WHO\n    return WHO\n",
+        )
+    )
+    (first / "mine.py").write_text(late)
+    load_system(SystemSpec(name=f"{first}/mine.py:create"))
+    assert "helper_of_mine" not in sys.modules
+    with pytest.raises(UserError, match="imports 'helper_of_mine'"):
+        load_system(SystemSpec(name=f"{second}/mine.py:create"))
+
+
+@pytest.mark.usefixtures("own_modules")
+def test_a_module_of_a_folder_left_behind_is_not_taken_for_the_one_here(tmp_path, monkeypatch):
+    for folder in _systems(tmp_path, "first", "second"):
+        monkeypatch.chdir(folder)
+        if folder.name == "first":
+            assert load_system(SystemSpec(name="mine:create")).name == "first"
+        else:
+            with pytest.raises(UserError, match=r"imports '(helper_of_)?mine'"):
+                load_system(SystemSpec(name="mine:create"))
+
+
+@pytest.mark.usefixtures("own_modules")
+def test_two_systems_in_files_of_one_name(tmp_path):
+    systems = []
+    for name in ("first", "second"):
+        (tmp_path / name).mkdir()
+        file = tmp_path / name / "mine.py"
+        file.write_text(FILE.read_text() + f"\nToySystem.name = {name!r}\n")
+        systems.append(load_system(SystemSpec(name=f"{file}:create")))
+    assert [system.name for system in systems] == ["first", "second"]
+    for system in systems:
+        assert sys.modules[type(system).__module__].ToySystem is type(system)
+
+
+@pytest.mark.usefixtures("own_modules")
+def test_a_system_that_fails_to_load_leaves_nothing_and_may_be_corrected(tmp_path):
+    (folder,) = _systems(tmp_path, "first")
+    good = (folder / "mine.py").read_text()
+    (folder / "mine.py").write_text(good + "\n1 / 0\n")
+    path, modules = list(sys.path), dict(sys.modules)
+    with pytest.raises(ZeroDivisionError):
+        load_system(SystemSpec(name=f"{folder}/mine.py:create"))
+    assert (sys.path, sys.modules) == (path, modules)
+    (folder / "mine.py").write_text(good)
+    (folder / "helper_of_mine.py").write_text("WHO = 'corrected'\n")
+    assert load_system(SystemSpec(name=f"{folder}/mine.py:create")).name == "corrected"
+
+
+SIDE_EFFECTS = """
+import os, random, signal, sys
+import numpy as np, torch
+
+def state():
+    cudnn = torch.backends.cudnn
+    return {
+        "threads": torch.get_num_threads(),
+        "threads between": torch.get_num_interop_threads(),
+        "gradients": torch.is_grad_enabled(),
+        "precision": (torch.get_default_dtype(), torch.get_float32_matmul_precision()),
+        "cudnn": (cudnn.allow_tf32, cudnn.deterministic, cudnn.benchmark),
+        "draws": (torch.get_rng_state().tolist(), random.getstate(), repr(np.random.get_state())),
+        "rounding": np.geterr(),
+        "environment": dict(os.environ),
+        "folder": os.getcwd(),
+        "signals": [signal.getsignal(each) for each in sorted(signal.valid_signals())],
+        "hooks": (list(sys.meta_path), list(sys.path_hooks), sys.excepthook),
+    }
+
+torch.set_num_threads(3)
+before, path = state(), list(sys.path)
+from faultpath.trials import SystemSpec, load_system
+system = load_system(SystemSpec(name=sys.argv[1]))
+FLY
+after = state()
+print([name for name in before if before[name] != after[name]])
+print([place for place in sys.path if place not in path], sys.path[: len(path)] == path)
+"""
+
+FLY = """
+from faultpath.execution.attempt import Done, attempt
+from faultpath.trials import Arm
+(name,), library = list(system.variants)[:1], system.library(sys.argv[2])
+assert isinstance(attempt(system, Arm(variant=name), [library.scenes[0].id]), Done)
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "library"),
+    [("quadrotor", "selection"), (f"{ROOT}/examples/toy.py:create", "carts")],
+    ids=["quadrotor", "file"],
+)
+@pytest.mark.parametrize("fly", ["", FLY], ids=["loaded", "flown"])
+def test_the_process_of_the_caller_stays_as_it_was(name, library, fly):
+    """Threads of torch, environment, random states: whoever loads a system has other work too."""
+    script = SIDE_EFFECTS.replace("FLY\n", f"{fly}\n")
+    environment = {n: v for n, v in os.environ.items() if "NUM_THREADS" not in n}
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", script, name, library],
+        check=True,
+        capture_output=True,
+        text=True,
+        env=environment,
+    )
+    beside = [] if name == "quadrotor" else [str(ROOT / "examples")]
+    assert done.stdout.splitlines() == ["[]", f"{beside} True"]

@@ -2,7 +2,18 @@
 
 from faultpath.code.graph import Root
 from faultpath.code.reads import Reads
+from faultpath.code.shadows import Shadowed, shadowed
 from faultpath.code.state import Code, CodeState, named, read_code
 from faultpath.code.watch import Watch
 
-__all__ = ["Code", "CodeState", "Reads", "Root", "Watch", "named", "read_code"]
+__all__ = [
+    "Code",
+    "CodeState",
+    "Reads",
+    "Root",
+    "Shadowed",
+    "Watch",
+    "named",
+    "read_code",
+    "shadowed",
+]

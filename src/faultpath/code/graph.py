@@ -50,6 +50,11 @@ class Graph:
         self._seen: set[tuple[str, bool]] = set()
         self._paths: set[Path] = set()
 
+    @property
+    def modules(self) -> frozenset[str]:
+        """Names of all modules that were asked for, whether they are there or not."""
+        return frozenset(name for name, _ in self._seen)
+
     def add(self, root: Root) -> None:
         """Follow everything that a root imports."""
         if root.of_system:

@@ -4,7 +4,8 @@ import math
 import sys
 import time
 import traceback
-from collections.abc import Iterable, Sequence
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -65,7 +66,8 @@ def attempt(
     """Run an arm over some scenes; an error comes back as a value. `guard` is that of `Taps`."""
     started = time.perf_counter()
     try:
-        outcomes, taps = _run(system, arm, scenes, guard)
+        with _one_thread():
+            outcomes, taps = _run(system, arm, scenes, guard)
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
@@ -88,15 +90,23 @@ def _said(error: BaseException) -> str:
     return text
 
 
-def limit_threads() -> None:
-    """Keep torch, where a system has loaded it, to one thread.
+@contextmanager
+def _one_thread() -> Generator[None]:
+    """Keep torch, where a system has loaded it, to one thread, and put back what it had.
 
     Workers share the processors among themselves, and a sum over several threads may differ in
-    its last bits.
+    its last bits. The process may be the user's own.
     """
     torch = sys.modules.get("torch")
-    if torch is not None:
-        torch.set_num_threads(1)
+    if torch is None:
+        yield
+        return
+    before: int = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
 
 
 def _run(

@@ -9,7 +9,7 @@ from pathlib import Path
 import faultpath
 from faultpath.code import Code, Watch
 from faultpath.errors import UserError
-from faultpath.execution.attempt import attempt, limit_threads
+from faultpath.execution.attempt import attempt
 from faultpath.execution.changes import kept_trials, unnamed, watched
 from faultpath.execution.crew import Crew
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
@@ -198,7 +198,6 @@ def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
 def _run_here(
     system: System, unread: Watch, schedule: Schedule, ledger: Ledger, report: ProgressCallback
 ) -> None:
-    limit_threads()
     while task := schedule.take(0):
         ledger.start(task)
         reply = watched(unread, attempt(system, task.unit.arm, task.scenes))

@@ -13,7 +13,7 @@ from typing import Any
 
 from faultpath.blame import described, explained
 from faultpath.code import Code, CodeState, Reads, Watch
-from faultpath.execution.attempt import Raised, Wrong, attempt, limit_threads
+from faultpath.execution.attempt import Raised, Wrong, attempt
 from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
@@ -102,7 +102,6 @@ def _build(hello: Hello, reads: Reads) -> tuple[_Built | None, Ready | Wrong | R
         before = source_state(hello.system)
         reads.forget()
         system = load_system(hello.system)
-        limit_threads()
         built = reads.opened()
         library = system.library(hello.library)
         code = system_code(system, hello.system)

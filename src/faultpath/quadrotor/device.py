@@ -1,6 +1,9 @@
 """Where the tensors of a flight live, and when the host may look at them."""
 
+from collections.abc import Generator
+from contextlib import contextmanager
 from enum import StrEnum
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -41,6 +44,28 @@ def send(host: Tensor, device: torch.device) -> Tensor:
     if device.type == "cpu":
         return host
     return host.pin_memory().to(device, non_blocking=True)
+
+
+@contextmanager
+def arithmetic() -> Generator[None]:
+    """Compute as flights do, and leave the process as it was.
+
+    On one thread: a block is small, a second thread costs more than it brings, and a sum over
+    several may differ in its last bits. On a GPU in full single precision, as everywhere, and
+    repeatable.
+    """
+    threads = torch.get_num_threads()
+    cudnn: Any = torch.backends.cudnn
+    flags = (cudnn.allow_tf32, cudnn.deterministic) if cudnn.is_available() else None
+    torch.set_num_threads(1)
+    if flags is not None:
+        cudnn.allow_tf32, cudnn.deterministic = False, True
+    try:
+        yield
+    finally:
+        torch.set_num_threads(threads)
+        if flags is not None:
+            cudnn.allow_tf32, cudnn.deterministic = flags
 
 
 def require(name: DeviceName) -> None:

@@ -15,7 +15,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.quadrotor import native
 from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
-from faultpath.quadrotor.device import CPU, DeviceName, describe
+from faultpath.quadrotor.device import CPU, DeviceName, arithmetic, describe
 from faultpath.quadrotor.flight import Flight
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
@@ -38,9 +38,6 @@ from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, Syst
 
 def create(**options: str) -> System:
     """Build the quadrotor from options of the command line; `UserError` for a wrong one."""
-    torch.set_num_threads(1)  # a block is small: a second thread costs more than it brings
-    torch.backends.cudnn.allow_tf32 = False  # single precision is the same on every device
-    torch.backends.cudnn.deterministic = True
     return Quadrotor.parse(**options)
 
 
@@ -111,6 +108,7 @@ class Quadrotor(System):
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
         return (*_weights(), Path("interface.yaml"), Path("native/source"))
 
+    @arithmetic()
     @torch.inference_mode()
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
         """See `System.run`."""

@@ -5,13 +5,17 @@ import importlib.util
 import inspect
 import os
 import sys
+from collections.abc import Generator
+from contextlib import contextmanager
+from hashlib import sha256
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
 
 from faultpath.blame import note_system
 from faultpath.blame import place as where
-from faultpath.code import Root
+from faultpath.code import Root, shadowed
+from faultpath.code.places import Kind, kind_of
 from faultpath.errors import SystemMistake, UserError
 from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
@@ -32,11 +36,21 @@ def load_system(spec: SystemSpec) -> System:
 
     The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`. The attribute
     is called with the options as keyword arguments, all strings, and returns a `System`.
-    `UserError` for a name, attribute or option that does not exist, or a missing package.
+    `UserError` for a name, attribute or option that does not exist, a missing package, or a module
+    of the system's own of which this process would run another one of that name.
+
+    The caller's process stays as it was, but for two things that the system needs as long as it
+    flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
+    imports later is found. Where loading fails both are put back.
     """
+    with _undone_on_failure():
+        return _load(spec)
+
+
+def _load(spec: SystemSpec) -> System:
     place, attribute = _target(spec)
     try:
-        module = _load_file(place) if place.endswith(".py") else _load_module(place)
+        module = _load_file(place) if place.endswith(".py") else _load_module(place, spec)
         if module.__file__ is not None and spec.name not in BUILT_IN:
             note_system(module.__file__)
         factory = getattr(module, attribute, None)
@@ -59,7 +73,8 @@ def factory_root(spec: SystemSpec) -> Root:
     """Return the module that builds the system; `UserError` where `load_system` raises one."""
     place, _ = _target(spec)
     if not place.endswith(".py"):
-        _look_here()
+        if spec.name not in BUILT_IN:
+            _look_here()
         return Root(place)
     path = _file(place)
     _look_beside(path)
@@ -100,8 +115,10 @@ def _target(spec: SystemSpec) -> tuple[str, str]:
     return place, attribute
 
 
-def _load_module(name: str) -> ModuleType:
-    _look_here()
+def _load_module(name: str, spec: SystemSpec) -> ModuleType:
+    if spec.name not in BUILT_IN:
+        _look_here()
+        _check_own(Root(name), Path.cwd())
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -122,12 +139,9 @@ def _load_file(place: str) -> ModuleType:
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
     _compile(place, name)
+    _check_own(Root(name, path), path.parent)
     sys.modules[name] = module  # dataclasses look their module up by name
-    try:
-        spec.loader.exec_module(module)
-    except BaseException:
-        del sys.modules[name]
-        raise
+    spec.loader.exec_module(module)
     return module
 
 
@@ -152,7 +166,44 @@ def _file(place: str) -> Path:
 
 
 def _module_name(path: Path) -> str:
-    return f"faultpath_system_{path.stem}"
+    """Return the name of a system's module, another one for each file."""
+    return f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}"
+
+
+def _check_own(root: Root, folder: Path) -> None:
+    """Refuse a system that would run another system's module in place of its own."""
+    if other := shadowed(root, folder):
+        raise UserError(
+            f"the system imports {other.module!r}, which is {other.found} in this process and not "
+            f"its own {other.own}: rename one of the two, or load the systems in processes of "
+            "their own"
+        )
+
+
+@contextmanager
+def _undone_on_failure() -> Generator[None]:
+    """Put back what loading a system changed when it comes to nothing.
+
+    Modules of its own go too: whoever corrects one and loads again wants it as it then is.
+    """
+    path, modules = tuple(sys.path), dict(sys.modules)
+    try:
+        yield
+    except BaseException:
+        sys.path[:] = path
+        for name in [name for name in sys.modules if _came(name, modules)]:
+            del sys.modules[name]
+            if name in modules:
+                sys.modules[name] = modules[name]
+        raise
+
+
+def _came(name: str, before: dict[str, ModuleType]) -> bool:
+    module = sys.modules[name]
+    file = getattr(module, "__file__", None)
+    if module is before.get(name) or file is None or name.partition(".")[0] == "faultpath":
+        return False
+    return kind_of(Path(file)) is Kind.LOCAL
 
 
 def _look_here() -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 import torch
 
 from faultpath.evidence import EvidenceTable, Measurement, Progress
+from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import Block, Recorded, blocks, recorded
 from faultpath.quadrotor.training.provenance import code_of
@@ -36,6 +37,7 @@ class Flying:
         """What it counts for in the progress."""
         return len(self.block.scenes)
 
+    @arithmetic()
     def run(self) -> None:
         """Fly it and store it."""
         self.block.fly(self.folder)
@@ -63,6 +65,7 @@ class Measuring:
         name = hashlib.sha256(repr(content).encode()).hexdigest()[:24]
         return self.folder / f"{name}.measured.parquet"
 
+    @arithmetic()
     def run(self) -> None:
         """Measure it and store it."""
         found = measured(self.measurement, _recorded(self.blocks, self.folder))
@@ -122,6 +125,7 @@ def _run_all(jobs: Sequence[Flying | Measuring], workers: int) -> Iterator[Flyin
             job.run()
             yield job
         return
+    before = {name: os.environ.get(name) for name in _ONE_THREAD}
     os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
     pool = ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn"), _start)
     try:
@@ -131,6 +135,10 @@ def _run_all(jobs: Sequence[Flying | Measuring], workers: int) -> Iterator[Flyin
             yield running[future]
     finally:
         pool.shutdown(cancel_futures=True)
+        for name, value in before.items():
+            os.environ.pop(name, None)
+            if value is not None:
+                os.environ[name] = value
 
 
 def _start() -> None:

@@ -61,6 +61,10 @@ class ClearanceModel(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
+        with torch.random.fork_rng(devices=()):  # layers draw from the process's state when made
+            self._build()
+
+    def _build(self) -> None:
         first, second, third = _CHANNELS
         self.encoder = nn.Sequential(
             nn.Conv2d(2, first, 5, stride=2, padding=2),
