@@ -11,8 +11,10 @@ from pathlib import Path
 from pydantic import ValidationError
 from rich.console import Console
 
-from faultpath.record import DecisionRecord, Effect, RunProvenance
+from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import decision, wording
+from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.tables.markdown import grid
 
 ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / "docs" / "reference"
@@ -61,38 +63,17 @@ def missing(name: str) -> str:
 def table(run: Run) -> str:
     """Return success of both variants and their difference, one path a column."""
     record, asked = run.record, run.record.question
-    effects = record.effects
-    titles = {path.name: path.title for path in record.paths}
-    rate = {(cell.variant, cell.path): wording.plain(cell.success_percent) for cell in record.cells}
-    frequencies = {each.path: wording.break_even(each.result) for each in record.break_even}
-
-    def row(label: str, text: Callable[[Effect], str]) -> str:
-        return f"| {label} | {' | '.join(map(text, effects))} |"
-
-    def difference(effect: Effect) -> str:
-        text = wording.signed(effect.success.value)
-        text = f"**{text}**" if effect.detected else text
-        why = wording.reservation(effect)
-        return f"{text} ({why})" if why else text
-
-    return "\n".join(
+    table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
+    return "\n\n".join(
         [
-            row("Success, %", lambda e: titles[e.path]),
-            row(":--", lambda e: "--:"),
-            row(f"`{asked.baseline}` (baseline)", lambda e: rate[asked.baseline, e.path]),
-            row(f"`{asked.repair}` (repair)", lambda e: rate[asked.repair, e.path]),
-            row("difference, pp", difference),
-            row("95 % interval", lambda e: wording.interval(e.success) or "–"),
-            row("won:lost", lambda e: wording.wins_losses(e.wins, e.losses)),
-            row("p, Holm", wording.adjusted),
-            row("fault frequency, undecided", lambda e: frequencies.get(e.path, "–")),
-            "",
+            grid(table),
             f"{asked.n_scenes} scenes of `{asked.library}`, {wording.seeds(asked.seeds)}, fault "
             f"`{asked.fault}`. Bold: a detected difference (interval and test agree, and it stands "
             f"after Holm's correction for {record.hypotheses} contrasts). Floor, ceiling: both "
-            f"below 10 % or above 90 %, no headline. Undecided: the estimate of the break-even "
-            f"frequency and the frequencies at which neither is decided to be ahead. Intervals are "
-            f"for {record.estimand}. Void pairs: {sum(effect.void_pairs for effect in effects)}.",
+            f"below 10 % or above 90 %, no headline. Break-even: the estimate of the fault "
+            f"frequency at which neither is ahead, and the frequencies at which none is decided to "
+            f"be. Intervals are for {record.estimand}. Void pairs: "
+            f"{sum(effect.void_pairs for effect in record.effects)}.",
         ]
     )
 

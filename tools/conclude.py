@@ -19,9 +19,7 @@ from faultpath.cli.pages import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
 from faultpath.report import ReportInput, Traces, write_report
-from faultpath.report.booktabs import booktabs_document
 from faultpath.report.inputs import TraceKey
-from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import ReproductionInput, ledger_markdown, reproduction_page
 from faultpath.store import read_outcomes, read_table, read_traces
 from faultpath.store.sealed import seal
@@ -29,6 +27,7 @@ from faultpath.studies import reversal
 from faultpath.studies.claims import ledger
 from faultpath.studies.pages import PAGES, table_4
 from faultpath.studies.run import CONCLUSIONS, plan, read_results
+from faultpath.tables import latex, markdown
 from faultpath.taps import TapCount
 from faultpath.trials import (
     Deliveries,
@@ -128,8 +127,8 @@ def _paper() -> list[str]:
     (SHIPPED / CONCLUSIONS).write_text(found.model_dump_json(indent=1) + "\n", "utf-8")
     _reseal(SHIPPED, origin)
     (target / "reproduction.html").write_text(page, "utf-8")
-    (target / "tables.tex").write_text(booktabs_document(tables), "utf-8")
-    (target / "tables.md").write_text("\n\n".join(map(markdown, tables)) + "\n", "utf-8")
+    (target / "tables.tex").write_text(latex.document(tables), "utf-8")
+    (target / "tables.md").write_text("\n\n".join(map(markdown.block, tables)) + "\n", "utf-8")
     (target / "ledger.md").write_text(ledger_markdown(found.ledger), "utf-8")
     answers = {claim.id: claim.verdict for claim in was.claims}
     return [

@@ -9,8 +9,8 @@ from blocks import REFERENCE, ROOT, Wrong
 from pydantic import ValidationError
 
 from faultpath.record import ClaimVerdict, Reproduction, RunProvenance
-from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import ledger_markdown
+from faultpath.tables.markdown import block
 
 SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
@@ -72,7 +72,7 @@ def _table(found: Reproduction, origin: RunProvenance, name: str) -> str:
     tables = {table.name: table for table in found.tables}
     if name not in tables:
         raise Wrong(f"the paper has no table '{name}': use {', '.join(tables)}")
-    return markdown(tables[name])
+    return block(tables[name])
 
 
 def _motors(found: Reproduction, origin: RunProvenance) -> str:

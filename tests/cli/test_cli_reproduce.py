@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from faultpath.cli.studies import Done, carry_out, tell
-from faultpath.record import MISSING
 from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
 from faultpath.studies.pages import figure_2, table_4
 from faultpath.studies.run import Plan
+from faultpath.tables import MISSING
 
 ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
 

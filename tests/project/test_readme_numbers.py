@@ -175,7 +175,7 @@ def test_a_block_is_filled_from_a_run_and_says_when_there_is_none(readme) -> Non
     assert text.startswith("a\n<!-- begin:table:toy -->\n| Success, % |")
     assert text.endswith("\nb\n")
     assert "old 1.0" not in text
-    assert "| `calibrated` (baseline) |" in text
+    assert "| calibrated (baseline) |" in text
     assert "has not been made yet" in readme.filled(empty.format("table:nowhere"), page)
     assert readme.filled(text, page) == text
 

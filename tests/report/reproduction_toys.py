@@ -5,19 +5,17 @@ from collections.abc import Mapping
 from faultpath.record import (
     ClaimVerdict,
     Configuration,
-    Entry,
     Ledger,
-    Line,
     Part,
     Point,
     Reproduction,
     SceneShown,
     Series,
     Sweep,
-    Table,
 )
 from faultpath.report import ReportInput
 from faultpath.report.reproduction import ReproductionInput
+from faultpath.tables import Entry, Line, Table
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 NASTY = '<script>alert("x")</script> & co'

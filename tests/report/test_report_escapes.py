@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
 
-from faultpath.record import Entry, Line, Table
-from faultpath.report import ReportInput, escapes, markdown_table, report_page
+from faultpath.report import ReportInput, markdown_table, report_page
 from faultpath.report.frame import render
-from faultpath.report.markdown_tables import markdown as table_markdown
 from faultpath.report.reproduction import ledger_markdown
 from faultpath.report.svg import Svg
+from faultpath.tables import Entry, Line, Table, escapes
+from faultpath.tables.markdown import block as table_markdown
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 PARSER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])

@@ -130,7 +130,8 @@ def test_every_figure_is_named(page: Page) -> None:
 def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) -> None:
     record = source.record
     titles = {path.title: path.name for path in record.paths}
-    rows = {titles[row[0]]: row for row in page.rows if row[0] in titles}
+    named = [(row[0].partition(" (primary)")[0], row) for row in page.rows if row]
+    rows = {titles[title]: row for title, row in named if title in titles}
     breaks = {b.path: b.result for b in record.break_even}
     rates = {(c.path, c.variant): plain(c.success_percent) for c in record.cells}
     for effect in record.effects:

@@ -9,7 +9,6 @@ import pytest
 from reproduction_toys import NASTY, ledger, source, sweep, tables
 from rich.console import Console
 
-from faultpath.record import Entry, Line, Table
 from faultpath.report import ReportInput, Traces
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
@@ -20,8 +19,8 @@ from faultpath.report.reproduction import (
     reproduction_page,
 )
 from faultpath.report.reproduction.intervals import interval_plot, plot_axis
-from faultpath.report.reproduction.page import blocks
 from faultpath.report.svg import number
+from faultpath.tables import Entry, Line, Table
 from faultpath.trials import FloorPlan, OutcomeTable, Prism
 
 
@@ -183,7 +182,7 @@ def test_blocks_keep_every_line_in_order() -> None:
         columns=("x",),
         lines=(lines[0], Line(label="one"), lines[1], lines[2], Line(label="two")),
     )
-    cut = [(block.heading, [line.label for line in block.lines]) for block in blocks(table)]
+    cut = [(heading, [line.label for line in lines]) for heading, lines in table.blocks()]
     assert cut == [("", ["a"]), ("one", ["b", "c"]), ("two", [])]
 
 

@@ -23,11 +23,12 @@ from toy_runs import (
 )
 
 from faultpath.evidence import EvidenceTable
-from faultpath.record import MISSING, Sweep, Table
+from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
 from faultpath.studies.entries import printed
 from faultpath.studies.pages import PAGES, figure_1, in_text, table_4
 from faultpath.studies.published import published
+from faultpath.tables import MISSING, Table
 from faultpath.trials import OutcomeTable
 
 NAMES = tuple(page.name for page in PAGES)

@@ -6,7 +6,7 @@ import pytest
 
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable
-from faultpath.record import Reproduction, Table
+from faultpath.record import Reproduction
 from faultpath.studies import flights, stand_in
 from faultpath.studies.cells import HELD_OUT, PAPER, QUICK, SELECTION, Cell, Profile, calibration
 from faultpath.studies.flights import Flown, Pace
@@ -14,6 +14,7 @@ from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES, table_1, table_2
 from faultpath.studies.results import Results
 from faultpath.studies.run import Plan, conclude, measure_all, plan, read_results, save
+from faultpath.tables import Table
 
 TINY = Profile("tiny", scenes=2, seeds=(0,))
 NOMINAL = table_2.cell("wm-a", 0.0)

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
-from faultpath.record import Entry, Line, Table
 from faultpath.studies.cells import Cell
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Contrast, Results
+from faultpath.tables import Entry, Line, Table
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 SCENES = 20

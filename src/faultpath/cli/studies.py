@@ -13,11 +13,8 @@ from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
 from faultpath.report import Traces
-from faultpath.report.booktabs import booktabs_document
-from faultpath.report.markdown_tables import markdown
 from faultpath.report.reproduction import (
     ReproductionInput,
-    figures_view,
     ledger_markdown,
     ledger_view,
     reproduction_page,
@@ -28,6 +25,8 @@ from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
+from faultpath.tables import latex, markdown
+from faultpath.tables.terminal import drawn
 
 Show = Callable[[float, float, str], None]
 """Shows how much of what is done, and a remark."""
@@ -89,7 +88,7 @@ def tell(plan: Plan, done: Done) -> None:
     if plan.whole:
         console.print(ledger_view(done.reproduction.ledger))
     for table in () if plan.whole else done.reproduction.tables:
-        console.print(figures_view(table))
+        console.print(drawn(table))
     page = done.folder / "reproduction.html"
     console.print(f"Report: {page}", markup=False, soft_wrap=True)
 
@@ -165,8 +164,8 @@ def _write_pages(
         },
     )
     write_text(place / "reproduction.html", reproduction_page(source), place)
-    write_text(place / "tables.tex", booktabs_document(found.tables), place)
-    write_text(place / "tables.md", "\n\n".join(map(markdown, found.tables)) + "\n", place)
+    write_text(place / "tables.tex", latex.document(found.tables), place)
+    write_text(place / "tables.md", "\n\n".join(map(markdown.block, found.tables)) + "\n", place)
     write_text(place / "ledger.md", ledger_markdown(found.ledger), place)
 
 

@@ -17,11 +17,10 @@ from faultpath.record.model import (
 )
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.reproduction import Configuration, Reproduction, SceneShown
-from faultpath.record.table import MISSING, Entry, Line, Point, Series, Sweep, Table
+from faultpath.record.sweep import Point, Series, Sweep
 
 __all__ = [
     "CORRECT",
-    "MISSING",
     "SHARED",
     "Answer",
     "Cell",
@@ -31,11 +30,9 @@ __all__ = [
     "Decided",
     "DecisionRecord",
     "Effect",
-    "Entry",
     "Family",
     "Generalise",
     "Ledger",
-    "Line",
     "Part",
     "Path",
     "PathBreakEven",
@@ -47,7 +44,6 @@ __all__ = [
     "Series",
     "StruckTap",
     "Sweep",
-    "Table",
     "Verdict",
     "decide",
     "decide_paths",

@@ -3,7 +3,8 @@
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.record.claim import Ledger
-from faultpath.record.table import Sweep, Table
+from faultpath.record.sweep import Sweep
+from faultpath.tables import Table
 
 
 class _Frozen(BaseModel):

@@ -6,7 +6,7 @@ from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_terminal import interface_table
 from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.tables import latex_table, markdown_table
-from faultpath.report.terminal import decision, effect_table, success_table
+from faultpath.report.terminal import decision
 from faultpath.report.write import write_report
 
 __all__ = [
@@ -17,12 +17,10 @@ __all__ = [
     "Traces",
     "decision",
     "draw_interface",
-    "effect_table",
     "interface_table",
     "latex_table",
     "markdown_table",
     "report_page",
     "struck_paths",
-    "success_table",
     "write_report",
 ]

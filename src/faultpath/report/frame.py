@@ -13,8 +13,8 @@ from functools import cache
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from faultpath.report.escapes import visible
 from faultpath.report.svg import template
+from faultpath.tables.escapes import visible
 
 
 def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:

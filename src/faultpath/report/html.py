@@ -11,7 +11,9 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
+from faultpath.report.tables import SHOWN, by_path
 from faultpath.report.viewer import choose, viewer_data
+from faultpath.tables.html import html
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
@@ -36,7 +38,7 @@ def report_page(source: ReportInput) -> str:
         n_void=sum(pair.kind is Kind.VOID for pair in pairs),
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
-        break_even={b.path: b.result for b in source.record.break_even},
+        effects=Markup(html(by_path(source.record, SHOWN, "Effects on success, path by path"))),
         viewer=viewer_data(source, chosen) if chosen else None,
         w=wording,
     )

@@ -6,7 +6,7 @@ from functools import cache
 from hashlib import blake2b
 from importlib import resources
 
-from faultpath.report.escapes import html as escape
+from faultpath.tables.escapes import html as escape
 
 Point = tuple[float, float]
 

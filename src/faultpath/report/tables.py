@@ -1,165 +1,191 @@
-"""The record as tables for a paper (LaTeX with booktabs) and for a page of text (Markdown).
+"""The record as tables: one list of quantities, with the paths as rows or as columns."""
 
-Both have the paper's Table IV as their model: methods and effects as rows, paths as columns.
-"""
-
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report import wording
-from faultpath.report.escapes import latex as tex
-from faultpath.report.escapes import markdown as md
 from faultpath.statistics import Estimate
+from faultpath.tables import MISSING, Entry, Line, Table, line
+from faultpath.tables.latex import booktabs
+from faultpath.tables.markdown import block
 
 
 @dataclass(frozen=True)
-class Line:
-    """One row of a table, in the reader's own characters; `None` in `values` opens a section."""
+class _Of:
+    """What a quantity is read from: one path of a record."""
 
-    label: str
-    values: tuple[str, ...] | None
+    record: DecisionRecord
+    effect: Effect
+
+    def rate(self, variant: str) -> Entry:
+        """Return the success of a variant, percent."""
+        for cell in self.record.cells:
+            if (cell.variant, cell.path) == (variant, self.effect.path):
+                return Entry(text=wording.plain(cell.success_percent))
+        return Entry(text=MISSING)
+
+    def difference(self) -> Entry:
+        """Return the difference; bold is decided."""
+        return Entry(
+            text=wording.signed(self.effect.success.value),
+            detected=self.effect.detected,
+            aside=wording.reservation(self.effect),
+        )
+
+    def decided(self) -> Entry:
+        """Return the arm that the family decides for, with what keeps it out of a headline."""
+        if not self.effect.acted:
+            return Entry(text="not tested")
+        asked = self.record.question
+        arm = {1: asked.repair, -1: asked.baseline}.get(self.effect.sign, MISSING)
+        return Entry(text=arm, aside=self.effect.extreme or "")
+
+    def void(self) -> Entry:
+        """Return the number of void pairs."""
+        count = self.effect.void_pairs
+        return Entry(text=str(count), tone="bad" if count else "")
+
+    def break_even(self) -> Entry:
+        """Return the fault frequencies at which neither arm is decided to be ahead."""
+        found = {b.path: wording.break_even(b.result) for b in self.record.break_even}
+        return Entry(text=found.get(self.effect.path, MISSING))
 
 
-_OTHERS: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
+DIFFERENCE = ("difference", "interval", "won")
+_ARMS = ("baseline", "repair")
+SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
+ALL = (
+    *(*_ARMS, *DIFFERENCE, "p", "holm", "decided"),
+    *("power", "scenes", "void", "break-even"),
+)
+_QUANTITIES: Mapping[str, Callable[[_Of], Entry | str]] = {
+    "baseline": lambda of: of.rate(of.record.question.baseline),
+    "repair": lambda of: of.rate(of.record.question.repair),
+    "difference": _Of.difference,
+    "interval": lambda of: wording.interval(of.effect.success) or MISSING,
+    "won": lambda of: wording.wins_losses(of.effect.wins, of.effect.losses),
+    "p": lambda of: wording.p_value(of.effect.p_value),
+    "holm": lambda of: wording.adjusted(of.effect),
+    "decided": _Of.decided,
+    "power": lambda of: _or_dash(of.effect.minimum_detectable_pp),
+    "scenes": lambda of: str(of.effect.scenes),
+    "void": _Of.void,
+    "break-even": _Of.break_even,
+}
+_SECONDARY: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
     ("time on joint successes (s)", lambda effect: effect.time_s),
     ("terminal distance (m)", lambda effect: effect.terminal_distance_m),
     ("least clearance (m)", lambda effect: effect.min_clearance_m),
 )
 
 
-def table_lines(record: DecisionRecord) -> tuple[tuple[str, ...], tuple[Line, ...]]:
-    """Return the column heads (paths) and the rows that both formats write out."""
-    asked = record.question
-    titles = {path.name: path.title for path in record.paths}
-    effects = {effect.path: effect for effect in record.effects}
-    rates = {(c.variant, c.path): wording.plain(c.success_percent) for c in record.cells}
-    breaks = {b.path: wording.break_even(b.result) for b in record.break_even}
-    names = [path.name for path in record.paths if path.name in effects]
-
-    def row(label: str, text: Callable[[Effect], str]) -> Line:
-        return Line(label, tuple(text(effects[name]) for name in names))
-
+def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
+    """Return a table with a row for each path and a column for each of the quantities `names`."""
+    labels, asked = _labels(record), record.question
     lines = [
-        Line(variant, tuple(rates[variant, name] for name in names))
-        for variant in (asked.baseline, asked.repair)
+        line(
+            _title(record, effect),
+            *(_QUANTITIES[name](_Of(record, effect)) for name in names),
+            aside="primary" if effect.path == asked.primary else "",
+        )
+        for effect in record.effects
     ]
-    lines += [
-        Line(f"{asked.repair} minus {asked.baseline}, success (pp)", None),
-        row("Difference", lambda e: wording.signed(e.success.value)),
-        row(_interval_label(record), lambda e: wording.interval(e.success) or "–"),
-        row("Wins:losses", lambda e: wording.wins_losses(e.wins, e.losses)),
-        row("p of this contrast alone", lambda e: wording.p_value(e.p_value)),
-        row(f"p after Holm, {record.hypotheses} contrasts", wording.adjusted),
-        row("Decided for", lambda e: decided(record, e)),
-        row("Found with 80% power (pp)", lambda e: _or_dash(e.minimum_detectable_pp)),
-        row("Scenes (void pairs)", lambda e: f"{e.scenes} ({e.void_pairs})"),
-        Line("Fault frequencies at which neither is decided to be ahead (%)", None),
-        Line("p* and the set", tuple(breaks.get(name, "–") for name in names)),
-    ]
-    for label, pick in _OTHERS:
-        estimates = [pick(effects[name]) for name in names]
-        if not any(estimates):
-            continue
-        title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
-        lines.append(Line(title, None))
-        lines.append(Line("Difference", tuple(map(_value, estimates))))
-        lines.append(Line(_interval_label(record), tuple(map(_range, estimates))))
-    return tuple(titles[name] for name in names), tuple(lines)
+    columns = tuple(f"{labels[n]}, %" if n in _ARMS else labels[n] for n in names)
+    return Table(title=title, corner="Path", columns=columns, lines=tuple(lines))
 
 
-def decided(record: DecisionRecord, effect: Effect) -> str:
-    """Return the arm that the family decides for, with what keeps it out of a headline."""
-    if not effect.acted:
-        return "not tested"
-    arm = {1: record.question.repair, -1: record.question.baseline}.get(effect.sign, "–")
-    return f"{arm} ({effect.extreme})" if effect.extreme else arm
+def by_quantity(
+    record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
+) -> Table:
+    """Return a table with a column for each path and a row for each of the quantities `names`."""
+    labels = _labels(record)
+    lines = [
+        line(
+            labels[name],
+            *(_QUANTITIES[name](_Of(record, effect)) for effect in record.effects),
+            aside=name if name in _ARMS else "",
+        )
+        for name in names
+    ]
+    return Table(
+        name="faultpath",
+        title=title,
+        corner="Success, %",
+        columns=tuple(_title(record, effect) for effect in record.effects),
+        lines=tuple(lines),
+        notes=tuple(notes),
+    )
+
+
+def whole_table(record: DecisionRecord) -> Table:
+    """Return every quantity of every path, with the question as title: the table of a paper."""
+    asked = record.question
+    title = (
+        f"{asked.repair} against {asked.baseline} on {asked.system}, fault {asked.fault}: "
+        f"{asked.n_scenes} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
+    )
+    notes = (
+        f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
+        f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
+        "for neither side. Break-even: the fault frequencies at which neither is decided to be "
+        "ahead.",
+        f"Primary contrast: {asked.primary}. Holm's correction is for {record.hypotheses} "
+        f"contrasts. Intervals and tests speak of {record.estimand}.",
+        record.verdict.headline,
+    )
+    table = by_quantity(record, ALL, title, notes)
+    return table.model_copy(update={"lines": (*table.lines, *_secondary(record))})
 
 
 def markdown_table(record: DecisionRecord) -> str:
-    """Return the table as Markdown, with the question above it and the verdict below."""
-    heads, lines = table_lines(record)
-    asked = record.question
-    rows = [
-        f"| Success/100 | {' | '.join(map(md, heads))} |",
-        f"| :-- | {' | '.join('--:' for _ in heads)} |",
-    ]
-    for line in lines:
-        cells = line.values if line.values is not None else ("",) * len(heads)
-        label = md(line.label) if line.values is not None else f"*{md(line.label)}*"
-        rows.append(f"| {label} | {' | '.join(map(md, cells))} |")
-    about = (
-        f"{md(asked.repair)} against {md(asked.baseline)} on {md(asked.system)}, "
-        f"fault {md(asked.fault)}; {asked.n_scenes} scenes of {md(asked.library)}, "
-        f"{wording.seeds(asked.seeds)}. Primary contrast: {md(asked.primary)}. Intervals and tests "
-        f"speak of {record.estimand}."
-    )
-    return "\n".join([about, "", *rows, "", md(record.verdict.headline), ""])
+    """Return the whole table as Markdown, with the question above it and the verdict below."""
+    return block(whole_table(record))
 
 
 def latex_table(record: DecisionRecord) -> str:
     """Return a `table` environment that needs the package booktabs and nothing else."""
-    heads, lines = table_lines(record)
-    asked = record.question
-    columns = len(heads)
-    body: list[str] = []
-    for line in lines:
-        if line.values is None:
-            body += [
-                r"\addlinespace",
-                rf"\multicolumn{{{columns + 1}}}{{@{{}}l}}{{\emph{{{tex(line.label)}:}}}} \\",
+    return "% Needs \\usepackage{booktabs}\n" + booktabs(whole_table(record))
+
+
+def _labels(record: DecisionRecord) -> Mapping[str, str]:
+    levels = {f"{100 * effect.success.level:g} % interval" for effect in record.effects}
+    return {
+        "baseline": record.question.baseline,
+        "repair": record.question.repair,
+        "difference": "Difference, pp",
+        "interval": levels.pop() if len(levels) == 1 else "Interval",
+        "won": "Won:lost",
+        "p": "p, alone",
+        "holm": "p, Holm",
+        "decided": "Decided for",
+        "power": "80 % power, pp",
+        "scenes": "Scenes",
+        "void": "Void pairs",
+        "break-even": "Break-even, %",
+    }
+
+
+def _title(record: DecisionRecord, effect: Effect) -> str:
+    return next((path.title for path in record.paths if path.name == effect.path), effect.path)
+
+
+def _secondary(record: DecisionRecord) -> list[Line]:
+    asked, lines = record.question, list[Line]()
+    for label, pick in _SECONDARY:
+        estimates = [pick(effect) for effect in record.effects]
+        if any(estimates):
+            title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
+            values = ("" if e is None else wording.signed(e.value, 2) for e in estimates)
+            ranges = ("" if e is None else wording.interval(e, 2) for e in estimates)
+            interval = _labels(record)["interval"]
+            lines += [
+                line(title),
+                line("Difference", *(value or MISSING for value in values)),
+                line(interval, *(ends or MISSING for ends in ranges)),
             ]
-        else:
-            body.append(
-                f"{_tex_value(line.label)} & {' & '.join(map(_tex_value, line.values))} \\\\"
-            )
-    caption = (
-        f"{tex(asked.repair)} against {tex(asked.baseline)} on {tex(asked.system)}, fault "
-        f"{tex(asked.fault)}: success/100 over {asked.n_scenes} scenes of {tex(asked.library)}, "
-        f"{wording.seeds(asked.seeds)}. Wins:losses are {tex(asked.repair)}-only:"
-        f"{tex(asked.baseline)}-only successes. Void pairs count for neither side. Primary "
-        f"contrast: {tex(asked.primary)}. Intervals and tests speak of {tex(record.estimand)}."
-    )
-    head = " & ".join(["Method", *map(tex, heads)])
-    return "\n".join(
-        [
-            "% Needs \\usepackage{booktabs}",
-            r"\begin{table}[t]",
-            rf"\caption{{{caption}}}",
-            r"\label{tab:faultpath}",
-            r"\centering\footnotesize",
-            r"\setlength{\tabcolsep}{3pt}",
-            rf"\begin{{tabular}}{{@{{}}l{'c' * columns}@{{}}}}",
-            r"\toprule",
-            rf"{head} \\",
-            r"\midrule",
-            *body,
-            r"\bottomrule",
-            r"\end{tabular}",
-            r"\end{table}",
-            "",
-        ]
-    )
-
-
-def _interval_label(record: DecisionRecord) -> str:
-    levels = {f"{100 * effect.success.level:g}" for effect in record.effects}
-    return f"{levels.pop()}% interval" if len(levels) == 1 else "Interval"
+    return lines
 
 
 def _or_dash(value: float | None) -> str:
-    return "–" if value is None else wording.plain(value)
-
-
-def _value(estimate: Estimate | None) -> str:
-    return "–" if estimate is None else wording.signed(estimate.value, 2)
-
-
-def _range(estimate: Estimate | None) -> str:
-    return (wording.interval(estimate, 2) if estimate is not None else "") or "–"
-
-
-def _tex_value(text: str) -> str:
-    # Braces keep a leading bracket or star from being read as an argument of the row end before it.
-    escaped = tex(text)
-    return "{" + escaped + "}" if escaped.startswith(("[", "*")) else escaped
+    return MISSING if value is None else wording.plain(value)

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass
 
-from faultpath.record import MISSING, Entry, Line
 from faultpath.report import wording
 from faultpath.studies.cells import Cell
 from faultpath.studies.entries import bracket, interval, success
 from faultpath.studies.results import Contrast, NotRun, Results
+from faultpath.tables import MISSING, Entry, Line
 
 ROWS = ("Difference", "95 % interval", "Wins:losses")
 COLUMNS = (

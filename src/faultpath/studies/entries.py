@@ -9,11 +9,11 @@ from typing import Concatenate, ParamSpec
 import numpy as np
 
 from faultpath.evidence import Measurement
-from faultpath.record import MISSING, Entry
 from faultpath.report import wording
 from faultpath.statistics import Estimate, fewest_scenes
 from faultpath.studies.cells import Cell
 from faultpath.studies.results import NotRun, Results
+from faultpath.tables import MISSING, Entry
 from faultpath.trials import Status
 
 P = ParamSpec("P")

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from faultpath.evidence import Measurement
-from faultpath.record import Sweep, Table
+from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
 from faultpath.studies.results import Results
+from faultpath.tables import Table
 
 Built: TypeAlias = tuple[Table | Sweep, ...]
 

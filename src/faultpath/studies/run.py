@@ -10,14 +10,7 @@ from pydantic import ValidationError
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measurement
 from faultpath.execution import RunResult
-from faultpath.record import (
-    Configuration,
-    Reproduction,
-    RunProvenance,
-    SceneShown,
-    Sweep,
-    Table,
-)
+from faultpath.record import Configuration, Reproduction, RunProvenance, SceneShown, Sweep
 from faultpath.store import (
     RunFolder,
     read_evidence,
@@ -34,6 +27,7 @@ from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
+from faultpath.tables import Table
 from faultpath.trials import (
     Deliveries,
     Library,

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from faultpath.record.table import Point, Series, Sweep
+from faultpath.record.sweep import Point, Series, Sweep
 from faultpath.report import wording
 from faultpath.report.scale import Axis, tick_label
 from faultpath.report.svg import Svg, text_width

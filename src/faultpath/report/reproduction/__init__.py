@@ -3,7 +3,6 @@
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import (
-    figures_view,
     ledger_counts,
     ledger_markdown,
     ledger_table,
@@ -12,7 +11,6 @@ from faultpath.report.reproduction.terminal import (
 
 __all__ = [
     "ReproductionInput",
-    "figures_view",
     "ledger_counts",
     "ledger_markdown",
     "ledger_table",

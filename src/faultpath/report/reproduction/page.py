@@ -1,12 +1,12 @@
 """A reproduction as one page that opens without a network."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pyarrow as pa
 from markupsafe import Markup
 
-from faultpath.record import DecisionRecord, Line, Table
+from faultpath.record import DecisionRecord
 from faultpath.report import figures, wording
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
@@ -21,18 +21,11 @@ from faultpath.report.reproduction.ledger import ledger_rows
 from faultpath.report.viewer import ViewerData, choose, viewer_data
 from faultpath.store import read_table
 from faultpath.store.tables import encode_outcomes
+from faultpath.tables.html import html
 from faultpath.trials import FloorPlan, OutcomeTable
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css", "reproduction.css")
 _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js", "reproduction.js")
-
-
-@dataclass(frozen=True)
-class Block:
-    """Lines of a table under one heading; the first block may have none."""
-
-    heading: str
-    lines: tuple[Line, ...]
 
 
 @dataclass(frozen=True)
@@ -55,7 +48,9 @@ def reproduction_page(source: ReproductionInput) -> str:
         found=reproduction,
         ledger=reproduction.ledger,
         rows=ledger_rows(reproduction.ledger),
-        tables=[(table, tuple(blocks(table))) for table in reproduction.tables],
+        tables=[
+            (table, Markup(html(table, "beside", caption=False))) for table in reproduction.tables
+        ],
         sweeps=_sweeps(source),
         gallery=_gallery(source),
         reversal=_reversal(source, struck),
@@ -67,19 +62,6 @@ def reproduction_page(source: ReproductionInput) -> str:
         w=wording,
         words=words,
     )
-
-
-def blocks(table: Table) -> Iterator[Block]:
-    """Yield the lines of a table, cut at its inner headings."""
-    heading, lines = "", list[Line]()
-    for line in table.lines:
-        if line.entries:
-            lines.append(line)
-            continue
-        if heading or lines:
-            yield Block(heading, tuple(lines))
-        heading, lines = line.label, []
-    yield Block(heading, tuple(lines))
 
 
 def _sweeps(source: ReproductionInput) -> list[Mapping[str, object]]:

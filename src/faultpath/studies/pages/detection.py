@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
-from faultpath.record import Line, Table
 from faultpath.studies.cells import Cell
 from faultpath.studies.contrasts import (
     COLUMNS,
@@ -21,6 +20,7 @@ from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import in_text, table_1, table_2, table_3, table_4, table_6
 from faultpath.studies.results import Results
+from faultpath.tables import Line, Table
 
 TITLE = "Detection sensitivity of contrasts without a detected difference"
 

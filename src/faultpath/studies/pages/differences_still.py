@@ -4,7 +4,6 @@ None of this is in the paper. Each table changes one assumption in which our sys
 """
 
 from faultpath.evidence import Measurement
-from faultpath.record import Line, Table
 from faultpath.studies.cells import SELECTION, Cell, Setting, calibration
 from faultpath.studies.contrasts import COMPARED, comparison
 from faultpath.studies.entries import centimetres, ended, success
@@ -14,6 +13,7 @@ from faultpath.studies.pages import figure_3
 from faultpath.studies.pages.in_text import PROBED
 from faultpath.studies.pages.table_2 import NAMES
 from faultpath.studies.results import Results
+from faultpath.tables import Line, Table
 from faultpath.trials import Status
 
 TITLE = "Experiments on what differs from the paper, without wind"

@@ -4,7 +4,6 @@ None of this is in the paper. Each table changes one assumption in which our sys
 """
 
 from faultpath.evidence import Measurement
-from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.studies.cells import SELECTION, Cell, Setting, calibration
 from faultpath.studies.contrasts import COMPARED, comparison
@@ -13,6 +12,7 @@ from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.results import Results
+from faultpath.tables import Entry, Line, Table
 
 TITLE = "Experiments on what differs from the paper, in wind"
 

@@ -1,7 +1,6 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
 from faultpath.evidence import Measurement, Recording
-from faultpath.record import MISSING, Entry, Line, Table
 from faultpath.report import wording
 from faultpath.studies.cells import SEEDS, Cell, Setting
 from faultpath.studies.entries import (
@@ -19,6 +18,7 @@ from faultpath.studies.notes import INTERVALS, WINDOWS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import MISSING, Entry, Line, Table
 from faultpath.trials import Status
 
 STILL = Setting()

@@ -3,7 +3,6 @@
 from collections.abc import Iterable
 
 from faultpath.evidence import Measurement
-from faultpath.record import Entry, Line, Table
 from faultpath.studies.cells import SEEDS, Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, contrast_lines, published_contrasts
 from faultpath.studies.entries import centimetres, of_seed, printed, success
@@ -12,6 +11,7 @@ from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import COMMON, STILL
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Entry, Line, Table
 
 ERRORS = (-0.1, 0.0, 0.1)
 PAIRS = (("wm-a+dcc", "wm-a"), ("wm-u+dcc", "wm-u"))

@@ -6,13 +6,13 @@ The paper averages some rows over three seeds; all others use the first.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from faultpath.record import Line, Table
 from faultpath.studies.cells import SEEDS, Cell, Setting
 from faultpath.studies.entries import printed, success, successes
 from faultpath.studies.notes import EVERY_NOISE, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Line, Table
 
 LEVELS = ("L0", "L2", "L3")
 ENVIRONMENTS = ("free-space", "obstacles")

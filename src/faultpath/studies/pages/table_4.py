@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.statistics import Estimate, compare, difference_of_effects
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
@@ -18,6 +17,7 @@ from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Entry, Line, Table
 
 WINDY = Setting(wind="L3")
 METHODS = ("gru", "gru+dcc", "dob")

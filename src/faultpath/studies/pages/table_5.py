@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.statistics import BreakEven, break_even
 from faultpath.studies.cells import Cell
@@ -12,6 +11,7 @@ from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
 from faultpath.studies.results import Contrast, Results
+from faultpath.tables import Entry, Line, Table
 
 REPAIRS: dict[str, tuple[Cell, ...]] = {
     "WM-A": tuple(

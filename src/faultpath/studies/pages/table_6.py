@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable
 
 from faultpath.evidence import Measurement
-from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.studies.cells import Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, contrast_entries
@@ -14,6 +13,7 @@ from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Entry, Line, Table
 
 INTERFACES: dict[str, tuple[str, ...]] = {
     "correct": PATHS["correct"],

@@ -1,6 +1,5 @@
 """In the text on calibration: probes of what predictions depend on, and noisy, delayed states."""
 
-from faultpath.record import Line, Table
 from faultpath.studies.contrasts import UNPUBLISHED, PublishedContrast, contrast_lines
 from faultpath.studies.entries import centimetres, printed, success
 from faultpath.studies.notes import INTERVALS, WINS, flown, recorded
@@ -9,6 +8,7 @@ from faultpath.studies.pages.in_text import ERRORS, PROBES, noisy, response
 from faultpath.studies.pages.table_2 import NAMES
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Line, Table
 
 TITLE = "Probes, and state noise with delay"
 REPAIR, BASELINE = "wm-a+dcc", "wm-a"

@@ -6,7 +6,6 @@ from contextlib import suppress
 import numpy as np
 
 from faultpath.evidence import Measured, Measurement
-from faultpath.record import MISSING, Entry, Line, Table
 from faultpath.report import wording
 from faultpath.statistics import quantile_difference, spearman
 from faultpath.studies.contrasts import attempt
@@ -23,6 +22,7 @@ from faultpath.studies.pages import table_4
 from faultpath.studies.pages.table_6 import acceleration_error, by_seed, position_error
 from faultpath.studies.published import published
 from faultpath.studies.results import NotRun, Results
+from faultpath.tables import MISSING, Entry, Line, Table
 
 TITLE = "What errors say of success, and errors of the full prediction"
 NINE = tuple((method, path) for method in table_4.METHODS for path in table_4.PATHS)

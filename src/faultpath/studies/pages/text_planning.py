@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from faultpath.record import Entry, Line, Table
 from faultpath.report import wording
 from faultpath.statistics import Estimate, success_rate
 from faultpath.studies.contrasts import COMPARED, attempt, comparison
@@ -12,6 +11,7 @@ from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.in_text import CEILING, OTHER_PLANNERS, REFERENCE_PLANNER
 from faultpath.studies.published import published
 from faultpath.studies.results import NotRun, Results
+from faultpath.tables import Entry, Line, Table
 
 TITLE = "What planning and perception decide"
 CELLS = (*map(of_seed, CEILING), REFERENCE_PLANNER, *OTHER_PLANNERS.values())

@@ -1,6 +1,5 @@
 """In the text on wind: prediction errors in wind, reconstruction controls, and freezing."""
 
-from faultpath.record import Line, Table
 from faultpath.studies.contrasts import COMPARED, comparison
 from faultpath.studies.entries import centimetres, of_seed, printed
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, LEAST, WINDOWS, WINS, flown, recorded
@@ -22,6 +21,7 @@ from faultpath.studies.pages.table_4 import cell as wind_cell
 from faultpath.studies.pages.table_4 import published_methods
 from faultpath.studies.published import published
 from faultpath.studies.results import Results
+from faultpath.tables import Line, Table
 
 TITLE = "Wind: prediction errors, reconstruction controls and freezing"
 NOISY = (noisy_wind(GRU), noisy_wind(ZERO))

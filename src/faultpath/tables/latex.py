@@ -1,11 +1,10 @@
-r"""Tables of a study as LaTeX with booktabs: our figures, and the paper's in a row below them."""
+r"""Tables as LaTeX with booktabs: our figures, and the paper's in a row below them."""
 
 from collections.abc import Iterable
 
-from faultpath.record import Entry, Line, Table
-from faultpath.report.escapes import latex
+from faultpath.tables.escapes import latex as escape
+from faultpath.tables.model import Entry, Line, Table
 
-LEGEND = "In parentheses: the paper's figures. Bold: a detected difference."
 PREAMBLE = r"""\documentclass{article}
 \usepackage[T1]{fontenc}
 \usepackage[utf8]{inputenc}
@@ -20,18 +19,19 @@ WIDE = 3
 def booktabs(table: Table) -> str:
     r"""Return a `table` environment, labelled `tab:NAME`, that needs booktabs and nothing else."""
     environment = "table*" if len(table.columns) > WIDE else "table"
+    sides = "".join("l" if column in table.words else "c" for column in table.columns)
     body = [row for line in table.lines for row in _rows(line, len(table.columns))]
-    notes = "\n\n".join(latex(note) for note in (LEGEND, *table.notes))
+    notes = "\n\n".join(escape(note) for note in (*table.legend(), *table.notes))
     return "\n".join(
         [
             rf"\begin{{{environment}}}[t]",
-            rf"\caption{{{latex(table.title)}.}}",
+            rf"\caption{{{escape(table.title)}.}}",
             rf"\label{{tab:{table.name}}}",
             r"\centering\footnotesize",
             r"\setlength{\tabcolsep}{4pt}",
-            rf"\begin{{tabular}}{{@{{}}l{'c' * len(table.columns)}@{{}}}}",
+            rf"\begin{{tabular}}{{@{{}}l{sides}@{{}}}}",
             r"\toprule",
-            " & ".join(["", *map(latex, table.columns)]) + r" \\",
+            " & ".join(map(escape, (table.corner, *table.columns))) + r" \\",
             r"\midrule",
             *body,
             r"\bottomrule",
@@ -44,17 +44,18 @@ def booktabs(table: Table) -> str:
     )
 
 
-def booktabs_document(tables: Iterable[Table]) -> str:
+def document(tables: Iterable[Table]) -> str:
     r"""Return one document with all tables, each on a page of its own: so many floats need it."""
     pages = (booktabs(table) + "\\clearpage\n" for table in tables)
     return PREAMBLE + "\n".join(pages) + "\\end{document}\n"
 
 
 def _rows(line: Line, width: int) -> list[str]:
-    label = latex(line.label)
+    label = escape(line.label)
     if not line.entries:
         heading = rf"\multicolumn{{{width + 1}}}{{@{{}}l}}{{\emph{{{label}}}}} \\"
         return [r"\addlinespace", heading]
+    label += f" ({escape(line.aside)})" if line.aside else ""
     # Braces keep a leading bracket from being read as an argument of the row end before it.
     rows = [" & ".join([f"{{{label}}}", *map(_ours, line.entries)]) + r" \\"]
     if any(entry.published for entry in line.entries):
@@ -63,9 +64,10 @@ def _rows(line: Line, width: int) -> list[str]:
 
 
 def _ours(entry: Entry) -> str:
-    text = latex(entry.text)
-    return rf"\textbf{{{text}}}" if entry.detected else text
+    text = escape(entry.text)
+    text = rf"\textbf{{{text}}}" if entry.detected or entry.tone == "bad" else text
+    return f"{text} ({escape(entry.aside)})" if entry.aside else text
 
 
 def _published(entry: Entry) -> str:
-    return f"({latex(entry.published)})" if entry.published else ""
+    return f"({escape(entry.published)})" if entry.published else ""

@@ -4,11 +4,11 @@ import re
 
 import pytest
 
-from faultpath.record import Entry, Line, Table
-from faultpath.report.booktabs import booktabs, booktabs_document
-from faultpath.report.markdown_tables import markdown
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
+from faultpath.tables import Entry, Line, Table
+from faultpath.tables.latex import booktabs, document
+from faultpath.tables.markdown import block as markdown
 from faultpath.trials import OutcomeTable
 
 STRANGE = r"100% of a_b & c#d {$x^2$} ~ \end{tabular} <b> [1] | *"
@@ -128,7 +128,7 @@ def test_wide_tables_span_both_columns() -> None:
 
 
 def test_the_document_holds_every_table_once_and_a_page_for_each() -> None:
-    tex = booktabs_document((SMALL, *REAL))
+    tex = document((SMALL, *REAL))
     _check_balance(tex)
     assert tex.startswith("\\documentclass{article}\n")
     assert r"\usepackage{booktabs}" in tex.partition(r"\begin{document}")[0]
