@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 import torch
+from faultpath.quadrotor.plant.mujoco_check import MujocoPlant, build_model
 
 from benchmarks import physics
 from benchmarks.side import Side
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH, rays
-from faultpath.quadrotor.plant.mujoco_check import MujocoPlant, build_model
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, PLANT_DT_S, STEPS_PER_CONTROL
 
