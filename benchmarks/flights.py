@@ -11,7 +11,6 @@ from torch import Tensor
 from benchmarks.side import Side
 from faultpath.quadrotor import clearance as sources
 from faultpath.quadrotor import navigator
-from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import MPPI, AutoregressiveSampler
 from faultpath.quadrotor.predictors import AnchoredPredictor
@@ -26,7 +25,7 @@ VARIANT = "gru"
 PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
     "rendering": ((DepthRenderer, "render"),),
     "encoding": ((sources.SeenClearance, "look"),),
-    "noise": ((AutoregressiveSampler, "noise"), (CompiledSampler, "noise")),
+    "noise": ((AutoregressiveSampler, "noise"),),
     "candidates and rollout": ((MPPI, "propose"),),
     "clearance queries": ((sources.SeenClearance, "query"), (sources.TrueClearance, "query")),
     "costs and update": ((MPPI, "decide"),),

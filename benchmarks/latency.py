@@ -5,9 +5,8 @@ import torch
 from benchmarks import problem
 from benchmarks.side import Side
 from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.native.parts import depth_clearance
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.perception import DepthRenderer, mounted
+from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath.quadrotor.planner import shift
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
@@ -29,7 +28,7 @@ class Latency(Side):
         self._plan = problem.commands()[..., 0].clone()
         self._step = 0
         self._field = DistanceField.bake(scene) if clearance == "field" else None
-        self._seen = depth_clearance(clearance_model())
+        self._seen = DepthClearance(clearance_model())
         state = self._inputs.state
         self._position = state.position[:, 0].T.contiguous()
         self._mount = mounted(state.rotation[..., 0])

@@ -1,27 +1,14 @@
 """Our sides of the planning comparisons, and the machine's own rate of multiplication."""
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 import torch
-from torch import Tensor
 
 from benchmarks import problem
 from benchmarks.side import Side
-from faultpath.quadrotor import native
 from faultpath.quadrotor import rollout as horizon
-from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planner import SamplerSettings, shift
-from faultpath.quadrotor.predictors import Predictor, PredictorInputs
-
-
-def rolling(predictor: Predictor) -> Callable[[PredictorInputs, Tensor], horizon.Rollout]:
-    """Return what the planner rolls out with: the compiled kernels where they are in use."""
-    kernels = native.kernels()
-    if kernels is None:
-        return partial(horizon.rollout, predictor)
-    return CompiledRollout(kernels, predictor)
 
 
 class Rollout(Side):
@@ -35,7 +22,7 @@ class Rollout(Side):
     ) -> None:
         torch.set_num_threads(1)
         self.amount = scenes
-        self._roll = rolling(problem.model())
+        self._roll = horizon.rolling(problem.model())
         self._inputs = problem.inputs(scenes)
         self._commands = problem.commands(scenes, candidates, steps)
 

@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor import so3
+from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import predictor
 from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
 from faultpath.quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
@@ -65,5 +65,6 @@ def commands(scenes: int = 1, candidates: int = CANDIDATES, horizon: int = HORIZ
     hover = inputs(scenes).trim.hover_thrust(GRAVITY_MPS2)[:, 0]
     plan = torch.zeros(horizon, 4, scenes)
     plan[:, 0] = hover
-    noise = sampler.noise([f"scene/{i}" for i in range(scenes)], 0, 0)
-    return sampler.candidates(plan, hover, noise)
+    with native.using(native.PORTABLE):  # the same numbers for every side
+        noise = sampler.noise([f"scene/{i}" for i in range(scenes)], 0, 0)
+        return sampler.candidates(plan, hover, noise)

@@ -6,17 +6,11 @@ import pytest
 import torch
 from safetensors.torch import load, save
 
-from faultpath.quadrotor import so3
+from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
-from faultpath.quadrotor.perception.clearance import (
-    NEAR_M,
-    UNSEEN_M,
-    ClearanceModel,
-    DepthClearance,
-    in_view,
-    near,
-)
+from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+from faultpath.quadrotor.perception.seen import NEAR_M, UNSEEN_M, DepthClearance, in_view, near
 
 POINTS = 96
 
@@ -83,7 +77,8 @@ def test_erased_and_huge_depths_give_finite_clearance(model: ClearanceModel):
 def captured(
     model: ClearanceModel, count: int
 ) -> tuple[DepthClearance, torch.Tensor, torch.Tensor]:
-    perception = DepthClearance(model)
+    with native.using(native.PORTABLE):  # the reference; test_native_planner.py holds kernels to it
+        perception = DepthClearance(model)
     position = torch.randn(count, 3, generator=draws(3), dtype=torch.float64)
     rotation = so3.exp(torch.randn(3, count, generator=draws(4), dtype=torch.float64))
     perception.capture(images(count), position, rotation.movedim(-1, 0))
@@ -120,7 +115,8 @@ def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_it
 ):
     generous = copy.deepcopy(model)
     generous.layers[2].bias[-1] += 0.5  # the query network's own bias
-    perception = DepthClearance(generous)
+    with native.using(native.PORTABLE):
+        perception = DepthClearance(generous)
     level = torch.eye(3, dtype=torch.float64)
     perception.capture(images(1), torch.zeros(1, 3, dtype=torch.float64), level[None])
     at = points(1, 960)

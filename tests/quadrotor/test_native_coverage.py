@@ -8,15 +8,17 @@ from types import MethodType
 
 import pytest
 import torch
+from test_native_planner import scored
 from test_native_rollout import commands_of, inputs_of, predictor, random_weights
 from torch import Tensor, nn
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native.coverage import uncovered
+from faultpath.quadrotor.native import clearance, costs, encoder
+from faultpath.quadrotor.native.clearance import CompiledClearance
+from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.lending import PortableNotice, lend, tell_portable
-from faultpath.quadrotor.native.parts import build_planner, depth_clearance
 from faultpath.quadrotor.native.recurrent import recur
-from faultpath.quadrotor.native.rollout import CompiledRollout
+from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.planner import (
     MPPI,
@@ -24,7 +26,9 @@ from faultpath.quadrotor.planner import (
     NavigationCost,
     SamplerSettings,
     ScaledTemperature,
+    Scored,
     TerminalGoal,
+    weighted_mean,
 )
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
@@ -35,9 +39,10 @@ from faultpath.quadrotor.predictors import (
     TrueParameter,
     UnanchoredPredictor,
 )
+from faultpath.quadrotor.predictors.compiled import horizon_loop, uncovered
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.predictors.network import GatedCell
-from faultpath.quadrotor.rollout import Rollout, rollout
+from faultpath.quadrotor.rollout import Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
 
 SHIFT_M = 100.0
@@ -54,11 +59,12 @@ def _nothing_said_yet() -> Iterator[None]:
 
 
 def planner(of: Predictor) -> MPPI:
-    return build_planner(
+    return MPPI(
         of,
         AutoregressiveSampler(SamplerSettings(candidates=32)),
         NavigationCost(TerminalGoal()),
         ScaledTemperature(0.08),
+        rolling(of),
     )
 
 
@@ -181,7 +187,7 @@ def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(
     model = make()
     assert uncovered(model)
     with pytest.raises(ValueError, match=why):
-        CompiledRollout(native.load(native.available()[0]), model)
+        horizon_loop(native.load(native.available()[0]), model)
 
 
 @torch.inference_mode()
@@ -201,7 +207,8 @@ def test_every_size_that_the_kernel_can_hold_is_computed(hidden: int) -> None:
     random_weights(network)
     model = anchored_on(network)
     given, commands = inputs_of(), commands_of()
-    roll = CompiledRollout(native.load(native.available()[0]), model)
+    assert not uncovered(model)
+    roll = rolling(model)
     ours, theirs = roll(given, commands), rollout(model, given, commands)
     torch.testing.assert_close(ours.positions, theirs.positions, rtol=1e-4, atol=1e-4)
 
@@ -229,17 +236,56 @@ def test_a_clearance_model_of_ones_own_is_what_answers() -> None:
             return torch.zeros_like(super().query(code, points))
 
     with pytest.warns(PortableNotice, match="not of Own"):
-        assert type(depth_clearance(Own())) is DepthClearance
+        assert DepthClearance(Own()).compiled is None
     wider = ClearanceModel()
     wider.encoder[7] = nn.Linear(48 * 5 * 8, 256)
     wider.encoder[9] = nn.Linear(256, 64)
     with pytest.warns(PortableNotice, match="other sizes"):
-        assert type(depth_clearance(wider)) is DepthClearance
+        assert DepthClearance(wider).compiled is None
     other = ClearanceModel()
     other.encoder[1] = nn.Tanh()
     with pytest.warns(PortableNotice, match="layers are others"):
-        assert type(depth_clearance(other)) is DepthClearance
-    assert type(depth_clearance(ClearanceModel())) is not DepthClearance
+        assert DepthClearance(other).compiled is None
+    assert DepthClearance(ClearanceModel()).compiled is not None
+
+
+class OwnCost(NavigationCost):
+    def _heading(self, scored: Scored) -> Tensor:
+        return torch.full_like(super()._heading(scored), 1e6)
+
+
+class OwnGoal(TerminalGoal):
+    def distance(self, scored: Scored) -> Tensor:
+        return torch.full_like(super().distance(scored), 1e6)
+
+
+class OwnTemperature(ScaledTemperature):
+    def of(self, cost: Tensor) -> Tensor:
+        return torch.full_like(super().of(cost), 1e6)
+
+
+@pytest.mark.parametrize("own", [OwnCost(TerminalGoal()), NavigationCost(OwnGoal())])
+def test_a_cost_of_ones_own_is_what_decides(own: NavigationCost) -> None:
+    case = scored(torch.Generator().manual_seed(0), 16)
+    with pytest.warns(PortableNotice, match="not of Own"):
+        assert float(own(case).min()) > 1e5
+
+
+def test_a_temperature_of_ones_own_is_what_weighs() -> None:
+    cost = torch.arange(16.0)[None]
+    with pytest.warns(PortableNotice, match="not of OwnTemperature"):
+        weights = OwnTemperature(0.08).weights(cost)
+    torch.testing.assert_close(weights, torch.full((1, 16), 1 / 16), rtol=1e-3, atol=0)
+
+
+def test_what_no_planner_kernel_takes_is_computed_in_torch() -> None:
+    """Other precision, and numbers through which a gradient should flow."""
+    cost = torch.arange(16.0, dtype=torch.float64)[None]
+    assert ScaledTemperature(0.08).weights(cost).dtype == torch.float64
+    commands = torch.ones(2, 4, 1, 16, requires_grad=True)
+    weighted_mean(commands, torch.full((1, 16), 1 / 16)).sum().backward()
+    assert commands.grad is not None
+    torch.testing.assert_close(commands.grad, torch.full_like(commands, 1 / 16))
 
 
 @torch.inference_mode()
@@ -284,7 +330,7 @@ def test_a_tensor_that_nobody_checked_never_reaches_a_kernel() -> None:
 @torch.inference_mode()
 @pytest.mark.parametrize("name", ["dki", "wm-a-wind", "wm-u"])
 def test_a_rollout_checks_all_that_it_is_given(name: str) -> None:
-    roll = CompiledRollout(native.load(native.available()[0]), predictor(name))
+    roll = rolling(predictor(name))
     given, commands = inputs_of(), commands_of()
     swapped = commands.movedim(3, 2).contiguous().movedim(2, 3)
     assert not swapped.is_contiguous()
@@ -300,9 +346,63 @@ def test_a_rollout_checks_all_that_it_is_given(name: str) -> None:
             call()
 
 
+def layers_of(hidden: int = 8) -> dict[str, Tensor]:
+    inputs = {"embed": 4, "gates": 48, "candidate": 16, "remembered": 32, "first": 51}
+    outputs = {"embed": 16, "gates": 64, "candidate": 32, "remembered": 32, "first": hidden}
+    inputs |= {"second": hidden, "last": hidden}
+    outputs |= {"second": hidden, "last": 6}
+    return {name: torch.zeros(outputs[name], 1 + inputs[name]) for name in inputs}
+
+
+@pytest.mark.parametrize("name", list(layers_of()))
+def test_a_layer_of_another_size_never_reaches_the_kernel(name: str) -> None:
+    kernels, step = native.load(native.available()[0]), Step(Kind.ANCHORED, gravity=9.81)
+    good = layers_of()
+    HorizonLoop(kernels, step, good)
+    wrong = {**good, name: torch.zeros(good[name].shape[0], good[name].shape[1] + 1)}
+    with pytest.raises(ValueError, match="size of its layer"):
+        HorizonLoop(kernels, step, wrong)
+
+
+def test_perception_kernels_check_their_weights() -> None:
+    kernels = native.load(native.available()[0])
+    weights = [torch.zeros(shape) for shape in encoder.SHAPES]
+    biases = [torch.zeros(shape[0]) for shape in encoder.SHAPES]
+    CompiledEncoder(kernels, weights, biases, (6.0, 0.2, 0.4))
+    for i in range(len(weights)):
+        wrong = [*weights[:i], torch.zeros(3, 3), *weights[i + 1 :]]
+        with pytest.raises(ValueError, match=f"weights of layer {i}"):
+            CompiledEncoder(kernels, wrong, biases, (6.0, 0.2, 0.4))
+        wrong = [*biases[:i], torch.zeros(3), *biases[i + 1 :]]
+        with pytest.raises(ValueError, match=f"biases of layer {i}"):
+            CompiledEncoder(kernels, weights, wrong, (6.0, 0.2, 0.4))
+    makers = [torch.zeros(rows * columns, 65) for rows, columns in clearance.SHAPES]
+    bounds = clearance.Bounds(-0.3, 1.0, 0.25, 0.4, 1.0, 0.5)
+    CompiledClearance(kernels, makers, bounds)
+    with pytest.raises(ValueError, match="makers"):
+        CompiledClearance(kernels, [makers[0], makers[0], makers[2]], bounds)
+
+
+def test_a_cost_without_one_of_its_terms_is_refused() -> None:
+    case = scored(torch.Generator().manual_seed(0), 16)
+    paths = costs.Paths(
+        case.rollout.positions,
+        case.rollout.velocities,
+        case.rollout.final.rotation,
+        case.commands,
+        case.clearance,
+        case.goal,
+        case.hover,
+    )
+    terms = dict.fromkeys(costs.TERMS, 1.0)
+    del terms["hit"]
+    with pytest.raises(ValueError, match="it takes goal, risk, hit"):
+        costs.cost(native.load(native.available()[0]), terms, False, paths)
+
+
 @torch.inference_mode()
 def test_a_rollout_that_is_told_less_than_it_reads_is_refused() -> None:
-    roll = CompiledRollout(native.load(native.available()[0]), predictor("wm-a-wind"))
+    roll = rolling(predictor("wm-a-wind"))
     for field in ("dynamics", "wind_mps", "thrust_mass_kg", "code"):
         with pytest.raises(ValueError, match="was told none"):
             roll(replace(inputs_of(), **{field: None}), commands_of())

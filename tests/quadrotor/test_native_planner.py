@@ -1,14 +1,13 @@
 """Compiled noise, candidates, costs, means and clearance are the portable ones to rounding."""
 
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
 import pytest
 import torch
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.native.clearance import CompiledDepthClearance
-from faultpath.quadrotor.native.costs import CompiledCost, CompiledMean, CompiledTemperature
-from faultpath.quadrotor.native.encoder import CompiledEncoder
-from faultpath.quadrotor.native.sampling import CompiledSampler
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
 from faultpath.quadrotor.planner import (
@@ -27,11 +26,24 @@ from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
 
 SCENES = ("a", "b", "c")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
 @pytest.fixture(params=native.available())
-def kernels(request: pytest.FixtureRequest) -> native.Kernels:
-    return native.load(request.param)
+def isa(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def under(isa: str, of: Callable[P, T], *given: P.args, **named: P.kwargs) -> T:
+    """Return what a call gives with one set of kernels, or on the portable path."""
+    with native.using(isa):
+        return of(*given, **named)
+
+
+def both(isa: str, of: Callable[P, T], *given: P.args, **named: P.kwargs) -> tuple[T, T]:
+    """Return what kernels give, and the reference."""
+    return under(isa, of, *given, **named), under(native.PORTABLE, of, *given, **named)
 
 
 @pytest.fixture
@@ -44,20 +56,19 @@ def close(mine: torch.Tensor, reference: torch.Tensor, tolerance: float = 1e-5) 
 
 
 @pytest.mark.parametrize(("candidates", "horizon"), [(64, 20), (64, 7), (16, 1)])
-def test_noise_is_the_portable_one(kernels: native.Kernels, candidates: int, horizon: int) -> None:
+def test_noise_is_the_portable_one(isa: str, candidates: int, horizon: int) -> None:
     sampler = AutoregressiveSampler(SamplerSettings(candidates=candidates, horizon=horizon))
-    compiled = CompiledSampler(kernels, sampler)
-    close(compiled.noise(SCENES, 3, 5), sampler.noise(SCENES, 3, 5))
+    close(*both(isa, sampler.noise, SCENES, 3, 5))
 
 
-def test_candidates_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:
+def test_candidates_are_the_portable_ones(isa: str, stream: torch.Generator) -> None:
     settings = SamplerSettings(candidates=64, thrust_sigma=1.0, rate_sigma_radps=(9, 9, 9))
     sampler = AutoregressiveSampler(settings)
     plan = torch.randn(20, 4, 3, generator=stream)
     hover = torch.tensor([4.0, 9.0, 15.0])
     noise = torch.randn(20, 4, 3, 64, generator=stream)
-    compiled = CompiledSampler(kernels, sampler).candidates(plan, hover, noise.clone())
-    close(compiled, sampler.candidates(plan, hover, noise))
+    compiled = under(isa, sampler.candidates, plan, hover, noise.clone())
+    close(compiled, under(native.PORTABLE, sampler.candidates, plan, hover, noise))
 
 
 def scored(stream: torch.Generator, candidates: int) -> Scored:
@@ -80,87 +91,81 @@ def scored(stream: torch.Generator, candidates: int) -> Scored:
 @pytest.mark.parametrize("candidates", [64, 50])
 @pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal()], ids=["terminal", "running"])
 def test_costs_are_the_portable_ones(
-    kernels: native.Kernels, goal: GoalCost, candidates: int, stream: torch.Generator
+    isa: str, goal: GoalCost, candidates: int, stream: torch.Generator
 ) -> None:
     cost = NavigationCost(goal, CostWeights())
     case = scored(stream, candidates)
-    close(CompiledCost(kernels, cost)(case), cost(case))
+    close(*both(isa, cost, case))
 
 
 @pytest.mark.parametrize("term", ["goal", "risk", "hit", "speed", "heading", "rate_effort"])
-def test_every_term_of_the_cost_counts(
-    kernels: native.Kernels, term: str, stream: torch.Generator
-) -> None:
+def test_every_term_of_the_cost_counts(isa: str, term: str, stream: torch.Generator) -> None:
     case = scored(stream, 16)
     without = CostWeights(**{term: 0.0})
-    whole = CompiledCost(kernels, NavigationCost(TerminalGoal()))(case)
-    rest = CompiledCost(kernels, NavigationCost(TerminalGoal(), without))(case)
+    whole = under(isa, NavigationCost(TerminalGoal()), case)
+    rest, reference = both(isa, NavigationCost(TerminalGoal(), without), case)
     assert not torch.allclose(whole, rest)
-    close(rest, NavigationCost(TerminalGoal(), without)(case))
+    close(rest, reference)
 
 
 @pytest.mark.parametrize("candidates", [512, 50])
 @pytest.mark.parametrize("size", [1e-6, 1.0, 300.0])
 def test_weights_are_the_portable_ones(
-    kernels: native.Kernels, candidates: int, size: float, stream: torch.Generator
+    isa: str, candidates: int, size: float, stream: torch.Generator
 ) -> None:
     cost = size * torch.randn(3, candidates, generator=stream).exp()
-    temperature = ScaledTemperature(0.08)
-    mine = CompiledTemperature(kernels, temperature).weights(cost)
-    close(mine, temperature.weights(cost), 1e-4)
+    mine, reference = both(isa, ScaledTemperature(0.08).weights, cost)
+    close(mine, reference, 1e-4)
     close(mine.sum(1), torch.ones(3))
 
 
 @pytest.mark.parametrize("lost", [1, 200, 500, 512])
 def test_a_cost_that_is_no_number_spoils_the_scene_as_in_torch(
-    kernels: native.Kernels, lost: int, stream: torch.Generator
+    isa: str, lost: int, stream: torch.Generator
 ) -> None:
     cost = torch.randn(2, 512, generator=stream).exp()
     cost[0, torch.randperm(512, generator=stream)[:lost]] = torch.nan
-    temperature = ScaledTemperature(0.08)
-    mine = CompiledTemperature(kernels, temperature).weights(cost)
+    mine, reference = both(isa, ScaledTemperature(0.08).weights, cost)
     assert mine[0].isnan().all()
-    torch.testing.assert_close(
-        mine, temperature.weights(cost), rtol=1e-4, atol=1e-4, equal_nan=True
-    )
+    torch.testing.assert_close(mine, reference, rtol=1e-4, atol=1e-4, equal_nan=True)
 
 
 def test_what_is_no_number_stays_so_in_candidates_and_costs(
-    kernels: native.Kernels, stream: torch.Generator
+    isa: str, stream: torch.Generator
 ) -> None:
     sampler = AutoregressiveSampler(SamplerSettings(candidates=16))
     plan = torch.zeros(20, 4, 2)
     plan[3, :, 1] = torch.nan
     noise = torch.randn(20, 4, 2, 16, generator=stream)
     hover = torch.full((2,), 9.8)
-    mine = CompiledSampler(kernels, sampler).candidates(plan, hover, noise.clone())
-    assert torch.equal(mine.isnan(), sampler.candidates(plan, hover, noise).isnan())
+    mine = under(isa, sampler.candidates, plan, hover, noise.clone())
+    reference = under(native.PORTABLE, sampler.candidates, plan, hover, noise)
+    assert torch.equal(mine.isnan(), reference.isnan())
 
     case = scored(stream, 16)
     case.clearance[1, 4, 3] = torch.nan
-    cost = NavigationCost(TerminalGoal())
-    assert torch.equal(CompiledCost(kernels, cost)(case).isnan(), cost(case).isnan())
+    mine, reference = both(isa, NavigationCost(TerminalGoal()), case)
+    assert torch.equal(mine.isnan(), reference.isnan())
 
 
-def test_tiny_weights_are_none(kernels: native.Kernels) -> None:
+def test_tiny_weights_are_none(isa: str) -> None:
     cost = torch.linspace(0, 1e5, 512)[None]
-    weights = CompiledTemperature(kernels, ScaledTemperature(0.001)).weights(cost)
+    weights = under(isa, ScaledTemperature(0.001).weights, cost)
     assert (weights[weights > 0] > 1e-36).all()
 
 
 @pytest.mark.parametrize("candidates", [64, 50])
-def test_means_are_the_portable_ones(
-    kernels: native.Kernels, candidates: int, stream: torch.Generator
-) -> None:
+def test_means_are_the_portable_ones(isa: str, candidates: int, stream: torch.Generator) -> None:
     commands = torch.randn(20, 4, 3, candidates, generator=stream)
     weight = torch.randn(3, candidates, generator=stream).softmax(1)
-    close(CompiledMean(kernels)(commands, weight), weighted_mean(commands, weight))
+    close(*both(isa, weighted_mean, commands, weight))
 
 
 @torch.inference_mode()
-def test_clearance_is_the_portable_one(kernels: native.Kernels, stream: torch.Generator) -> None:
+def test_clearance_is_the_portable_one(isa: str, stream: torch.Generator) -> None:
     model = clearance_model()
-    portable, compiled = DepthClearance(model), CompiledDepthClearance(kernels, model)
+    compiled, portable = both(isa, DepthClearance, model)
+    assert compiled.compiled is not None is portable.compiled
     depth = 6 * torch.rand(4, 36, 64, generator=stream)
     position = torch.randn(4, 3, generator=stream)
     rotation = so3.exp(torch.randn(3, 4, generator=stream)).movedim(-1, 0)
@@ -177,19 +182,22 @@ def test_clearance_is_the_portable_one(kernels: native.Kernels, stream: torch.Ge
 
 
 @torch.inference_mode()
-def test_codes_are_the_portable_ones(kernels: native.Kernels, stream: torch.Generator) -> None:
+def test_codes_are_the_portable_ones(isa: str, stream: torch.Generator) -> None:
     model = clearance_model()
     depth = 6 * torch.rand(5, 36, 64, generator=stream)
     depth[:, 10:20, :30] = 0.0
-    codes = CompiledEncoder(kernels, model)(depth)
+    compiled = under(isa, DepthClearance, model).compiled
+    assert compiled is not None
+    encode, _ = compiled
+    codes = encode(depth)
     close(codes, model.encode(depth), 1e-4)
-    assert torch.equal(codes[:, 3:], CompiledEncoder(kernels, model)(depth[3:]))
+    assert torch.equal(codes[:, 3:], encode(depth[3:]))
     depth[2, 7, 7] = torch.nan
-    lost = CompiledEncoder(kernels, model)(depth).isnan()
+    lost = encode(depth).isnan()
     assert torch.equal(lost, model.encode(depth).isnan())
     assert lost[:, 2].all()
 
 
-def test_a_query_before_the_first_image_is_refused(kernels: native.Kernels) -> None:
+def test_a_query_before_the_first_image_is_refused(isa: str) -> None:
     with pytest.raises(RuntimeError, match="capture"):
-        CompiledDepthClearance(kernels, ClearanceModel()).query(torch.zeros(3, 1, 32), [0])
+        under(isa, DepthClearance, ClearanceModel()).query(torch.zeros(3, 1, 32), [0])

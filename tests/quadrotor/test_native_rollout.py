@@ -5,7 +5,6 @@ import torch
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.native.library import SETS
-from faultpath.quadrotor.native.rollout import CompiledRollout
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
@@ -14,7 +13,7 @@ from faultpath.quadrotor.predictors import (
     PredictorInputs,
     UnanchoredPredictor,
 )
-from faultpath.quadrotor.rollout import Rollout, rollout
+from faultpath.quadrotor.rollout import Roll, Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
 
 TOLERANCE = 1e-5
@@ -90,8 +89,13 @@ NAMES = ["dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"]
 
 
 @pytest.fixture(params=native.available())
-def kernels(request: pytest.FixtureRequest) -> native.Kernels:
-    return native.load(request.param)
+def isa(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def compiled(isa: str, model: Predictor) -> Roll:
+    with native.using(isa):
+        return rolling(model)
 
 
 def test_kernels_are_built_where_tests_run() -> None:
@@ -102,16 +106,16 @@ def test_kernels_are_built_where_tests_run() -> None:
 
 @torch.inference_mode()
 @pytest.mark.parametrize("name", NAMES)
-def test_compiled_equals_portable(kernels: native.Kernels, name: str) -> None:
+def test_compiled_equals_portable(isa: str, name: str) -> None:
     model, given, commands = predictor(name), inputs_of(), commands_of()
-    assert_close(CompiledRollout(kernels, model)(given, commands), rollout(model, given, commands))
+    assert_close(compiled(isa, model)(given, commands), rollout(model, given, commands))
 
 
 @torch.inference_mode()
 @pytest.mark.parametrize("name", ["dki", "wm-a-wind", "wm-u"])
-def test_a_candidate_depends_on_no_other(kernels: native.Kernels, name: str) -> None:
+def test_a_candidate_depends_on_no_other(isa: str, name: str) -> None:
     """Nor on how many there are: not even on whether they fill a tile."""
-    roll = CompiledRollout(kernels, predictor(name))
+    roll = compiled(isa, predictor(name))
     given, commands = inputs_of(), commands_of()
     whole = roll(given, commands)
     some = roll(given.take([1]), commands[:, :, 1:2, 5:42].contiguous())
@@ -123,20 +127,20 @@ def test_a_candidate_depends_on_no_other(kernels: native.Kernels, name: str) -> 
 @pytest.mark.skipif("avx2" not in native.available(), reason="one instruction set only")
 @pytest.mark.parametrize("name", NAMES)
 def test_sets_that_fuse_agree_to_the_bit(name: str) -> None:
-    sets = [k for k in map(native.load, native.available()) if k.numerics == "fused"]
+    sets = [isa for isa in native.available() if native.load(isa).numerics == "fused"]
     model, given, commands = predictor(name), inputs_of(), commands_of()
-    first, *others = (CompiledRollout(k, model)(given, commands) for k in sets)
+    first, *others = (compiled(isa, model)(given, commands) for isa in sets)
     for other in others:
         assert torch.equal(first.positions, other.positions)
         assert torch.equal(first.final.rate, other.final.rate)
 
 
 @torch.inference_mode()
-def test_weights_reach_the_kernel(kernels: native.Kernels) -> None:
+def test_weights_reach_the_kernel(isa: str) -> None:
     """Every layer and statistic counts: a change of any changes the result."""
     given, commands = inputs_of(scenes=1), commands_of(scenes=1, candidates=16)
     model = predictor("wm-u")
-    before = CompiledRollout(kernels, model)(given, commands).positions
+    before = compiled(isa, model)(given, commands).positions
     assert isinstance(model, UnanchoredPredictor)
     parts = dict((*model.network.named_parameters(), *model.network.named_buffers()))
     read = {name: part for name, part in parts.items() if not name.startswith("encoder")}
@@ -144,6 +148,6 @@ def test_weights_reach_the_kernel(kernels: native.Kernels) -> None:
     for name, part in read.items():
         kept = part.clone()
         part.mul_(1.5)
-        after = CompiledRollout(kernels, model)(given, commands).positions
+        after = compiled(isa, model)(given, commands).positions
         assert not torch.equal(before, after), name
         part.copy_(kept)

@@ -10,19 +10,23 @@ from pydantic import BaseModel, ConfigDict, Field
 from faultpath.errors import UserError
 from faultpath.quadrotor.device import DeviceName, require
 from faultpath.quadrotor.models import PREDICTORS
-from faultpath.quadrotor.native.parts import build_planner
 from faultpath.quadrotor.planner import (
     MPPI,
     AutoregressiveSampler,
+    BundledSampler,
     CostWeights,
     GoalCost,
     NavigationCost,
     RunningGoal,
+    Sampler,
     SamplerSettings,
     ScaledTemperature,
+    Temperature,
     TerminalGoal,
+    WithinBundle,
 )
 from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.rollout import rolling
 
 
 class Wind(StrEnum):
@@ -145,12 +149,10 @@ class QuadrotorOptions(BaseModel):
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
         }
         goal, weights = goals[self.planner]
-        sampler = self.settings.sampler.model_copy(update={"candidates": self.candidates})
-        return build_planner(
-            predictor,
-            AutoregressiveSampler(sampler),
-            NavigationCost(goal, weights),
-            ScaledTemperature(self.settings.temperature),
-            self.place,
-            bundled=self.sampler is SamplerName.MODE_PRESERVING,
-        )
+        settings = self.settings.sampler.model_copy(update={"candidates": self.candidates})
+        sampler: Sampler = AutoregressiveSampler(settings)
+        temperature: Temperature = ScaledTemperature(self.settings.temperature)
+        if self.sampler is SamplerName.MODE_PRESERVING:
+            sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
+        cost, roll = NavigationCost(goal, weights), rolling(predictor, self.place)
+        return MPPI(predictor, sampler, cost, temperature, roll)

@@ -6,7 +6,7 @@ from dataclasses import asdict
 from typing import Any
 
 from faultpath.quadrotor.options import PlannerSettings
-from faultpath.quadrotor.perception import camera, clearance
+from faultpath.quadrotor.perception import camera, seen
 from faultpath.quadrotor.vehicle import VehicleParameters, VehicleRanges
 from faultpath.quadrotor.wind import WIND_LEVELS
 
@@ -19,8 +19,8 @@ def platform() -> dict[str, Any]:
             "height": camera.HEIGHT,
             "field_of_view_deg": camera.FIELD_OF_VIEW_DEG,
             "range_m": camera.RANGE_M,
-            "unseen_m": clearance.UNSEEN_M,
-            "near_m": clearance.NEAR_M,
+            "unseen_m": seen.UNSEEN_M,
+            "near_m": seen.NEAR_M,
         },
         "planner": PlannerSettings().model_dump(mode="json"),
         "wind": {name: asdict(level) for name, level in WIND_LEVELS.items()},

@@ -1,12 +1,17 @@
 """The only horizon loop: planner, training and probes all roll a predictor out here."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.predictors import Predictor, PredictorInputs
+from faultpath.quadrotor import native
+from faultpath.quadrotor.device import CPU
+from faultpath.quadrotor.native.lending import is_exactly, tell_portable
+from faultpath.quadrotor.predictors import Predictor, PredictorInputs, TrueParameter
+from faultpath.quadrotor.predictors.compiled import horizon_loop, named, uncovered
 from faultpath.quadrotor.state import State
 
 
@@ -44,3 +49,29 @@ def rollout(predictor: Predictor, inputs: PredictorInputs, commands: Tensor) -> 
         positions[:, :, h] = state.position
         velocities[:, :, h] = state.velocity
     return Rollout(positions, velocities, state)
+
+
+Roll = Callable[[PredictorInputs, Tensor], Rollout]
+"""Rolls commands `[H, 4, S, K]` out from inputs of batch `[S, 1]`."""
+
+
+def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
+    """Return what rolls a predictor out on `device`: compiled where a kernel stands for it.
+
+    A compiled one keeps the weights that the predictor has now.
+    """
+    built = native.kernels_on(device)
+    if built is None:
+        return partial(rollout, predictor)
+    if why := uncovered(predictor):
+        if not is_exactly(predictor, TrueParameter):  # of which there never was a kernel
+            tell_portable(f"The predictor {type(predictor).__name__}", why)
+        return partial(rollout, predictor)
+    loop = horizon_loop(built, predictor)
+
+    def roll(inputs: PredictorInputs, commands: Tensor) -> Rollout:
+        positions, velocities, rotation, rate = loop(named(inputs), commands)
+        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
+        return Rollout(positions, velocities, final)
+
+    return roll

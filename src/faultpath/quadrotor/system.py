@@ -19,10 +19,9 @@ from faultpath.quadrotor.device import CPU, DeviceName, arithmetic, describe
 from faultpath.quadrotor.flight import Flight
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.native.parts import depth_clearance
 from faultpath.quadrotor.navigator import Navigator, WindReconstruction
 from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
-from faultpath.quadrotor.perception import DepthRenderer
+from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
@@ -152,7 +151,7 @@ class Quadrotor(System):
         place = self.options.place
         if self.options.clearance is ClearanceName.TRUE:
             return TrueClearance(_field(tuple(scenes), self.options.free_space, place))
-        model = depth_clearance(clearance_model(place), place)
+        model = DepthClearance(clearance_model(place), place)
         return SeenClearance(model, taps.for_module("perception"))
 
     def scene(self, scene: str) -> Scene:

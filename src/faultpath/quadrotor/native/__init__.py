@@ -10,10 +10,12 @@ from faultpath.quadrotor.native.library import (
     available,
     describe,
     kernels,
+    kernels_for,
     kernels_on,
     load,
     numerics,
     using,
+    whole_vectors,
 )
 
 __all__ = [
@@ -22,8 +24,10 @@ __all__ = [
     "available",
     "describe",
     "kernels",
+    "kernels_for",
     "kernels_on",
     "load",
     "numerics",
     "using",
+    "whole_vectors",
 ]

@@ -1,28 +1,39 @@
-"""Queries of the clearance model, compiled."""
+"""Queries of the clearance that a depth image's code stands for, compiled."""
 
 import ctypes
 from collections.abc import Sequence
+from dataclasses import astuple, dataclass
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.encoder import CompiledEncoder, misfit
-from faultpath.quadrotor.native.lending import Lent, lend
+from faultpath.quadrotor.native.encoder import CODE
+from faultpath.quadrotor.native.lending import lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
-from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH
-from faultpath.quadrotor.perception.clearance import (
-    CODE,
-    HIDDEN,
-    NEAR_M,
-    UNSEEN_M,
-    ClearanceModel,
-    DepthClearance,
-)
-from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
-_NUMBERS = (9 + HIDDEN + 1) * HIDDEN
-"""Numbers of a query network (`Query` in `clearance.cpp`): two hidden layers, and the last."""
+FEATURES, HIDDEN = 8, 47
+"""Fixed in `clearance.cpp`, without the constants that carry the biases."""
+SHAPES = ((HIDDEN, FEATURES + 1), (HIDDEN, HIDDEN + 1), (1, HIDDEN + 1))
+"""Outputs and inputs of the layers of a query network; the last input is the bias."""
+
+_NUMBERS = (FEATURES + 1 + HIDDEN + 1 + 1) * (HIDDEN + 1)
+"""Numbers of a query network (`Query` in `clearance.cpp`)."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Between what the answer lies, and where the image covers what is asked."""
+
+    lowest_m: float
+    highest_m: float
+    unseen_m: float
+    """Most clearance where no pixel looks."""
+    near_m: float
+    """Distance within which that does not matter."""
+    left: float
+    """Half the image's width, per metre forward."""
+    up: float
 
 
 class _Bounds(ctypes.Structure):
@@ -33,69 +44,59 @@ class _Bounds(ctypes.Structure):
     )
 
 
-class CompiledDepthClearance(DepthClearance):
-    """The same clearance, with frame, features, layers and field of view in one pass.
+class CompiledClearance:
+    """Capture frame, features, query network and field of view in one pass."""
 
-    Raises `ValueError` for a model of another form, or points and images of another size.
-    """
+    def __init__(self, kernels: Kernels, makers: Sequence[Tensor], bounds: Bounds) -> None:
+        """Copy what makes a query network from a code.
 
-    def __init__(self, kernels: Kernels, model: ClearanceModel) -> None:
-        super().__init__(model)
+        Args:
+            kernels: What answers.
+            makers: For each layer of `SHAPES`, `[outputs * inputs, 64 + 1]`: a column for each
+                number of the code, and what is there without any.
+            bounds: What the answer keeps to.
+
+        Raises:
+            ValueError: A tensor is not what the kernel takes; see `lend`.
+        """
         self._kernels = kernels
-        self._encode = CompiledEncoder(kernels, model)
-        self._bounds = _Bounds(
-            LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M**2, WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-        )
-        self._makers, self._base = _makers(model)
-        self._codes: Tensor | None = None
-        self._eye = self._axes = torch.empty(0)
+        low, high, unseen, near, left, up = astuple(bounds)
+        self._bounds = _Bounds(low, high, unseen, near**2, left, up)
+        rows: list[Tensor] = []
+        for made, (outputs, inputs) in zip(makers, SHAPES, strict=True):
+            lend("makers", made.detach().contiguous(), outputs * inputs, CODE + 1)
+            # Numbers stand in the order of `Query`: hidden layers in blocks of outputs, biases
+            # first, padded with zeros; the last layer as it is.
+            whole = made.detach().unflatten(0, (outputs, inputs))
+            if outputs > 1:
+                whole = pack(whole.roll(1, dims=1), BLOCK)
+            rows.append(whole.reshape(-1, CODE + 1))
+        numbers = torch.cat(rows).T.contiguous()
+        self._makers = lend("makers", numbers[:-1].contiguous(), CODE, _NUMBERS)
+        self._base = lend("base", numbers[-1].contiguous(), _NUMBERS)
 
-    @staticmethod
-    def misfit(model: ClearanceModel) -> str:
-        """Return in words why there is no compiled form of a model; empty if there is."""
-        return misfit(model)
+    def __call__(self, codes: Tensor, eye: Tensor, axes: Tensor, points: Tensor) -> Tensor:
+        """Return the clearance `[S, N]`, m.
 
-    @torch.no_grad()
-    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
-        """See `DepthClearance.capture`."""
-        self._codes = self._encode(depth)
-        self._eye = position.float()
-        self._axes = rotation.float().flatten(1)
+        Args:
+            codes: `[64, S]`.
+            eye: Where the images were taken from, `[S, 3]`, m.
+            axes: And the camera's attitudes, `[S, 3, 3]`.
+            points: World frame, `[3, S, N]`, m.
 
-    @torch.no_grad()
-    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
-        """See `DepthClearance.query`."""
-        if self._codes is None:
-            raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        chosen = torch.as_tensor(scenes)
-        scenes_asked, count = len(chosen), points.shape[-1]
-        clearance = points.new_empty(points.shape[1:])
+        Raises:
+            ValueError: A tensor is not what the kernel takes; see `lend`.
+        """
+        _, scenes, count = points.shape
+        clearance = points.new_empty(scenes, count)
         self._kernels.call(
             "faultpath_clearance",
             *(ctypes.byref(self._bounds), self._makers, self._base),
-            lend("codes", self._codes.index_select(1, chosen), CODE, scenes_asked),
-            lend("position", self._eye.index_select(0, chosen), scenes_asked, 3),
-            lend("rotation", self._axes.index_select(0, chosen), scenes_asked, 9),
-            lend("points", points.contiguous(), 3, scenes_asked, count),
-            *(scenes_asked, count),
-            lend("clearance", clearance, scenes_asked, count),
+            lend("codes", codes.contiguous(), CODE, scenes),
+            lend("position", eye.contiguous(), scenes, 3),
+            lend("rotation", axes.contiguous(), scenes, 3, 3),
+            lend("points", points.contiguous(), 3, scenes, count),
+            *(scenes, count),
+            lend("clearance", clearance, scenes, count),
         )
         return clearance
-
-
-@torch.no_grad()
-def _makers(model: ClearanceModel) -> tuple[Lent, Lent]:
-    """Return what makes a query network from a code: `[64, n]` and `[n]`.
-
-    The network's numbers stand in the order of `Query` in `clearance.cpp`: hidden layers in blocks
-    of outputs, biases first, padded with zeros; the last layer as it is.
-    """
-    rows: list[Tensor] = []
-    for layer, (outputs, inputs) in model.makers():
-        whole = torch.cat((layer.weight, layer.bias[:, None]), 1).unflatten(0, (outputs, inputs))
-        if outputs > 1:
-            whole = pack(whole.roll(1, dims=1), BLOCK)
-        rows.append(whole.reshape(-1, whole.shape[-1]))
-    made = torch.cat(rows).T.contiguous()
-    weights = lend("makers", made[:-1].contiguous(), CODE, _NUMBERS)
-    return weights, lend("base", made[-1].contiguous(), _NUMBERS)

@@ -1,132 +1,117 @@
-"""The planner's cost and its weighted mean, compiled."""
+"""Costs of candidates, their weights and their weighted mean, compiled."""
 
 import ctypes
-from typing import TypeGuard
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.lending import is_exactly, lend
-from faultpath.quadrotor.native.library import WIDEST, Kernels
-from faultpath.quadrotor.planner import ScaledTemperature, Temperature
-from faultpath.quadrotor.planner.costs import NavigationCost, RunningGoal, Scored, TerminalGoal
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.library import Kernels
 
-_TERMS = ("goal", "risk", "hit", "margin", "radius", "speed", "v_max", "heading")
-_EFFORTS = ("rate_effort", "thrust_effort")
+TERMS = (
+    *("goal", "risk", "hit", "margin_m", "radius_m", "speed", "v_max_mps", "heading"),
+    *("rate_effort", "thrust_effort"),
+)
+"""What a cost weighs, and the distances and speeds that it weighs against."""
 
 
 class _Weights(ctypes.Structure):
     """`Weights` of `costs.cpp`."""
 
-    _fields_ = (
-        ("running", ctypes.c_int64),
-        *((name, ctypes.c_float) for name in _TERMS + _EFFORTS),
-    )
+    _fields_ = (("running", ctypes.c_int64), *((name, ctypes.c_float) for name in TERMS))
 
 
-class CompiledCost(NavigationCost):
-    """The navigation cost in one pass over the candidates.
+class Paths(NamedTuple):
+    """What is scored: K candidates of S scenes over H steps."""
 
-    Raises `ValueError` where a tensor is not what the kernel takes; see `lend`.
+    positions: Tensor
+    """`[3, S, H, K]`, m."""
+    velocities: Tensor
+    """`[3, S, H, K]`, m/s."""
+    rotation: Tensor
+    """At the end, `[3, 3, S, K]`."""
+    commands: Tensor
+    """`[H, 4, S, K]`."""
+    clearance: Tensor
+    """`[S, H, K]`, m."""
+    goal: Tensor
+    """`[3, S]`, m."""
+    hover: Tensor
+    """`[S]`, N."""
+
+
+def cost(kernels: Kernels, terms: Mapping[str, float], running: bool, paths: Paths) -> Tensor:
+    """Return the cost `[S, K]` of candidates.
+
+    Args:
+        kernels: Compiled kernels.
+        terms: A number for each of `TERMS`.
+        running: Whether the mean distance along the horizon counts, not that at its end.
+        paths: What is scored; at least one step, and K in whole vectors.
+
+    Raises:
+        ValueError: A term is missing, or a tensor is not what the kernel takes; see `lend`.
     """
-
-    def __init__(self, kernels: Kernels, cost: NavigationCost) -> None:
-        super().__init__(cost.goal, cost.weights)
-        self._kernels = kernels
-        w = cost.weights
-        self._table = _Weights(
-            running=isinstance(cost.goal, RunningGoal),
-            **{name: getattr(w, name) for name in ("goal", "risk", "hit", "speed", "heading")},
-            **{name: getattr(w, name) for name in _EFFORTS},
-            margin=w.margin_m,
-            v_max=w.v_max_mps,
-            radius=COLLISION_RADIUS_M,
-        )
-
-    @staticmethod
-    def covers(cost: object) -> TypeGuard[NavigationCost]:
-        """Return whether `cost` is one that this can stand for."""
-        if not is_exactly(cost, NavigationCost):
-            return False
-        return is_exactly(cost.goal, TerminalGoal) or is_exactly(cost.goal, RunningGoal)
-
-    def __call__(self, scored: Scored) -> Tensor:
-        """See `NavigationCost`."""
-        rollout, commands = scored.rollout, scored.commands
-        steps, _, scenes, candidates = commands.shape
-        if candidates % WIDEST or not steps:
-            return super().__call__(scored)
-        costs = commands.new_empty(scenes, candidates)
-        moved = (3, scenes, steps, candidates)
-        self._kernels.call(
-            "faultpath_cost",
-            ctypes.byref(self._table),
-            lend("positions", rollout.positions.contiguous(), *moved),
-            lend("velocities", rollout.velocities.contiguous(), *moved),
-            lend("rotation", rollout.final.rotation.contiguous(), 3, 3, scenes, candidates),
-            lend("commands", commands.contiguous(), steps, 4, scenes, candidates),
-            lend("clearance", scored.clearance.contiguous(), scenes, steps, candidates),
-            lend("goal", scored.goal.contiguous(), 3, scenes),
-            lend("hover", scored.hover.contiguous(), scenes),
-            *(steps, scenes, candidates),
-            lend("costs", costs, scenes, candidates),
-        )
-        return costs
+    if set(terms) != set(TERMS):
+        raise ValueError(f"compiled cost: it takes {', '.join(TERMS)}")
+    steps, _, scenes, count = paths.commands.shape
+    costs = paths.commands.new_empty(scenes, count)
+    moved = (3, scenes, steps, count)
+    kernels.call(
+        "faultpath_cost",
+        ctypes.byref(_Weights(running=running, **terms)),
+        lend("positions", paths.positions.contiguous(), *moved),
+        lend("velocities", paths.velocities.contiguous(), *moved),
+        lend("rotation", paths.rotation.contiguous(), 3, 3, scenes, count),
+        lend("commands", paths.commands.contiguous(), steps, 4, scenes, count),
+        lend("clearance", paths.clearance.contiguous(), scenes, steps, count),
+        lend("goal", paths.goal.contiguous(), 3, scenes),
+        lend("hover", paths.hover.contiguous(), scenes),
+        *(steps, scenes, count),
+        lend("costs", costs, scenes, count),
+    )
+    return costs
 
 
-class CompiledTemperature(Temperature):
-    """The scaled temperature and its softmax without a full sort."""
+def weights(kernels: Kernels, cost: Tensor, fraction: float, least: float) -> Tensor:
+    """Return the softmax `[S, K]` of costs, at a temperature from the spread of their better half.
 
-    def __init__(self, kernels: Kernels, temperature: ScaledTemperature) -> None:
-        self._kernels = kernels
-        self._portable = temperature
-        self._scale = torch.tensor([temperature.fraction, temperature.least])
+    Args:
+        kernels: Compiled kernels.
+        cost: `[S, K]`; K in whole vectors.
+        fraction: The temperature over that spread.
+        least: Lowest temperature.
 
-    @staticmethod
-    def covers(temperature: object) -> TypeGuard[ScaledTemperature]:
-        """Return whether `temperature` is one that this can stand for."""
-        return is_exactly(temperature, ScaledTemperature)
-
-    def of(self, cost: Tensor) -> Tensor:
-        """See `Temperature.of`."""
-        return self._portable.of(cost)
-
-    def weights(self, cost: Tensor) -> Tensor:
-        """See `Temperature.weights`."""
-        scenes, candidates = cost.shape
-        if candidates % WIDEST or not candidates:
-            return super().weights(cost)
-        weights = torch.empty_like(cost)
-        scratch = cost.new_empty(candidates)
-        self._kernels.call(
-            "faultpath_weights",
-            lend("cost", cost, scenes, candidates),
-            lend("scale", self._scale, 2),
-            *(scenes, candidates),
-            lend("scratch", scratch, candidates),
-            lend("weights", weights, scenes, candidates),
-        )
-        return weights
+    Raises:
+        ValueError: A tensor is not what the kernel takes; see `lend`.
+    """
+    scenes, count = cost.shape
+    found, scratch = torch.empty_like(cost), cost.new_empty(count)
+    kernels.call(
+        "faultpath_weights",
+        lend("cost", cost.contiguous(), scenes, count),
+        (ctypes.c_float * 2)(fraction, least),
+        *(scenes, count),
+        lend("scratch", scratch, count),
+        lend("weights", found, scenes, count),
+    )
+    return found
 
 
-class CompiledMean:
-    """The mean of candidates under weights."""
+def mean(kernels: Kernels, commands: Tensor, weight: Tensor) -> Tensor:
+    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`.
 
-    def __init__(self, kernels: Kernels) -> None:
-        self._kernels = kernels
-
-    def __call__(self, commands: Tensor, weight: Tensor) -> Tensor:
-        """See `planner.mppi.weighted_mean`."""
-        steps, channels, scenes, candidates = commands.shape
-        if candidates % WIDEST:
-            return (commands * weight).sum(-1)
-        plan = commands.new_empty(steps, channels, scenes)
-        self._kernels.call(
-            "faultpath_mean",
-            lend("commands", commands.contiguous(), *commands.shape),
-            lend("weight", weight.contiguous(), scenes, candidates),
-            *(steps * channels, scenes, candidates),
-            lend("plan", plan, steps, channels, scenes),
-        )
-        return plan
+    K in whole vectors. Raises `ValueError` for a tensor that the kernel does not take; see `lend`.
+    """
+    steps, channels, scenes, count = commands.shape
+    plan = commands.new_empty(steps, channels, scenes)
+    kernels.call(
+        "faultpath_mean",
+        lend("commands", commands.contiguous(), *commands.shape),
+        lend("weight", weight.contiguous(), scenes, count),
+        *(steps * channels, scenes, count),
+        lend("plan", plan, steps, channels, scenes),
+    )
+    return plan

@@ -1,15 +1,17 @@
 """The encoder of depth images, compiled."""
 
 import ctypes
+from collections.abc import Sequence
 
 import torch
-from torch import Tensor, nn
+from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
-from faultpath.quadrotor.native.lending import is_exactly, lend, unlike
+from faultpath.quadrotor.native.lending import Lent, lend
 from faultpath.quadrotor.native.library import Kernels
-from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
-from faultpath.quadrotor.perception.clearance import CODE, INVERSE_SCALE, NEAREST_M, ClearanceModel
+
+HEIGHT, WIDTH, CODE = 36, 64, 64
+SHAPES = ((16, 2, 5, 5), (32, 16, 3, 3), (48, 32, 3, 3), (128, 48 * 5 * 8), (CODE, 128))
+"""Of the weights: three convolutions and two dense layers; fixed in `encoder.cpp`, as is `CODE`."""
 
 _LAYERS = ("first", "second", "third", "dense", "last")
 _BLOCK = 32
@@ -26,49 +28,51 @@ class _Encoder(ctypes.Structure):
     )
 
 
-def misfit(model: ClearanceModel) -> str:
-    """Return in words why the kernels of clearance do not stand for a model; empty if they do."""
-    if not is_exactly(model, ClearanceModel):
-        return unlike(ClearanceModel, model)
-    with torch.device("meta"):
-        known = ClearanceModel()
-    kinds = [type(part) for part in known.modules()]
-    parts = list(model.modules())
-    if len(parts) != len(kinds) or not all(map(is_exactly, parts, kinds)):
-        return "its layers are others"
-    theirs = {name: part.shape for name, part in known.state_dict().items()}
-    if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
-        return "its layers have other sizes"
-    if any(p.dtype != torch.float32 or not at_hand(p.device) for p in model.parameters()):
-        return "its weights are not float32 on the CPU"
-    return ""
-
-
 class CompiledEncoder:
-    """Encodes depth images one by one, with the weights that a model has when this is made."""
+    """Encodes depth images one by one, with a copy of the weights."""
 
-    @torch.no_grad()
-    def __init__(self, kernels: Kernels, model: ClearanceModel) -> None:
-        """Copy the weights; raises `ValueError` for a model of another form, see `misfit`."""
-        if wrong := misfit(model):
-            raise ValueError(f"no compiled encoder of this model: {wrong}")
+    def __init__(
+        self,
+        kernels: Kernels,
+        weights: Sequence[Tensor],
+        biases: Sequence[Tensor],
+        inputs: tuple[float, float, float],
+    ) -> None:
+        """Copy the weights.
+
+        Args:
+            kernels: What encodes.
+            weights: Of `SHAPES`.
+            biases: One for each output of each layer.
+            inputs: A range r, a nearest depth n and a scale s: an image of depths d enters as d / r
+                and as s / max(d, n).
+
+        Raises:
+            ValueError: A tensor is not what the kernel takes; see `lend`.
+        """
         self._kernels = kernels
-        modules = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
-        *convolutions, dense, last = (module.weight for module in modules)
-        third = convolutions[-1].shape[0]
+        parts = [
+            (f"{kind} of layer {i}", tensor.detach(), shape)
+            for kind, tensors, shapes in (
+                ("weights", weights, SHAPES),
+                ("biases", biases, [shape[:1] for shape in SHAPES]),
+            )
+            for i, (tensor, shape) in enumerate(zip(tensors, shapes, strict=True))
+        ]
+        for name, tensor, shape in parts:
+            lend(name, tensor.contiguous(), *shape)
+        *convolutions, dense, last = (tensor for _, tensor, _ in parts[: len(SHAPES)])
         # The kernel's features have their channels last, the model's flattened ones first.
-        turned = dense.unflatten(1, (third, -1)).transpose(1, 2).flatten(1)
-        weights = [weight.permute(2, 3, 1, 0) for weight in convolutions]
-        weights += [w.unflatten(0, (-1, _BLOCK)).transpose(1, 2) for w in (turned, last)]
-        biases = [module.bias for module in modules]
+        turned = dense.unflatten(1, (SHAPES[2][0], -1)).transpose(1, 2).flatten(1)
+        laid = [weight.permute(2, 3, 1, 0) for weight in convolutions]
+        laid += [w.unflatten(0, (-1, _BLOCK)).transpose(1, 2) for w in (turned, last)]
+        laid += [tensor for _, tensor, _ in parts[len(SHAPES) :]]
         # The kernel holds addresses only.
-        parts = [*weights, *(bias for bias in biases if bias is not None)]
-        self._kept = [p.detach().clone(memory_format=torch.contiguous_format) for p in parts]
-        addresses = [part.data_ptr() for part in self._kept]
-        self._table = _Encoder(*addresses, RANGE_M, NEAREST_M, INVERSE_SCALE)
+        self._kept = [Lent(p.clone(memory_format=torch.contiguous_format)) for p in laid]
+        self._table = _Encoder(*(part.address for part in self._kept), *inputs)
 
     def __call__(self, depth: Tensor) -> Tensor:
-        """Return the codes `[64, S]` of images `[S, 36, 64]`, m; see `ClearanceModel.encode`.
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m.
 
         Raises `ValueError` for images of another size; see `lend`.
         """

@@ -26,7 +26,7 @@ SETS = ("avx512", "avx2", "baseline")
 _FUSING = {"avx512", "avx2"}
 
 WIDEST = 16
-"""Numbers in the widest vector: some kernels take whole vectors of candidates only."""
+"""Numbers in the widest vector."""
 
 
 @dataclass(frozen=True)
@@ -101,6 +101,26 @@ def _chosen(wanted: str) -> Kernels | None:
 def kernels_on(device: torch.device) -> Kernels | None:
     """Return the kernels for tensors on `device`: off the CPU the portable path runs."""
     return kernels() if at_hand(device) else None
+
+
+def kernels_for(*tensors: Tensor) -> Kernels | None:
+    """Return the kernels for these tensors.
+
+    The portable path runs for any that is in another precision or off the CPU, and where a gradient
+    should flow through one.
+    """
+    learning = torch.is_grad_enabled()
+    for tensor in tensors:
+        if tensor.dtype != torch.float32 or (learning and tensor.requires_grad):
+            return None
+        if not at_hand(tensor.device):
+            return None
+    return kernels()
+
+
+def whole_vectors(count: int) -> bool:
+    """Return whether so many candidates fill whole vectors: some kernels take no others."""
+    return count > 0 and count % WIDEST == 0
 
 
 def numerics() -> str:

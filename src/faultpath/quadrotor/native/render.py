@@ -7,7 +7,6 @@ from torch import Tensor
 
 from faultpath.quadrotor.native.lending import lend
 from faultpath.quadrotor.native.library import WIDEST, Kernels
-from faultpath.quadrotor.scenes.geometry import Geometry
 
 _SOLID = 12
 """Numbers of a `Solid` in `render_view.hpp`."""
@@ -34,8 +33,7 @@ class CompiledRenderer:
     def __init__(
         self,
         kernels: Kernels,
-        geometry: Geometry,
-        heights: tuple[Tensor, Tensor],
+        solids: Tensor,
         slopes: tuple[Tensor, Tensor],
         planes: Tensor,
         range_m: float,
@@ -44,8 +42,9 @@ class CompiledRenderer:
 
         Args:
             kernels: What draws.
-            geometry: K prisms a scene, the arena first.
-            heights: From which to which height above its centre a prism can be seen, `[K, B]`, m.
+            solids: K prisms a scene, the arena first, `[12, K, B]`: cosine and sine of the yaw, the
+                centre along the prism's axes, half extents, rounding, sign, and from which to which
+                height above its centre it can be seen; m, float64.
             slopes: How far the pixels' rays go left `[64]` and up `[36]` per metre forward.
             planes: Inward normals of the view and their offsets, `[6, 4]`.
             range_m: What a pixel reads that sees nothing.
@@ -55,18 +54,9 @@ class CompiledRenderer:
                 is no prism, or a tensor is not what the kernel takes; see `lend`.
         """
         self._kernels = kernels
-        rows = (
-            geometry.along_x[:1],  # the cosine of each prism's yaw
-            geometry.along_y[:1],  # and its sine
-            geometry.offset,
-            geometry.half,
-            geometry.rounding[None],
-            geometry.sign[None],
-            *(height[None] for height in heights),
-        )
-        solids = torch.cat(rows).permute(2, 1, 0).contiguous()  # `Solid` of the same header
-        count, scenes = geometry.sign.shape
-        self._solids = lend("solids", solids, scenes, count, _SOLID, dtype=torch.float64)
+        _, count, scenes = solids.shape
+        laid = solids.permute(2, 1, 0).contiguous()
+        self._solids = lend("solids", laid, scenes, count, _SOLID, dtype=torch.float64)
         left, up = (slope.float().contiguous() for slope in slopes)
         self._shape = (len(up), len(left))
         if not count or not len(up) or not 0 < len(left) <= _WIDEST_IMAGE or len(left) % WIDEST:

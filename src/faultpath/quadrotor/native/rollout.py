@@ -2,34 +2,96 @@
 
 import ctypes
 import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from enum import IntEnum
+from types import MappingProxyType
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.coverage import uncovered
+from faultpath.quadrotor.device import at_hand
 from faultpath.quadrotor.native.lending import Lent, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
-from faultpath.quadrotor.predictors import (
-    AnchoredPredictor,
-    KinematicIntegrator,
-    LatentNetwork,
-    Predictor,
-    PredictorInputs,
-    UnanchoredPredictor,
-)
-from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
-from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, LATENT, FoldedNetwork
-from faultpath.quadrotor.predictors.unanchored import OUTPUTS, UnanchoredNetwork
-from faultpath.quadrotor.rollout import Rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+
+LATENT, EMBEDDING, COMMAND, INCREMENTS = 32, 16, 4, 12
+MOST_HIDDEN = 128
+"""Fixed in `rollout.cpp`, as are the sizes below."""
 
 _LOG2_E = 1 / math.log(2)
 """The kernel takes powers of two: scales of the unit's logistic functions go into its weights."""
+_SCALES = {"gates": -_LOG2_E, "candidate": -2 * _LOG2_E, "remembered": -2 * _LOG2_E}
 
-_KINEMATIC, _ANCHORED, _UNANCHORED = range(3)
+
+class Kind(IntEnum):
+    """What a step is made of; `Kind` of `rollout.cpp`."""
+
+    KINEMATIC = 0
+    """The integrator."""
+    ANCHORED = 1
+    """The integrator, with bounded accelerations of a network added."""
+    UNANCHORED = 2
+    """Increments of a network."""
+
+
+_SIZES = {Kind.ANCHORED: (19, 6), Kind.UNANCHORED: (21, INCREMENTS)}
+"""Features that a network sees beside its latent, and its outputs."""
 _LAYERS = ("embed", "gates", "candidate", "remembered", "first", "second", "last")
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of a predictor but for its network; what its kind has no use for stays zero."""
+
+    kind: Kind
+    gravity: float
+    windy: bool = False
+    """The integrator has its wind term."""
+    dragging: bool = False
+    dt: float = 0.0
+    keep: float = 0.0
+    """What is left of a rate error at the end of the step."""
+    mean: float = 0.0
+    """And on average over it."""
+    linear_bound: float = 0.0
+    angular_bound: float = 0.0
+    drag: tuple[float, ...] = (0.0, 0.0, 0.0)
+    spread: tuple[float, ...] = (0.0,) * INCREMENTS
+    """Of each increment, in units of the network's outputs."""
+
+
+class Rolled(NamedTuple):
+    """Where candidates led."""
+
+    positions: Tensor
+    """`[3, S, H, K]`, m."""
+    velocities: Tensor
+    """`[3, S, H, K]`, m/s."""
+    rotation: Tensor
+    """At the end, `[3, 3, S, K]`."""
+    rate: Tensor
+    """At the end, `[3, S, K]`, rad/s."""
+
+
+_ROWS: Mapping[str, tuple[int, ...]] = MappingProxyType(
+    {
+        "position": (3,),
+        "velocity": (3,),
+        "rotation": (3, 3),
+        "rate": (3,),
+        "mass": (),
+        "thrust_scale": (),
+        "wind": (3,),
+        "wind_mass": (),
+        "thrust_mass": (),
+        "shown_mass": (),
+        "shown_scale": (),
+        "code": (LATENT,),
+    }
+)
+"""Rows of each input, in the order of `Inputs` of `rollout.cpp`."""
 
 
 class _Layer(ctypes.Structure):
@@ -52,50 +114,69 @@ class _Model(ctypes.Structure):
         ("linear_bound", ctypes.c_float),
         ("angular_bound", ctypes.c_float),
         ("drag", ctypes.c_float * 3),
-        ("spread", ctypes.c_float * OUTPUTS),
+        ("spread", ctypes.c_float * INCREMENTS),
     )
 
 
 class _Inputs(ctypes.Structure):
     """`Inputs` of `rollout.cpp`."""
 
-    _fields_ = tuple(
-        (name, ctypes.c_void_p)
-        for name in (
-            *("position", "velocity", "rotation", "rate", "mass", "thrust_scale", "wind"),
-            *("wind_mass", "thrust_mass", "shown_mass", "shown_scale", "code"),
-        )
-    )
+    _fields_ = tuple((name, ctypes.c_void_p) for name in _ROWS)
 
 
-class CompiledRollout:
-    """Rolls candidates of one predictor out, with the weights that it has when this is made."""
+def misfit(kind: Kind, layers: Mapping[str, Tensor]) -> str:
+    """Return in words why the kernel takes no network of these layers; empty if it does.
 
-    def __init__(self, kernels: Kernels, predictor: Predictor) -> None:
-        """Copy the predictor's weights; raises `ValueError` where `uncovered` has a reason."""
-        if why := uncovered(predictor):
-            raise ValueError(f"no compiled rollout of {type(predictor).__name__}: {why}")
+    A layer is `[outputs, 1 + inputs]`, its biases first. The gates read embedding and latent in
+    this order, the first hidden layer latent and features.
+    """
+    if kind is Kind.KINEMATIC:
+        return "an integrator has no layers" if layers else ""
+    if any(w.dtype != torch.float32 or not at_hand(w.device) for w in layers.values()):
+        return "its weights are not float32 on the CPU"
+    first, second = len(layers["first"]), len(layers["second"])
+    if max(first, second) > MOST_HIDDEN:
+        return f"its kernel has room for {MOST_HIDDEN} hidden units, not {max(first, second)}"
+    features, outputs = _SIZES[kind]
+    shapes = {
+        "embed": (EMBEDDING, 1 + COMMAND),
+        "gates": (2 * LATENT, 1 + EMBEDDING + LATENT),
+        "candidate": (LATENT, 1 + EMBEDDING),
+        "remembered": (LATENT, 1 + LATENT),
+        "first": (first, 1 + LATENT + features),
+        "second": (second, 1 + first),
+        "last": (outputs, 1 + second),
+    }
+    wrong = [name for name, shape in shapes.items() if layers[name].shape != shape]
+    return f"the size of its layer '{wrong[0]}' is another" if wrong else ""
+
+
+class HorizonLoop:
+    """Rolls candidates out, with a copy of the layers that it is made of."""
+
+    def __init__(self, kernels: Kernels, step: Step, layers: Mapping[str, Tensor]) -> None:
+        """Copy the layers; raises `ValueError` where `misfit` has a reason."""
+        if why := misfit(step.kind, layers):
+            raise ValueError(f"no compiled rollout: {why}")
         self._kernels = kernels
         self._kept: list[Lent] = []  # the kernel holds addresses only
-        self._model = _Model(gravity=GRAVITY_MPS2)
-        self._reads = predictor.reads
-        if isinstance(predictor, UnanchoredPredictor):
-            self._model.kind = _UNANCHORED
-            self._set_network(predictor.network)
-        elif isinstance(predictor, AnchoredPredictor):
-            self._model.kind = _ANCHORED
-            self._set_network(predictor.network)
-            self._set_kinematics(predictor.kinematics)
-        elif isinstance(predictor, KinematicIntegrator):
-            self._model.kind = _KINEMATIC
-            self._set_kinematics(predictor)
+        self._model = _Model(**asdict(step))
+        for name, weights in layers.items():
+            packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
+            lent = lend(name, packed, *packed.shape)
+            self._kept.append(lent)
+            blocks, inputs, _ = packed.shape
+            setattr(self._model, name, _Layer(lent.address, inputs - 1, blocks * BLOCK))
+        self._reads = _reads(step)
 
-    def __call__(self, inputs: PredictorInputs, commands: Tensor) -> Rollout:
-        """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`.
+    def __call__(self, inputs: Mapping[str, Tensor | None], commands: Tensor) -> Rolled:
+        """Roll `commands` `[H, 4, S, K]` out from what is known of S vehicles, `[*rows, S, 1]`.
+
+        Inputs that the step has no use for are left out.
 
         Raises:
-            ValueError: There is no step, the predictor was not told what it reads, or a tensor is
-                not what the kernel takes; see `lend`.
+            ValueError: There is no step, an input is missing, or a tensor is not what the kernel
+                takes; see `lend`.
         """
         horizon, _, scenes, candidates = commands.shape
         if not horizon:
@@ -103,88 +184,35 @@ class CompiledRollout:
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        told = _told(inputs, self._reads, scenes)
+        given = [self._lend(name, inputs.get(name), scenes) for name in _ROWS]
         self._kernels.call(
             "faultpath_roll",
             ctypes.byref(self._model),
-            ctypes.byref(_Inputs(*(part if part is None else part.address for part in told))),
-            lend("commands", commands.contiguous(), horizon, 4, scenes, candidates),
+            ctypes.byref(_Inputs(*(part if part is None else part.address for part in given))),
+            lend("commands", commands.contiguous(), horizon, COMMAND, scenes, candidates),
             *(horizon, scenes, candidates),
             lend("positions", positions, 3, scenes, horizon, candidates),
             lend("velocities", velocities, 3, scenes, horizon, candidates),
             lend("ends", ends, 12, scenes, candidates),
         )
-        rotation = ends[:9].unflatten(0, (3, 3))
-        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, ends[9:])
-        return Rollout(positions, velocities, final)
+        return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
 
-    def _set_kinematics(self, integrator: KinematicIntegrator) -> None:
-        self._model.windy = "wind_map" in integrator.reads
-        self._model.dragging = integrator.drag
-        self._model.dt, self._model.keep, self._model.mean = integrator.step_constants
-        self._model.drag[:] = integrator.air.coefficients_kgps
-        self._model.linear_bound = LINEAR_BOUND_MPS2
-        self._model.angular_bound = ANGULAR_BOUND_RADPS2
-
-    @torch.no_grad()
-    def _set_network(self, network: LatentNetwork) -> None:
-        for name, (weights, block) in _layers(network.fold()).items():
-            packed = pack(weights, block)
-            lent = lend(name, packed, *packed.shape)
-            self._kept.append(lent)
-            outputs = packed.shape[0] * block
-            setattr(self._model, name, _Layer(lent.address, packed.shape[1] - 1, outputs))
-        if isinstance(network, UnanchoredNetwork):
-            self._model.spread[:] = network.increment_std.flatten().tolist()
+    def _lend(self, name: str, value: Tensor | None, scenes: int) -> Lent | None:
+        if name not in self._reads:
+            return None
+        if value is None:
+            raise ValueError(f"compiled rollout: the predictor reads '{name}' and was told none")
+        return lend(name, value.contiguous(), *_ROWS[name], scenes, 1)
 
 
-def _layers(folded: FoldedNetwork) -> dict[str, tuple[Tensor, int]]:
-    """Return each layer as (bias, weights) columns without the rows that pass a one on."""
-    split = ACTION_EMBEDDING
-    gates, whole = folded.gates, (folded.first, folded.second)
-    first, second = (_bias_first(layer[:-1]) for layer in whole)
-    gates = torch.cat((gates[:, split : split + 1], gates[:, :split], gates[:, split + 1 :]), 1)
-    return {
-        "embed": (_bias_first(folded.embed[:-1]), BLOCK),
-        "gates": (gates * -_LOG2_E, BLOCK),
-        "candidate": (_bias_first(folded.candidate) * (-2 * _LOG2_E), BLOCK),
-        "remembered": (folded.remembered * (-2 * _LOG2_E), BLOCK),
-        "first": (first, BLOCK),
-        "second": (second, BLOCK),
-        "last": (_bias_first(folded.last), BLOCK),
-    }
-
-
-def _bias_first(weights: Tensor) -> Tensor:
-    return weights.roll(1, dims=1)
-
-
-def _told(inputs: PredictorInputs, reads: frozenset[str], scenes: int) -> tuple[Lent | None, ...]:
-    """Return the tensors of `Inputs` of `rollout.cpp`, each `[rows, S]` in memory.
-
-    What the predictor does not read is left out; `ValueError` where it is told less than it reads.
-    """
-    state, dynamics, shown = inputs.state, inputs.dynamics, inputs.conditioning
-    told: tuple[tuple[str, str, Tensor | None, tuple[int, ...]], ...] = (
-        ("position", "", state.position, (3,)),
-        ("velocity", "", state.velocity, (3,)),
-        ("rotation", "", state.rotation, (3, 3)),
-        ("rate", "", state.rate, (3,)),
-        ("mass", "dynamics", dynamics and dynamics.mass_kg, ()),
-        ("thrust scale", "dynamics", dynamics and dynamics.thrust_scale, ()),
-        ("wind", "wind_map", inputs.wind_mps, (3,)),
-        ("mass of the wind map", "wind_map", inputs.wind_map_mass_kg, ()),
-        ("mass of the thrust", "normalise_thrust", inputs.thrust_mass_kg, ()),
-        ("mass shown", "features", shown and shown.mass_kg, ()),
-        ("thrust scale shown", "features", shown and shown.thrust_scale, ()),
-        ("history code", "latent", inputs.code, (LATENT,)),
-    )
-    found: list[Lent | None] = []
-    for name, place, part, rows in told:
-        if place and place not in reads:
-            found.append(None)
-        elif part is None:
-            raise ValueError(f"compiled rollout: the predictor reads {name} and was told none")
-        else:
-            found.append(lend(name, part.contiguous(), *rows, scenes, 1))
-    return tuple(found)
+def _reads(step: Step) -> frozenset[str]:
+    reads = {"position", "velocity", "rotation", "rate"}
+    if step.kind is not Kind.UNANCHORED:
+        reads |= {"mass", "thrust_scale"}
+    if step.windy:
+        reads |= {"wind", "wind_mass"}
+    if step.kind is not Kind.KINEMATIC:
+        reads |= {"thrust_mass", "code"}
+    if step.kind is Kind.UNANCHORED:
+        reads |= {"shown_mass", "shown_scale"}
+    return frozenset(reads)

@@ -1,68 +1,76 @@
-"""Noise and candidates of the planner, compiled."""
+"""Noise and candidates of a sampling planner, compiled."""
 
-import math
+import ctypes
 from collections.abc import Sequence
-from typing import TypeGuard
 
-import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
-from faultpath.quadrotor.native.lending import is_exactly, lend
-from faultpath.quadrotor.native.library import WIDEST, Kernels
-from faultpath.quadrotor.planner.sampler import AutoregressiveSampler
-from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
-from faultpath.streams import key, words
+from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.library import Kernels
 
 
-class CompiledSampler(AutoregressiveSampler):
-    """The autoregressive sampler with its transcendental functions and passes compiled."""
+def noise(
+    kernels: Kernels,
+    keys: Tensor,
+    step: int,
+    size: tuple[int, int],
+    correlation: tuple[float, float],
+) -> Tensor:
+    """Return normals `[H, 4, S, K]`, correlated along the horizon; candidate 0 has none.
 
-    def __init__(self, kernels: Kernels, sampler: AutoregressiveSampler) -> None:
-        super().__init__(sampler.settings)
-        self._kernels = kernels
-        rho = self.settings.correlation
-        self._correlation = torch.tensor([rho, math.sqrt(1 - rho**2)])
-        self._sigma = torch.tensor([self.settings.thrust_sigma, *self.settings.rate_sigma_radps])
-        numbers = 4 * self.settings.horizon * self.settings.candidates
-        self._scratch = torch.empty(numbers, dtype=torch.int32)
-        self._limit = torch.tensor(RATE_LIMIT_RADPS, dtype=torch.float32)
+    Args:
+        kernels: Compiled kernels.
+        keys: Of the Philox stream of each scene, `[S, 2]`, uint64.
+        step: Which part of the streams.
+        size: Steps of the horizon H and candidates K; whole vectors.
+        correlation: What a step keeps of the one before, and how much of it is drawn afresh.
 
-    @staticmethod
-    def covers(sampler: object) -> TypeGuard[AutoregressiveSampler]:
-        """Return whether `sampler` is one that this can stand for."""
-        if not is_exactly(sampler, AutoregressiveSampler):
-            return False
-        return sampler.settings.candidates % WIDEST == 0
+    Raises:
+        ValueError: A tensor is not what the kernel takes; see `lend`.
+    """
+    horizon, candidates = size
+    scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
+    drawn = torch.empty(horizon, 4, len(keys), candidates)
+    kernels.call(
+        "faultpath_noise",
+        lend("keys", keys, len(keys), 2, dtype=torch.uint64),
+        *(step, horizon, len(keys), candidates),
+        (ctypes.c_float * 2)(*correlation),
+        lend("scratch", scratch, len(scratch), dtype=torch.int32),
+        lend("noise", drawn, *drawn.shape),
+    )
+    return drawn
 
-    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
-        """See `Sampler.noise`."""
-        horizon, candidates = self.settings.horizon, self.settings.candidates
-        drawn = [words(key("planner", scene, seed)) for scene in scenes]
-        keys = np.array(drawn, dtype=np.uint64).reshape(-1, 2)
-        noise = torch.empty(horizon, 4, len(scenes), candidates)
-        self._kernels.call(
-            "faultpath_noise",
-            lend("keys", torch.from_numpy(keys), len(scenes), 2, dtype=torch.uint64),
-            *(step, horizon, len(scenes), candidates),
-            lend("correlation", self._correlation, 2),
-            lend("scratch", self._scratch, 4 * horizon * candidates, dtype=torch.int32),
-            lend("noise", noise, horizon, 4, len(scenes), candidates),
-        )
-        return noise
 
-    def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
-        """See `Sampler.candidates`; `ValueError` for a tensor of another form, see `lend`."""
-        horizon, _, scenes, candidates = noise.shape
-        if not at_hand(noise.device) or candidates % WIDEST:
-            return super().candidates(plan, hover, noise)
-        self._kernels.call(
-            "faultpath_candidates",
-            lend("plan", plan.contiguous(), horizon, 4, scenes),
-            lend("hover", hover.contiguous(), scenes),
-            *(lend("sigma", self._sigma, 4), lend("limit", self._limit, 3)),
-            *(horizon, scenes, candidates),
-            lend("noise", noise, horizon, 4, scenes, candidates),
-        )
-        return noise
+def candidates(
+    kernels: Kernels,
+    plan: Tensor,
+    hover: Tensor,
+    sigma: Sequence[float],
+    limit: Sequence[float],
+    noise: Tensor,
+) -> Tensor:
+    """Turn `noise` `[H, 4, S, K]` into commands, in place, and return it.
+
+    Args:
+        kernels: Compiled kernels.
+        plan: `[H, 4, S]`.
+        hover: Thrust that holds each vehicle, `[S]`, N; thrusts stay between 0 and twice that.
+        sigma: Spread of the thrust as a fraction of `hover`, then of the three rates.
+        limit: Of the rates, rad/s.
+        noise: `[H, 4, S, K]`; K in whole vectors.
+
+    Raises:
+        ValueError: A tensor is not what the kernel takes; see `lend`.
+    """
+    horizon, _, scenes, count = noise.shape
+    kernels.call(
+        "faultpath_candidates",
+        lend("plan", plan.contiguous(), horizon, 4, scenes),
+        lend("hover", hover.contiguous(), scenes),
+        *((ctypes.c_float * 4)(*sigma), (ctypes.c_float * 3)(*limit)),
+        *(horizon, scenes, count),
+        lend("noise", noise, horizon, 4, scenes, count),
+    )
+    return noise

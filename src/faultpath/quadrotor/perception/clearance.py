@@ -13,7 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from faultpath.quadrotor.device import at_hand
-from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
+from faultpath.quadrotor.perception.camera import RANGE_M
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 CODE = 64
@@ -193,65 +193,3 @@ def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:
     hidden = torch.mm(first, hidden).clamp_min_(0)
     hidden = torch.mm(second, hidden).clamp_min_(0)
     return torch.mm(last, hidden)[0]
-
-
-UNSEEN_M = 0.25
-"""Most clearance that space outside the field of view is said to have: the collision radius and
-5 cm. A planner may go there where nothing better offers, and would rather look first (derived,
-docs/design/perception.md)."""
-NEAR_M = 0.4
-"""Around the camera the field of view does not matter: the vehicle has just come through there."""
-
-
-class DepthClearance:
-    """The clearance that the latest depth images show, for planners that ask about many points.
-
-    It sees what it is given and nothing else: images and the poses they were taken from. Points
-    that no pixel can show have a clearance of at most `UNSEEN_M`.
-    """
-
-    def __init__(self, model: ClearanceModel) -> None:
-        self._model = model.eval()
-        self._code: Tensor | None = None
-        self._frame: CaptureFrame | None = None
-
-    @torch.no_grad()
-    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
-        """Encode the images of all scenes: once a replan, however often it is queried.
-
-        Args:
-            depth: z-depth `[B, 36, 64]`, m.
-            position: World frame, m, `[B, 3]`.
-            rotation: Body to world, `[B, 3, 3]`.
-        """
-        self._code = self._model.encode(depth.float())
-        self._frame = CaptureFrame(
-            position.movedim(0, -1).float().contiguous(),
-            rotation.movedim(0, -1).float().contiguous(),
-        )
-
-    @torch.no_grad()
-    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
-        """Return the clearance at points `[3, S, N]` of some scenes, world frame, m: `[S, N]`.
-
-        A scene's values do not depend on which others are asked for. N is a multiple of 32.
-        """
-        if self._code is None or self._frame is None:
-            raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        chosen = torch.as_tensor(scenes)
-        local = self._frame.take(chosen).from_world(points)
-        seen = self._model.query(self._code[:, chosen].contiguous(), local)
-        return torch.where(in_view(local) | near(local), seen, seen.clamp(max=UNSEEN_M))
-
-
-def in_view(points: Tensor) -> Tensor:
-    """Return which points `[3, *b]` of the capture frame the camera's image covers, `[*b]`."""
-    x, y, z = points
-    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-    return (x > 0) & (y.abs() < left * x) & (z.abs() < up * x)
-
-
-def near(points: Tensor) -> Tensor:
-    """Return which points `[3, *b]` of the capture frame are within `NEAR_M`, `[*b]`."""
-    x, y, z = points
-    return (x * x).add_(y * y).add_(z * z) < NEAR_M**2

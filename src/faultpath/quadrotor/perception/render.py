@@ -127,8 +127,7 @@ class DepthRenderer:
         if kernels is not None and covered(self, DepthRenderer):
             self._compiled = CompiledRenderer(
                 kernels,
-                geometry,
-                (self._low, self._high),
+                torch.cat((geometry.numbers(), self._low[None], self._high[None])),
                 (left, up),
                 torch.cat((_PLANES, _OFFSETS[:, None]), 1),
                 RANGE_M,

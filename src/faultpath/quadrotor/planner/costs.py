@@ -7,6 +7,9 @@ import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native import costs
+from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -88,6 +91,35 @@ class NavigationCost:
 
     def __call__(self, scored: Scored) -> Tensor:
         """Return the cost `[S, K]`."""
+        rollout, commands = scored.rollout, scored.commands
+        paths = costs.Paths(
+            rollout.positions,
+            rollout.velocities,
+            rollout.final.rotation,
+            commands,
+            scored.clearance,
+            scored.goal,
+            scored.hover,
+        )
+        built = native.kernels_for(*paths)
+        if built is None or not self._has_kernel(commands):
+            return self._portable(scored)
+        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
+        return costs.cost(built, terms, isinstance(self.goal, RunningGoal), paths)
+
+    def _has_kernel(self, commands: Tensor) -> bool:
+        """Return whether the compiled kernel adds up what this cost does."""
+        goal = self.goal
+        kind = RunningGoal if isinstance(goal, RunningGoal) else TerminalGoal
+        return (
+            len(commands) > 0
+            and native.whole_vectors(commands.shape[-1])
+            and covered(self, NavigationCost)
+            and covered(goal, kind)
+            and covered(self.weights, CostWeights)
+        )
+
+    def _portable(self, scored: Scored) -> Tensor:
         w = self.weights
         cost = self.goal.distance(scored).mul_(w.goal)
         cost += self._risk(scored.clearance)

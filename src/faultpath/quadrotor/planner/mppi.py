@@ -1,17 +1,19 @@
 """Model predictive path integral control, batched over scenes and candidates."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native import costs
+from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.planner.costs import NavigationCost, Scored
 from faultpath.quadrotor.planner.sampler import Sampler
 from faultpath.quadrotor.predictors import Predictor, PredictorInputs
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.rollout import Roll, Rollout
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 
@@ -53,6 +55,15 @@ class ScaledTemperature(Temperature):
         half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
         return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=self.least)
 
+    def weights(self, cost: Tensor) -> Tensor:
+        """See `Temperature.weights`; the kernel sorts no more than it must."""
+        built = native.kernels_for(cost)
+        if built is None or not native.whole_vectors(cost.shape[1]):
+            return super().weights(cost)
+        if not covered(self, ScaledTemperature):
+            return super().weights(cost)
+        return costs.weights(built, cost, self.fraction, self.least)
+
 
 @dataclass(frozen=True)
 class Proposal:
@@ -65,16 +76,12 @@ class Proposal:
     """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
 
 
-Roll = Callable[[PredictorInputs, Tensor], Rollout]
-"""Rolls commands `[H, 4, S, K]` out from inputs of batch `[S, 1]`."""
-
-Mean = Callable[[Tensor, Tensor], Tensor]
-"""The mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
-
-
 def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
-    """Return the mean of commands; see `Mean`."""
-    return (commands * weight).sum(-1)
+    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
+    built = native.kernels_for(commands, weight)
+    if built is None or not native.whole_vectors(commands.shape[-1]):
+        return (commands * weight).sum(-1)
+    return costs.mean(built, commands, weight)
 
 
 class MPPI:
@@ -91,14 +98,12 @@ class MPPI:
         cost: NavigationCost,
         temperature: Temperature,
         roll: Roll,
-        mean: Mean = weighted_mean,
     ) -> None:
         self.predictor = predictor
         self.sampler = sampler
         self._cost = cost
         self._temperature = temperature
         self._roll = roll
-        self._mean = mean
 
     def initial_plan(self, hover: Tensor) -> Tensor:
         """Return the plan `[H, 4, S]` that hovers, for hover thrust `[S]`."""
@@ -119,7 +124,7 @@ class MPPI:
         """
         commands = proposal.commands
         cost = self._cost(Scored(proposal.rollout, commands, clearance, goal, proposal.hover))
-        return self._mean(commands, self._temperature.weights(cost))
+        return weighted_mean(commands, self._temperature.weights(cost))
 
 
 def shift(plan: Tensor) -> Tensor:

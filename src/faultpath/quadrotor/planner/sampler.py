@@ -9,8 +9,10 @@ import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
+from faultpath.quadrotor import native
+from faultpath.quadrotor.native import sampling
 from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
-from faultpath.streams import generator
+from faultpath.streams import generator, key, words
 
 
 class SamplerSettings(BaseModel):
@@ -42,9 +44,13 @@ class Sampler(ABC):
         bounds lie evenly around it: bounds that cut one side lift the mean plan and would hide
         one sign of a calibration fault.
         """
+        settings, built = self.settings, native.kernels_for(plan, hover, noise)
+        if built is not None and native.whole_vectors(noise.shape[-1]) and noise.is_contiguous():
+            sigma = (settings.thrust_sigma, *settings.rate_sigma_radps)
+            return sampling.candidates(built, plan, hover, sigma, RATE_LIMIT_RADPS, noise)
         scale = noise.new_empty(4, hover.shape[0], 1)
-        scale[0, :, 0] = self.settings.thrust_sigma * hover
-        for axis, sigma in enumerate(self.settings.rate_sigma_radps):
+        scale[0, :, 0] = settings.thrust_sigma * hover
+        for axis, sigma in enumerate(settings.rate_sigma_radps):
             scale[axis + 1] = sigma
         commands = noise.mul_(scale).add_(plan[..., None])
         thrust = commands[:, 0]
@@ -61,13 +67,19 @@ class AutoregressiveSampler(Sampler):
         self.settings = settings or SamplerSettings()
 
     def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
-        """See `Sampler.noise`."""
+        """See `Sampler.noise`. The host draws, whatever device plans."""
         shape = (self.settings.horizon, 4, self.settings.candidates)
+        rho = self.settings.correlation
+        built = native.kernels()
+        if built is not None and native.whole_vectors(shape[2]):
+            drawn = [words(key("planner", scene, seed)) for scene in scenes]
+            keys = torch.from_numpy(np.array(drawn, dtype=np.uint64).reshape(-1, 2))
+            kept = (rho, math.sqrt(1 - rho**2))
+            return sampling.noise(built, keys, step, (shape[0], shape[2]), kept)
         noise = torch.empty(shape[0], 4, len(scenes), shape[2])
         for i, scene in enumerate(scenes):
             draws = generator("planner", scene, seed, step)
             noise[:, :, i] = standard_normals(draws, math.prod(shape)).view(shape)
-        rho = self.settings.correlation
         noise[1:] *= (1 - rho**2) ** 0.5
         for h in range(1, shape[0]):
             noise[h].add_(noise[h - 1], alpha=rho)

@@ -148,6 +148,14 @@ class Geometry:
             sign=edge[1],
         )
 
+    def numbers(self) -> Tensor:
+        """Return each prism as kernels read it, `[10, K, B]`.
+
+        Cosine and sine of the yaw, offset, half extents, rounding and sign.
+        """
+        turn = (self.along_x[:1], self.along_y[:1])
+        return torch.cat((*turn, self.offset, self.half, self.rounding[None], self.sign[None]))
+
     def distance(self, points: Tensor) -> Tensor:
         """Return the signed distance of points to the nearest surface.
 

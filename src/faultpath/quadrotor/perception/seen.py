@@ -1,0 +1,126 @@
+"""The clearance that the latest depth images show, for planners that ask about many points."""
+
+from collections.abc import Sequence
+
+import torch
+from torch import Tensor, nn
+
+from faultpath.quadrotor import native
+from faultpath.quadrotor.device import CPU, at_hand
+from faultpath.quadrotor.native.clearance import Bounds, CompiledClearance
+from faultpath.quadrotor.native.encoder import CompiledEncoder
+from faultpath.quadrotor.native.lending import covered, is_exactly, tell_portable, unlike
+from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
+from faultpath.quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
+from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+
+UNSEEN_M = 0.25
+"""Most clearance that space outside the field of view is said to have: the collision radius and
+5 cm. A planner may go there where nothing better offers, and would rather look first (derived,
+docs/design/perception.md)."""
+NEAR_M = 0.4
+"""Around the camera the field of view does not matter: the vehicle has just come through there."""
+
+
+class DepthClearance:
+    """The clearance that the latest depth images show, for planners that ask about many points.
+
+    It sees what it is given and nothing else: images and the poses they were taken from. Points
+    that no pixel can show have a clearance of at most `UNSEEN_M`.
+    """
+
+    compiled: tuple[CompiledEncoder, CompiledClearance] | None
+    """What encodes images and answers for the model, if any: with the weights that it had then."""
+
+    def __init__(self, model: ClearanceModel, device: torch.device = CPU) -> None:
+        self._model = model.eval()
+        self._code: Tensor | None = None
+        self._position = self._rotation = torch.empty(0)
+        self.compiled = None
+        kernels = native.kernels_on(device)
+        if kernels is not None and covered(self, DepthClearance) and _has_kernels(model):
+            self.compiled = _encoder(kernels, model), _queries(kernels, model)
+
+    @torch.no_grad()
+    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
+        """Encode the images of all scenes: once a replan, however often it is queried.
+
+        Args:
+            depth: z-depth `[B, 36, 64]`, m.
+            position: World frame, m, `[B, 3]`.
+            rotation: Body to world, `[B, 3, 3]`.
+        """
+        encode = self._model.encode if self.compiled is None else self.compiled[0]
+        self._code = encode(depth.float())
+        self._position, self._rotation = position.float(), rotation.float()
+
+    @torch.no_grad()
+    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
+        """Return the clearance at points `[3, S, N]` of some scenes, world frame, m: `[S, N]`.
+
+        A scene's values do not depend on which others are asked for. N is a multiple of 32.
+        """
+        if self._code is None:
+            raise RuntimeError("nothing was captured yet: call `capture` before `query`")
+        chosen = torch.as_tensor(scenes)
+        code = self._code[:, chosen].contiguous()
+        position, rotation = self._position[chosen], self._rotation[chosen]
+        if self.compiled is not None:
+            return self.compiled[1](code, position, rotation, points)
+        frame = CaptureFrame(
+            position.movedim(0, -1).contiguous(), rotation.movedim(0, -1).contiguous()
+        )
+        local = frame.from_world(points)
+        seen = self._model.query(code, local)
+        return torch.where(in_view(local) | near(local), seen, seen.clamp(max=UNSEEN_M))
+
+
+def in_view(points: Tensor) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame the camera's image covers, `[*b]`."""
+    x, y, z = points
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    return (x > 0) & (y.abs() < left * x) & (z.abs() < up * x)
+
+
+def near(points: Tensor) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame are within `NEAR_M`, `[*b]`."""
+    x, y, z = points
+    return (x * x).add_(y * y).add_(z * z) < NEAR_M**2
+
+
+def _has_kernels(model: ClearanceModel) -> bool:
+    """Return whether the kernels stand for a model; say why where they do not."""
+    if why := _misfit(model):
+        tell_portable(f"The clearance model {type(model).__name__}", why)
+    return not why
+
+
+def _misfit(model: ClearanceModel) -> str:
+    if not is_exactly(model, ClearanceModel):
+        return unlike(ClearanceModel, model)
+    with torch.device("meta"):
+        known = ClearanceModel()
+    kinds = [type(part) for part in known.modules()]
+    parts = list(model.modules())
+    if len(parts) != len(kinds) or not all(map(is_exactly, parts, kinds)):
+        return "its layers are others"
+    theirs = {name: part.shape for name, part in known.state_dict().items()}
+    if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
+        return "its layers have other sizes"
+    if any(p.dtype != torch.float32 or not at_hand(p.device) for p in model.parameters()):
+        return "its weights are not float32 on the CPU"
+    return ""
+
+
+def _encoder(kernels: native.Kernels, model: ClearanceModel) -> CompiledEncoder:
+    layers = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
+    weights = [layer.weight for layer in layers]
+    biases = [layer.bias for layer in layers if layer.bias is not None]
+    return CompiledEncoder(kernels, weights, biases, (RANGE_M, NEAREST_M, INVERSE_SCALE))
+
+
+def _queries(kernels: native.Kernels, model: ClearanceModel) -> CompiledClearance:
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    bounds = Bounds(LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M, left, up)
+    makers = [torch.cat((each.weight, each.bias[:, None]), 1) for each, _ in model.makers()]
+    return CompiledClearance(kernels, makers, bounds)
