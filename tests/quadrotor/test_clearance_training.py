@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint
 from faultpath.quadrotor.perception.camera import mounted
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
@@ -20,7 +21,6 @@ from faultpath.quadrotor.perception.labels import (
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
-from faultpath.quadrotor.training.checkpoint import checkpoint_path, load_checkpoint
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
 from faultpath.quadrotor.training.clearance_task import (
     VALIDATION_FROM,

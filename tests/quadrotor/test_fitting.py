@@ -9,8 +9,8 @@ import torch
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
+from faultpath.quadrotor.card import read_card
 from faultpath.quadrotor.training import fitting
-from faultpath.quadrotor.training.card import read_card
 from faultpath.quadrotor.training.fitting import Diverged, fit, forget
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.store.atomic import write
@@ -78,7 +78,7 @@ def test_a_stop_at_any_write_loses_no_bits(
 
         with monkeypatch.context() as patch:
             patch.setattr("faultpath.quadrotor.training.journal.write", stopping)
-            patch.setattr("faultpath.quadrotor.training.checkpoint.write", stopping)
+            patch.setattr("faultpath.quadrotor.checkpoint.write", stopping)
             try:
                 _fit(Toy(), folder)
             except KeyboardInterrupt:

@@ -11,14 +11,14 @@ from fitting_toys import Net, Toy
 from safetensors.torch import save_file
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training import checkpoint
-from faultpath.quadrotor.training.checkpoint import (
+from faultpath.quadrotor.checkpoint import (
     checkpoint_path,
     load_checkpoint,
     read_card,
     ship,
     shipped_folder,
 )
+from faultpath.quadrotor.training import checkpoint
 from faultpath.quadrotor.training.fitting import fit
 
 

@@ -12,11 +12,11 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.card import stem
+from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork
-from faultpath.quadrotor.training.card import stem
-from faultpath.quadrotor.training.checkpoint import save_checkpoint
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.quality import Checkpoints, measure
 from faultpath.quadrotor.training.quality_intervals import Episodes

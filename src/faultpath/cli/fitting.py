@@ -18,7 +18,7 @@ from faultpath.cli.terminal import SafeConsole
 from faultpath.errors import Stopped
 
 if TYPE_CHECKING:
-    from faultpath.quadrotor.training.card import ModelCard
+    from faultpath.quadrotor.card import ModelCard
     from faultpath.quadrotor.training.catalogue import Job
     from faultpath.quadrotor.training.jobs import Report
     from faultpath.quadrotor.training.pace import Overview

@@ -45,16 +45,7 @@ class Contact:
     @cached_property
     def solids(self) -> Tensor:
         """The prisms as the compiled check reads them, `[K, 10, L]`: `Solid` names the rows."""
-        prisms = self.geometry
-        rows = (
-            prisms.along_x[:1],  # the cosine of each prism's yaw
-            prisms.along_y[:1],  # and its sine
-            prisms.offset,
-            prisms.half,
-            prisms.rounding[None],
-            prisms.sign[None],
-        )
-        return torch.cat(rows).transpose(0, 1).contiguous()
+        return self.geometry.numbers().transpose(0, 1).contiguous()
 
     def begin(self, state: State) -> Progress:
         """Return the progress of trials that start at `state`."""

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import torch
 
+from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.perception import ClearanceModel
 from faultpath.quadrotor.predictors import (
@@ -22,7 +23,6 @@ from faultpath.quadrotor.reconstruction import (
     RecurrentReconstruction,
     WindNetwork,
 )
-from faultpath.quadrotor.training.checkpoint import checkpoint_path, load_checkpoint
 
 PredictorLoader = Callable[[str, int | None], Predictor]
 ReconstructionLoader = Callable[[str, int | None], Reconstruction]

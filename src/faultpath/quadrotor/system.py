@@ -14,6 +14,7 @@ from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.quadrotor import native
+from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
 from faultpath.quadrotor.device import CPU, DeviceName, arithmetic, describe
 from faultpath.quadrotor.flight import Flight
@@ -27,7 +28,6 @@ from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.training.checkpoint import shipped_folder
 from faultpath.quadrotor.variants import variant, wirings
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.world import World

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.card import stem
+from faultpath.quadrotor.card import stem
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.training.task import Task

@@ -21,8 +21,8 @@ from torch.optim import Adam, AdamW, Optimizer
 
 import faultpath
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.card import read_card, stem
-from faultpath.quadrotor.training.checkpoint import digest, save_checkpoint, tensors
+from faultpath.quadrotor.card import read_card, stem
+from faultpath.quadrotor.checkpoint import digest, save_checkpoint, tensors
 from faultpath.quadrotor.training.journal import (
     History,
     journal_path,

@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.card import ModelCard, read_card
+from faultpath.quadrotor.card import ModelCard, read_card
+from faultpath.quadrotor.checkpoint import ship
 from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.checkpoint import ship
 from faultpath.quadrotor.training.fitting import Moment, forget
 from faultpath.quadrotor.training.job_pools import check_pools
 from faultpath.quadrotor.training.pace import Overview, Pace

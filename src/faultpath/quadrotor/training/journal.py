@@ -14,7 +14,7 @@ from safetensors.torch import save
 from torch import Tensor, nn
 from torch.optim import Optimizer
 
-from faultpath.quadrotor.training.checkpoint import tensors
+from faultpath.quadrotor.checkpoint import tensors
 from faultpath.store.atomic import write
 
 FORMAT = "faultpath-fit/1"

@@ -8,6 +8,12 @@ from pydantic import JsonValue
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import models
+from faultpath.quadrotor.card import ModelCard, read_card, stem
+from faultpath.quadrotor.checkpoint import (
+    checkpoint_path,
+    load_checkpoint,
+    shipped_folder,
+)
 from faultpath.quadrotor.predictors import AnchoredPredictor, Predictor, UnanchoredPredictor
 from faultpath.quadrotor.reconstruction import (
     Reconstruction,
@@ -15,13 +21,7 @@ from faultpath.quadrotor.reconstruction import (
     WindNetwork,
 )
 from faultpath.quadrotor.training import quality_predictors, quality_reconstructions
-from faultpath.quadrotor.training.card import ModelCard, read_card, stem
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
-from faultpath.quadrotor.training.checkpoint import (
-    checkpoint_path,
-    load_checkpoint,
-    shipped_folder,
-)
 from faultpath.quadrotor.training.pool import Pool, read_pool
 from faultpath.quadrotor.training.quality_intervals import RESAMPLES, Episodes
 from faultpath.quadrotor.training.quality_results import (

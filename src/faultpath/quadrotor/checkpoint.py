@@ -12,7 +12,7 @@ from safetensors.torch import load, save
 from torch import Tensor, nn
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.card import ModelCard, read_card, stem
+from faultpath.quadrotor.card import ModelCard, read_card, stem
 from faultpath.store.atomic import write
 
 
