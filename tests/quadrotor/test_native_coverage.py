@@ -236,17 +236,17 @@ def test_a_clearance_model_of_ones_own_is_what_answers() -> None:
             return torch.zeros_like(super().query(code, points))
 
     with pytest.warns(PortableNotice, match="not of Own"):
-        assert DepthClearance(Own()).compiled is None
+        assert DepthClearance(Own()).queries is None
     wider = ClearanceModel()
     wider.encoder[7] = nn.Linear(48 * 5 * 8, 256)
     wider.encoder[9] = nn.Linear(256, 64)
     with pytest.warns(PortableNotice, match="other sizes"):
-        assert DepthClearance(wider).compiled is None
+        assert DepthClearance(wider).queries is None
     other = ClearanceModel()
     other.encoder[1] = nn.Tanh()
     with pytest.warns(PortableNotice, match="layers are others"):
-        assert DepthClearance(other).compiled is None
-    assert DepthClearance(ClearanceModel()).compiled is not None
+        assert DepthClearance(other).queries is None
+    assert DepthClearance(ClearanceModel()).queries is not None
 
 
 class OwnCost(NavigationCost):

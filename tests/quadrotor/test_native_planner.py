@@ -165,7 +165,7 @@ def test_means_are_the_portable_ones(isa: str, candidates: int, stream: torch.Ge
 def test_clearance_is_the_portable_one(isa: str, stream: torch.Generator) -> None:
     model = clearance_model()
     compiled, portable = both(isa, DepthClearance, model)
-    assert compiled.compiled is not None is portable.compiled
+    assert compiled.queries is not None is portable.queries
     depth = 6 * torch.rand(4, 36, 64, generator=stream)
     position = torch.randn(4, 3, generator=stream)
     rotation = so3.exp(torch.randn(3, 4, generator=stream)).movedim(-1, 0)
@@ -186,9 +186,8 @@ def test_codes_are_the_portable_ones(isa: str, stream: torch.Generator) -> None:
     model = clearance_model()
     depth = 6 * torch.rand(5, 36, 64, generator=stream)
     depth[:, 10:20, :30] = 0.0
-    compiled = under(isa, DepthClearance, model).compiled
-    assert compiled is not None
-    encode, _ = compiled
+    encode = under(isa, DepthClearance, model).encoder
+    assert encode is not None
     codes = encode(depth)
     close(codes, model.encode(depth), 1e-4)
     assert torch.equal(codes[:, 3:], encode(depth[3:]))

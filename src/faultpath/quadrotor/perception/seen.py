@@ -29,17 +29,21 @@ class DepthClearance:
     that no pixel can show have a clearance of at most `UNSEEN_M`.
     """
 
-    compiled: tuple[CompiledEncoder, CompiledClearance] | None
-    """What encodes images and answers for the model, if any: with the weights that it had then."""
+    encoder: CompiledEncoder | None = None
+    """What encodes images for the model, if any: with the weights that it had then."""
+    queries: CompiledClearance | None = None
+    """What answers for it."""
 
     def __init__(self, model: ClearanceModel, device: torch.device = CPU) -> None:
         self._model = model.eval()
         self._code: Tensor | None = None
         self._position = self._rotation = torch.empty(0)
-        self.compiled = None
-        kernels = native.kernels_on(device)
-        if kernels is not None and covered(self, DepthClearance) and _has_kernels(model):
-            self.compiled = _encoder(kernels, model), _queries(kernels, model)
+        if native.kernels_on(device) is None or not covered(self, DepthClearance):
+            return
+        if why := _misfit(model):
+            tell_portable(f"The clearance model {type(model).__name__}", why)
+            return
+        self.encoder, self.queries = _encoder(model), _queries(model)
 
     @torch.no_grad()
     def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
@@ -50,7 +54,7 @@ class DepthClearance:
             position: World frame, m, `[B, 3]`.
             rotation: Body to world, `[B, 3, 3]`.
         """
-        encode = self._model.encode if self.compiled is None else self.compiled[0]
+        encode = self._model.encode if self.encoder is None else self.encoder
         self._code = encode(depth.float())
         self._position, self._rotation = position.float(), rotation.float()
 
@@ -65,8 +69,8 @@ class DepthClearance:
         chosen = torch.as_tensor(scenes)
         code = self._code[:, chosen].contiguous()
         position, rotation = self._position[chosen], self._rotation[chosen]
-        if self.compiled is not None:
-            return self.compiled[1](code, position, rotation, points)
+        if self.queries is not None:
+            return self.queries(code, position, rotation, points)
         frame = CaptureFrame(
             position.movedim(0, -1).contiguous(), rotation.movedim(0, -1).contiguous()
         )
@@ -88,14 +92,8 @@ def near(points: Tensor) -> Tensor:
     return (x * x).add_(y * y).add_(z * z) < NEAR_M**2
 
 
-def _has_kernels(model: ClearanceModel) -> bool:
-    """Return whether the kernels stand for a model; say why where they do not."""
-    if why := _misfit(model):
-        tell_portable(f"The clearance model {type(model).__name__}", why)
-    return not why
-
-
 def _misfit(model: ClearanceModel) -> str:
+    """Return in words why the kernels do not stand for a model; empty if they do."""
     if not is_exactly(model, ClearanceModel):
         return unlike(ClearanceModel, model)
     with torch.device("meta"):
@@ -112,14 +110,20 @@ def _misfit(model: ClearanceModel) -> str:
     return ""
 
 
-def _encoder(kernels: native.Kernels, model: ClearanceModel) -> CompiledEncoder:
+def _encoder(model: ClearanceModel) -> CompiledEncoder | None:
+    kernels = native.kernels()
+    if kernels is None:
+        return None
     layers = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
     weights = [layer.weight for layer in layers]
     biases = [layer.bias for layer in layers if layer.bias is not None]
     return CompiledEncoder(kernels, weights, biases, (RANGE_M, NEAREST_M, INVERSE_SCALE))
 
 
-def _queries(kernels: native.Kernels, model: ClearanceModel) -> CompiledClearance:
+def _queries(model: ClearanceModel) -> CompiledClearance | None:
+    kernels = native.kernels()
+    if kernels is None:
+        return None
     left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
     bounds = Bounds(LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M, left, up)
     makers = [torch.cat((each.weight, each.bias[:, None]), 1) for each, _ in model.makers()]
