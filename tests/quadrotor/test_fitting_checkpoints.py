@@ -11,6 +11,7 @@ from fitting_toys import Net, Toy
 from safetensors.torch import save_file
 
 from faultpath.errors import UserError
+from faultpath.quadrotor import checkpoint
 from faultpath.quadrotor.checkpoint import (
     checkpoint_path,
     load_checkpoint,
@@ -18,7 +19,6 @@ from faultpath.quadrotor.checkpoint import (
     ship,
     shipped_folder,
 )
-from faultpath.quadrotor.training import checkpoint
 from faultpath.quadrotor.training.fitting import fit
 
 
