@@ -7,8 +7,9 @@ import pytest
 from cli_runs import ROOT, faultpath
 
 from faultpath.cli.main import INTERRUPTED
+from faultpath.quadrotor import checkpoint
 from faultpath.quadrotor.card import read_card
-from faultpath.quadrotor.training import catalogue, checkpoint, jobs
+from faultpath.quadrotor.training import catalogue, jobs
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
 from fitting_toys import Toy, entry
