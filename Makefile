@@ -20,7 +20,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz bench bench-page lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz bench docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -47,12 +47,12 @@ fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEE
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
 	  --hypothesis-profile=explore --fuzz-seed=$(SEED) $(ARGS)
 
-bench: $(BENCH)/ready ## Measure side by side with other software; ARGS="--only plant" for some
-	$(BENCH)/bin/python -m benchmarks run $(ARGS)
-	$(BENCH)/bin/python -m benchmarks page
+bench: $(BENCH)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="--only plant" for some
+	$(BENCH)/bin/python -m benchmarks $(ARGS)
+	$(BIN)/python tools/documents.py
 
-bench-page: $(STAMPS)/dev ## Write docs/performance.md from benchmarks/results.json again
-	$(BIN)/python -m benchmarks page
+docs: $(STAMPS)/dev ## Write every document that is made from numbers; ARGS="--check" only looks
+	$(BIN)/python tools/documents.py $(ARGS)
 
 lint: $(STAMPS)/dev ## Check format, style, types and layers
 	$(BIN)/ruff format --check

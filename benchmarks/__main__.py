@@ -1,8 +1,6 @@
-"""Measure, write the page, or check that it is up to date.
+"""Measure; `tools/documents.py` makes the page of it.
 
-python -m benchmarks run [--only NAME ...]   measure; what is not asked for keeps its numbers
-python -m benchmarks page                    write docs/performance.md and its pictures
-python -m benchmarks check                   exit 1 when they are not what results.json gives
+python -m benchmarks [--only NAME ...]   what is not asked for keeps its numbers
 """
 
 import argparse
@@ -10,7 +8,7 @@ import sys
 import time
 
 from benchmarks import page
-from benchmarks.results import RESULTS, ROOT, Results, load, save
+from benchmarks.results import RESULTS, Results, load, save
 
 
 def measure(only: list[str]) -> None:
@@ -39,32 +37,15 @@ def measure(only: list[str]) -> None:
         save(results)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         for record in records:
-            print("   ", page.line(record), flush=True)
+            print("   ", page.told(record), flush=True)
 
 
 def main() -> int:
     """Do what was asked; return the exit status."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
-    verbs = parser.add_subparsers(dest="verb", required=True)
-    run = verbs.add_parser("run", help="measure")
-    run.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these comparisons")
-    verbs.add_parser("page", help="write docs/performance.md")
-    verbs.add_parser("check", help="exit 1 when docs/performance.md is stale")
-    asked = parser.parse_args()
-    if asked.verb == "run":
-        measure(asked.only)
-        return 0
-    made = page.files(load())
-    if asked.verb == "page":
-        for path, text in made.items():
-            path.write_text(text, "utf-8")
-        return 0
-    stale = [
-        path for path, text in made.items() if not path.is_file() or path.read_text("utf-8") != text
-    ]
-    for path in stale:
-        print(f"{path.relative_to(ROOT)} is not what results.json gives: run make bench-page.")
-    return 1 if stale else 0
+    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these comparisons")
+    measure(parser.parse_args().only)
+    return 0
 
 
 if __name__ == "__main__":

@@ -6,11 +6,14 @@ from pathlib import Path
 from benchmarks import pictures
 from benchmarks.results import ROOT, Machine, Record, Results, Target
 from benchmarks.words import HEAD, SECTIONS, number
+from faultpath.tables import MISSING, Entry, Line, Table, line
+from faultpath.tables.markdown import grid
 
 PAGE = ROOT / "docs" / "performance.md"
 RATIOS = ROOT / "docs" / "images" / "performance.svg"
 SCALING = ROOT / "docs" / "images" / "performance-scaling.svg"
 
+_COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
 BUSY = 0.5
 """Load above which the page warns."""
 
@@ -38,7 +41,7 @@ def text(results: Results) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def line(record: Record) -> str:
+def told(record: Record) -> str:
     """Return a record in one line, for the terminal."""
     ratio = "" if record.ratio is None else f", ratio {_ratio(record)}"
     against = "" if record.peer is None else f" against {number(record.peer)} ({record.peer_name})"
@@ -85,20 +88,17 @@ def _reached(record: Record) -> str:
 
 
 def _table(records: Sequence[Record]) -> str:
-    rows = [
-        "| | faultpath | compared with | ratio | target | met |",
-        "| :-- | --: | --: | --: | --: | :-: |",
-    ]
-    for record in records:
-        if record.ours is None:
-            rows.append(f"| {record.name} | – | – | – | {_target(record.target)} | – |")
-            continue
-        peer = "" if record.peer is None else f"{number(record.peer)} ({record.peer_name})"
-        met = {True: "yes", False: "**no**", None: ""}[record.met]
-        ours = f"{number(record.ours)} {record.unit}"
-        cells = (record.name, ours, peer, _ratio(record), _target(record.target), met)
-        rows.append(f"| {' | '.join(cells)} |")
-    return "\n".join(rows)
+    return grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
+
+
+def _line(record: Record) -> Line:
+    target = _target(record.target)
+    if record.ours is None:
+        return line(record.name, MISSING, MISSING, MISSING, target, MISSING)
+    peer = "" if record.peer is None else f"{number(record.peer)} ({record.peer_name})"
+    met = {True: Entry(text="yes"), False: Entry(text="no", tone="bad"), None: Entry(text="")}
+    ours = f"{number(record.ours)} {record.unit}"
+    return line(record.name, ours, peer, _ratio(record), target, met[record.met])
 
 
 def _ratio(record: Record) -> str:

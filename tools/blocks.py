@@ -2,7 +2,7 @@
 
 import re
 import shlex
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
@@ -14,6 +14,7 @@ from rich.console import Console
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import decision, wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.tables import Table, line
 from faultpath.tables.markdown import grid
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -117,18 +118,24 @@ def origin(run: Run) -> str:
     )
 
 
-def times(names: Sequence[str]) -> str:
+def times(*names: str) -> str:
     """Return how long runs took, one a row; those that are not there have a line below."""
     runs = [(name, load(name)) for name in names]
-    rows = [
-        f"| {run.record.question.n_scenes} | {run.trials} | {duration(run)} "
-        f"| {run.provenance.processor.replace('(R)', '')} | {run.provenance.workers} |"
+    lines = tuple(
+        line(
+            str(run.record.question.n_scenes),
+            str(run.trials),
+            duration(run),
+            run.provenance.processor.replace("(R)", ""),
+            str(run.provenance.workers),
+        )
         for _, run in runs
         if run is not None
-    ]
-    head = ["| Scenes | Trials | Time | Processor | Workers |", "| --: | --: | --: | :-- | --: |"]
+    )
+    heads = ("Trials", "Time", "Processor", "Workers")
+    table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
     absent = [missing(name) for name, run in runs if run is None]
-    return "\n\n".join(filter(None, ["\n".join(head + rows) if rows else "", *absent]))
+    return "\n\n".join([*([grid(table)] if lines else []), *absent])
 
 
 def duration(run: Run) -> str:
@@ -171,12 +178,27 @@ PARTS: dict[str, tuple[str, str]] = {
 }
 """What may be pictured: its name in words, and where in the page it is."""
 
-FILLERS: dict[str, Callable[..., str]] = {
-    "table": table,
-    "headline": headline,
-    "terminal": terminal,
-    "command": command,
-    "origin": origin,
-    "picture": picture,
+
+def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
+    """Return what fills blocks about one run; without the run the `first` kind says so, once."""
+
+    def filled(name: str, *arguments: str) -> str:
+        run = load(name)
+        if run is None:
+            return missing(name) if first else ""
+        return fill(run, *arguments)
+
+    return filled
+
+
+KINDS: dict[str, Callable[..., str]] = {
+    "table": _about(table, first=True),
+    "headline": _about(headline),
+    "terminal": _about(terminal),
+    "command": _about(command),
+    "origin": _about(origin),
+    "picture": _about(picture),
+    "times": times,
+    "code": code,
 }
-"""Kinds of blocks about one run; `times:RUN:RUN` and `code:FILE:PART` stand apart."""
+"""What fills the kinds of blocks about runs and about the code of examples."""

@@ -4,7 +4,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from learning_blocks import label, rows_of
 from learning_curves import BOTTOM, HEIGHT, LABELS, Curve, Panel, draw, top_of
 
 from faultpath.quadrotor.training.quality_results import PredictorQuality, PredictorScore, Quality
@@ -15,7 +14,18 @@ from faultpath.report.wording import signed
 WIDTH = 880.0
 LEFT = 34.0
 _HALF = WIDTH / 2 + 12
+ZERO_WIND = "zero"
 SEEDS = "Thin lines are single seeds, thick ones their mean."
+
+
+def rows_of(quality: Quality, pool: str) -> list[PredictorQuality]:
+    """Return the predictors that were measured on a pool."""
+    return [row for row in quality.predictors if row.pool == pool]
+
+
+def label(row: PredictorQuality) -> str:
+    """Return what a predictor is called: its name, and that it is told of no wind."""
+    return f"{row.name}, zero wind" if row.wind == ZERO_WIND else row.name
 
 
 def horizon(quality: Quality) -> str:

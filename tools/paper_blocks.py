@@ -10,7 +10,8 @@ from pydantic import ValidationError
 
 from faultpath.record import ClaimVerdict, Reproduction, RunProvenance
 from faultpath.report.reproduction import ledger_markdown
-from faultpath.tables.markdown import block
+from faultpath.tables import Table, line
+from faultpath.tables.markdown import block, grid
 
 SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
@@ -81,18 +82,14 @@ def _motors(found: Reproduction, origin: RunProvenance) -> str:
         measured = json.loads((REFERENCE / "motor-state.json").read_text("utf-8"))
     except FileNotFoundError:
         return "*Not measured yet: run tools/motor_state.py.*"
-    rows = [f"| true-parameter predictor | {measured['predictor_cm']:.1f} |"]
+    lines = [line("true-parameter predictor", f"{measured['predictor_cm']:.1f}")]
     for intervals, error in measured["plant_cm"].items():
-        rows.append(f"| plant, motors followed for {intervals} intervals | {error:.1f} |")
-    return "\n".join(
-        [
-            "| Predicted by | Median 20-step position error (cm) |",
-            "| :-- | --: |",
-            *rows,
-            "",
-            f"{measured['windows']:,} windows of the selection library, flown with the "
-            "true-parameter model. Made by `python tools/motor_state.py RUN_FOLDER`.",
-        ]
+        lines.append(line(f"plant, motors followed for {intervals} intervals", f"{error:.1f}"))
+    heads = ("Median 20-step position error (cm)",)
+    return (
+        f"{grid(Table(corner='Predicted by', columns=heads, lines=tuple(lines)))}\n\n"
+        f"{measured['windows']:,} windows of the selection library, flown with the "
+        "true-parameter model. Made by `python tools/motor_state.py RUN_FOLDER`."
     )
 
 

@@ -1,4 +1,4 @@
-"""`tools/readme.py --conclude`: stored runs are decided anew from their own outcomes."""
+"""`tools/documents.py --conclude`: stored runs are decided anew from their own outcomes."""
 
 import json
 import shutil
@@ -62,9 +62,9 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def taken(conclude, finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The reference folder that `tools/readme.py --take` makes of it."""
-    sys.modules.pop("readme", None)
-    import readme
+    """The reference folder that `tools/documents.py --take` makes of it."""
+    sys.modules.pop("documents", None)
+    import documents as readme
 
     monkeypatch.setattr(readme, "REFERENCE", tmp_path)
     monkeypatch.setattr(readme, "load", lambda _: None)

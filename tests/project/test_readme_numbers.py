@@ -53,7 +53,7 @@ def rounded(value: object) -> object:
 
 
 def test_no_block_or_picture_is_stale(run: Callable[..., CompletedProcess[str]]) -> None:
-    done = run(str(ROOT / "tools" / "readme.py"), "--check")
+    done = run(str(ROOT / "tools" / "documents.py"), "--check")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -162,10 +162,10 @@ def test_a_reference_run_was_made_in_one_go(folder: Path) -> None:
 @pytest.fixture
 def readme(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
-    sys.modules.pop("readme", None)
-    import readme
+    sys.modules.pop("documents", None)
+    import documents
 
-    return readme
+    return documents
 
 
 def test_a_block_is_filled_from_a_run_and_says_when_there_is_none(readme) -> None:

@@ -101,21 +101,31 @@ def windy(data):
 
 
 @pytest.fixture
-def tool(monkeypatch):
+def tool(monkeypatch, tmp_path):
+    """The generator of documents, with the page on learning alone, in another folder."""
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
-    sys.modules.pop("learning_quality", None)
-    import learning_quality
+    for name in ("documents", "learning_blocks"):
+        sys.modules.pop(name, None)
+    import documents
+    import learning_blocks
 
-    return learning_quality
+    monkeypatch.setattr(learning_blocks, "REFERENCE", tmp_path / "reference")
+    monkeypatch.setattr(learning_blocks, "IMAGES", tmp_path / "images")
+    monkeypatch.setattr(documents, "IMAGES", tmp_path / "images")
+    monkeypatch.setattr(documents, "ROOT", tmp_path)
+    monkeypatch.setattr(documents, "PAGES", (learning_blocks.pictures,))
+    monkeypatch.setattr(documents, "documents", lambda: [tmp_path / "learning-quality.md"])
+    return documents
 
 
 @pytest.fixture
 def docs(tmp_path, quality, tool) -> Path:
     """A copy of the page, filled from the tiny measurement."""
     (tmp_path / "reference").mkdir()
+    (tmp_path / "images").mkdir()
     shutil.copy(ROOT / "docs" / "learning-quality.md", tmp_path)
-    tool.result_path(tmp_path).write_bytes(quality.encode())
-    assert tool.main(["write"], tmp_path) == 0
+    tool.learning_blocks.result_path().write_bytes(quality.encode())
+    assert tool.main([]) == 0
     return tmp_path
 
 
@@ -298,54 +308,61 @@ def test_a_measurement_survives_its_file(quality):
 
 def test_writing_again_changes_nothing_and_the_page_passes_its_check(docs, tool, capsys):
     before = contents(docs)
-    assert len([path for path in before if path.suffix == ".svg"]) == len(tool.PICTURES) - 1
-    assert tool.main(["write"], docs) == 0
+    assert (
+        len([path for path in before if path.suffix == ".svg"])
+        == len(tool.learning_blocks.PICTURES) - 1
+    )
+    assert tool.main([]) == 0
     assert contents(docs) == before
-    assert tool.main(["check"], docs) == 0
+    assert tool.main(["--check"]) == 0
     assert "Up to date" in capsys.readouterr().out
 
 
 def test_the_page_has_every_table_and_picture_and_names_what_is_missing(docs, tool):
     page = (docs / "learning-quality.md").read_text()
-    names = {match["name"] for match in tool.BLOCK.finditer(page)}
-    assert names == {*tool.BLOCKS, *(tool.PICTURE + name for name in tool.PICTURES)}
+    names = {match["name"].removeprefix("learning:") for match in tool.BLOCK.finditer(page)}
+    known = tool.learning_blocks
+    assert names == {*known.BLOCKS, *(known.PICTURE + name for name in known.PICTURES)}
     assert "`wm-u+dcc-2`" in page
-    assert tool.ABSENT in page  # the clearance model
+    assert tool.learning_blocks.ABSENT in page  # the clearance model
 
 
 @pytest.mark.parametrize("where", ["learning-quality.md", "images/learning-horizon.svg"])
 def test_an_edited_number_fails_the_check(where, docs, tool, capsys):
     path = docs / where
     path.write_text(path.read_text().replace("0.", "1.", 1))
-    assert tool.main(["check"], docs) == 1
+    assert tool.main(["--check"]) == 1
     assert Path(where).name in capsys.readouterr().out
 
 
 def test_a_picture_of_nothing_measured_is_stale_and_goes(docs, tool, capsys):
     left = docs / "images" / "learning-clearance.svg"
     left.write_text("old")
-    assert tool.main(["check"], docs) == 1
-    assert tool.main(["write"], docs) == 0
+    assert tool.main(["--check"]) == 1
+    assert tool.main([]) == 0
     assert not left.exists()
 
 
 @pytest.mark.parametrize(
     ("marker", "said"),
     [
-        ("<!-- begin learning:origin -->", "stands alone"),
-        ("<!-- begin learning:x -->\n<!-- end learning:x -->", "no block 'x'"),
+        ("<!-- begin:learning:origin -->", "stands alone"),
+        ("<!-- begin:learning:x -->\n<!-- end:learning:x -->", "no block 'x'"),
     ],
 )
 def test_a_wrong_block_is_refused(marker, said, docs, tool, capsys):
     page = docs / "learning-quality.md"
     page.write_text(f"{page.read_text()}\n{marker}\n")
-    assert tool.main(["write"], docs) == 2
+    assert tool.main([]) == 2
     assert said in capsys.readouterr().err
 
 
-def test_without_a_measurement_nothing_is_written(tmp_path, tool, capsys):
-    assert tool.main(["write"], tmp_path) == 2
-    assert "run `learning_quality.py measure`" in capsys.readouterr().err
+def test_without_a_measurement_nothing_is_written(docs, tool, capsys):
+    tool.learning_blocks.result_path().unlink()
+    before = contents(docs)
+    assert tool.main([]) == 2
+    assert "run tools/learning_quality.py" in capsys.readouterr().err
+    assert contents(docs) == before
 
 
 def test_clearance_is_shown_where_it_was_measured(docs, tool, quality):
@@ -365,8 +382,8 @@ def test_clearance_is_shown_where_it_was_measured(docs, tool, quality):
         "by_visibility": {"in view": errors | {"wrong_sign": 0.25}},
     }
     measured = json.loads(quality.encode()) | {"clearance": found}
-    tool.result_path(docs).write_text(json.dumps(measured))
-    assert tool.main(["write"], docs) == 0
+    tool.learning_blocks.result_path().write_text(json.dumps(measured))
+    assert tool.main([]) == 0
     page = (docs / "learning-quality.md").read_text()
     assert "| in view | 3 | 0.200 | 0.900 | +0.050 | 25 |" in page
     assert "| 0 to 1 m away | 0 | – | – | – | – |" in page

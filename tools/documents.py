@@ -1,0 +1,203 @@
+"""Write every document that is made from numbers, so that no number is typed.
+
+    python tools/documents.py                          write what is stale
+    python tools/documents.py --check                  exit 1 when something is
+    python tools/documents.py --take NAME=RUN_FOLDER   make a run folder a reference run first
+    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first
+    python tools/documents.py --conclude               decide all reference runs anew first
+    python tools/documents.py --freeze                 freeze the platform as the code has it first
+    python tools/documents.py --images                 make the pictures too, with Chromium
+
+A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
+line of its own; `KINDS` lists the kinds. `PAGES` are the files that are made whole.
+`docs/reference/README.md` says what a reference run is.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+
+import blocks
+import learning_blocks
+import paper_blocks
+import platform_blocks
+from blocks import REFERENCE, ROOT, Wrong, load
+from pictures import IMAGES, digest, made_from, make_images
+
+from faultpath.cli.pages import MADE_FROM
+from faultpath.selfcheck import Report, failures, page
+
+sys.path.insert(0, str(ROOT))
+from benchmarks.page import files as performance
+from benchmarks.results import load as measured
+
+TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
+"""All that `faultpath report` reads of a run folder and writes there."""
+
+KINDS: Mapping[str, Callable[..., str]] = {
+    **blocks.KINDS,
+    "learning": learning_blocks.fill,
+    "paper": paper_blocks.paper,
+    "platform": platform_blocks.fill,
+}
+"""What fills a block, by its kind; takes the arguments that the block names."""
+
+BLOCK = re.compile(
+    r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
+    flags=re.MULTILINE | re.DOTALL,
+)
+MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
+
+
+def statistics_check() -> Mapping[Path, str]:
+    """Return the page on what the statistics keep, from `faultpath selfcheck statistics`."""
+    report = Report.model_validate_json((REFERENCE / "statistics-check.json").read_bytes())
+    return {ROOT / "docs" / "statistics-check.md": page(report, failures(report))}
+
+
+PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
+    statistics_check,
+    learning_blocks.pictures,
+    lambda: performance(measured()),
+)
+"""What makes whole files, by their path."""
+
+
+def documents() -> list[Path]:
+    """Return the documents that may have blocks."""
+    docs = ROOT / "docs"
+    return [ROOT / "README.md", *sorted(docs.glob("*.md")), docs / "design" / "platform.md"]
+
+
+def fill(name: str, document: Path) -> str:
+    """Return what belongs into the block `name` of a document."""
+    kind, *arguments = name.split(":")
+    if kind not in KINDS:
+        raise Wrong(f"there is no kind of block '{kind}': use {', '.join(KINDS)}")
+    text = KINDS[kind](*arguments)
+    for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):
+        text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
+    return text
+
+
+def filled(text: str, document: Path) -> str:
+    """Return a document's text with every block filled; `Wrong` for a marker without a partner."""
+    paired = 2 * len(BLOCK.findall(text))
+    if len(MARKER.findall(text)) != paired:
+        raise Wrong(f"{document.name}: a begin or end of a block stands alone")
+
+    def replace(match: re.Match[str]) -> str:
+        name = match["name"]
+        return f"<!-- begin:{name} -->\n{fill(name, document)}\n<!-- end:{name} -->"
+
+    return BLOCK.sub(replace, text)
+
+
+def made() -> Mapping[Path, str]:
+    """Return every file that follows from numbers, by its path."""
+    files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
+    for make in PAGES:
+        files |= make()
+    return files
+
+
+def stale() -> Iterator[str]:
+    """Yield what is not up to date, in words."""
+    files = made()
+    for path, wanted in files.items():
+        text = path.read_text("utf-8") if path.is_file() else ""
+        if text != wanted:
+            pairs = zip(BLOCK.finditer(text), BLOCK.finditer(wanted), strict=False)
+            names = [f"block {a['name']}" for a, b in pairs if a["body"] != b["body"]]
+            yield ": ".join(filter(None, [str(path.relative_to(ROOT)), ", ".join(names)]))
+    for path in leftover(files):
+        yield f"{path.relative_to(ROOT)}: nothing was measured for it"
+    drawn = made_from()
+    for run, part in pictures():
+        name = f"{run}-{part}.png"
+        if not (IMAGES / name).is_file() or drawn.get(name) != digest(run):
+            yield f"docs/images/{name}: make it with --images"
+
+
+def write() -> None:
+    """Write what is stale, and drop pictures of what is no longer measured."""
+    files = made()
+    for path, text in files.items():
+        if not path.is_file() or path.read_text("utf-8") != text:
+            path.write_text(text, "utf-8")
+    for path in leftover(files):
+        path.unlink()
+
+
+def leftover(files: Mapping[Path, str]) -> list[Path]:
+    """Return the drawn pictures that no measurement gives."""
+    return sorted(set(IMAGES.glob("*.svg")) - set(files))
+
+
+def pictures() -> list[tuple[str, str]]:
+    """Return the run and part of every picture that documents show and that a run is there for."""
+    texts = [path.read_text("utf-8") for path in documents()]
+    names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
+    runs = {(name[1], name[2]) for name in names if name[0] == "picture" and load(name[1])}
+    drawn = {("paper", name[2]) for name in names if name[:2] == ["paper", "picture"]}
+    return sorted(runs | (drawn if paper_blocks.load() else set()))
+
+
+def take(what: str) -> None:
+    """Make a run folder a reference run, from `NAME=FOLDER`."""
+    name, separator, folder = what.partition("=")
+    absent = [file for file in TAKEN if not (Path(folder) / file).is_file()]
+    if not separator or not name or absent:
+        raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run, with {', '.join(TAKEN)}")
+    target = REFERENCE / name
+    target.mkdir(parents=True, exist_ok=True)
+    for file in TAKEN:
+        shutil.copyfile(Path(folder) / file, target / file)
+    run = load(name)
+    if run is not None and run.provenance.dirty:
+        print(f"{name} was made with uncommitted changes, and the documents will say so.")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Do what was asked; return the exit status."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
+    parser.add_argument("--images", action="store_true", help="make the pictures too")
+    parser.add_argument("--conclude", action="store_true", help="decide stored runs anew first")
+    parser.add_argument("--freeze", action="store_true", help="freeze the platform as it is first")
+    parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
+    parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
+    asked = parser.parse_args(arguments)
+    try:
+        if asked.check:
+            found = list(stale())
+            hint = "Run python tools/documents.py."
+            print("\n".join([*found, hint] if found else ["Up to date."]))
+            return 1 if found else 0
+        for what in asked.take:
+            take(what)
+        if asked.paper is not None:
+            paper_blocks.take(asked.paper, REFERENCE)
+        if asked.freeze:
+            platform_blocks.freeze()
+        if asked.conclude:
+            from conclude import conclude_all
+
+            conclude_all(print)
+            load.cache_clear()
+            paper_blocks.load.cache_clear()
+        write()
+        if asked.images:
+            make_images(pictures())
+    except Wrong as wrong:
+        print(f"documents.py: {wrong}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
