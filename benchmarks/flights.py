@@ -14,9 +14,10 @@ from faultpath.quadrotor import navigator
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import MPPI, AutoregressiveSampler
 from faultpath.quadrotor.predictors import AnchoredPredictor
-from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
+from faultpath.trials import SystemSpec, load_system
 
 SCENES = 50
 STEPS = 20
@@ -43,7 +44,8 @@ class ClosedLoop(Side):
 
     def __init__(self, clearance: str = "true") -> None:
         torch.set_num_threads(1)
-        system = create(wind="L3", predictor="wm-a-wind", clearance=clearance)
+        options = {"wind": "L3", "predictor": "wm-a-wind", "clearance": clearance}
+        system = load_system(SystemSpec(name="quadrotor", options=options))
         assert isinstance(system, Quadrotor)
         self._system = system
         self._scenes = [scene.id for scene in system.library("selection").scenes[:SCENES]]

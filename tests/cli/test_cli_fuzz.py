@@ -15,7 +15,7 @@ import typer
 from cli_runs import audit
 from fuzz_inputs import JUNK, VERBS, commands, documents, texts, wrong
 
-from faultpath.cli.app import app
+from faultpath.cli.app import build
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
 from faultpath.selfcheck import PROFILES
@@ -66,7 +66,7 @@ def test_no_verb_is_left_out() -> None:
         for name, each in (below or {}).items():
             yield from leaves(each, *names, name)
 
-    assert set(VERBS) == set(leaves(typer.main.get_command(app)))
+    assert set(VERBS) == set(leaves(typer.main.get_command(build())))
 
 
 @pytest.mark.parametrize("chunk", range(CHUNKS))

@@ -18,6 +18,7 @@ MAY_LOAD = {
     "scenes": (["scenes", "list"], {"numpy"}),
     "models": (["train", "quadrotor", "--list"], set[str]()),
     "no such run": (["report", "nowhere"], {"numpy"}),
+    "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
     "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),

@@ -52,7 +52,7 @@ TOY_MISTAKES = {
     "setting": ({"set": "gate"}, ["'gate'", "key=value"]),
     "setting without a key": ({"set": "=3"}, ["'=3'", "key=value"]),
     "unknown setting": ({"set": "gate=3"}, ["'gate'", "takes none"]),
-    "option of another system": ({"wind": "L1"}, ["'wind'", "takes none"]),
+    "option of another system": ({"wind": "L1"}, ["--wind", "takes none"]),
     "unknown option": ({"colour": "red"}, ["--colour", "audit --help"]),
 }
 

@@ -10,7 +10,7 @@ import typer
 from cli_runs import TOY, audit, faultpath
 from typer.models import OptionInfo
 
-from faultpath.cli.app import app
+from faultpath.cli.app import build
 from faultpath.cli.options import path
 from faultpath.interface import read_interface
 
@@ -20,7 +20,7 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def _paths(verbs: typer.Typer = app, before: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
+def _paths(verbs: typer.Typer, before: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
     """Return verbs and name of every option and argument that is annotated as a path."""
     found: list[tuple[str, ...]] = []
     for group in verbs.registered_groups:
@@ -35,7 +35,7 @@ def _paths(verbs: typer.Typer = app, before: tuple[str, ...] = ()) -> list[tuple
     return found
 
 
-@pytest.mark.parametrize("option", _paths(), ids=" ".join)
+@pytest.mark.parametrize("option", _paths(build()), ids=" ".join)
 def test_a_path_that_names_nothing_is_refused(option: tuple[str, ...], tmp_path: Path):
     *verbs, option = option
     place = [option, ""] if option.startswith("-") else [""]

@@ -8,7 +8,7 @@ from cli_runs import ROOT, audit
 from typer.core import TyperCommand, TyperGroup, TyperOption
 from typer.main import get_command
 
-from faultpath.cli.app import app
+from faultpath.cli.app import build
 from faultpath.errors import UserError
 
 
@@ -22,7 +22,7 @@ def _options(command, *words: str) -> Iterator[tuple[str, TyperCommand, TyperOpt
                 yield " ".join((*words, option.opts[0])), command, option
 
 
-OPTIONS = list(_options(get_command(app)))
+OPTIONS = list(_options(get_command(build())))
 
 
 @pytest.mark.parametrize(("_name", "verb", "option"), OPTIONS, ids=[name for name, *_ in OPTIONS])

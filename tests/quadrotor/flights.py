@@ -9,10 +9,10 @@ from faultpath.arrays import Array
 from faultpath.faults import AnyFault, parse_fault
 from faultpath.quadrotor.scenes.library import Library, as_text
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Scene, Topology
-from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.vehicle import VehicleParameters
 from faultpath.taps import Reading, Taps
-from faultpath.trials import Outcome
+from faultpath.trials import Outcome, SystemSpec, load_system
 
 STEPS = 12
 HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
@@ -41,7 +41,7 @@ ANALYTIC = {"predictor": "dki-drag", "clearance": "true"}
 
 def quadrotor(**options: str) -> Quadrotor:
     """Return a quadrotor, by default the cheapest: analytic, with ground-truth clearance."""
-    system = create(**(ANALYTIC | options))
+    system = load_system(SystemSpec(name="quadrotor", options=ANALYTIC | options))
     assert isinstance(system, Quadrotor)
     return system
 

@@ -9,7 +9,8 @@ hidden.
 import pytest
 import torch
 
-from faultpath.quadrotor.options import PlannerName, QuadrotorOptions
+from faultpath.quadrotor.choices import PlannerName
+from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planner import shift
 from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs

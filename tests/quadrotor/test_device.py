@@ -18,7 +18,6 @@ from faultpath.arrays import Array
 from faultpath.errors import UserError
 from faultpath.quadrotor import device as devices
 from faultpath.quadrotor import models, native, so3, system
-from faultpath.quadrotor.device import DeviceName
 from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import SamplerSettings
@@ -50,7 +49,7 @@ class PlacedTaps(Taps):
 @pytest.fixture
 def gpu(monkeypatch: pytest.MonkeyPatch) -> Iterator[SimulatedGPU]:
     """A simulated GPU that the program takes for one of CUDA."""
-    monkeypatch.setattr(DeviceName, "place", GPU)
+    monkeypatch.setattr(QuadrotorOptions, "place", GPU)
     monkeypatch.setattr(arrays, "_PINNING", {GPU.type})
     with simulated_gpu() as simulated:
         yield simulated

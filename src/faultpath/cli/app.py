@@ -4,6 +4,7 @@ Nothing heavy is imported here: torch and the statistics load when a verb needs 
 `--help` answers at once.
 """
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
@@ -19,26 +20,37 @@ from faultpath.cli import (
     selfcheck,
     train,
 )
+from faultpath.cli.system_flags import with_system_flags
 from faultpath.cli.verbs import Verbs
 
-app = Verbs(
-    name="faultpath",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
-app.command("audit")(audit.command)
-app.command("claims")(claims.command)
-app.command("interface")(interface.command)
-app.command("probe")(probe.command)
-app.command("report")(report.command)
-app.command("reproduce")(reproduce.command)
-app.add_typer(scenes.app, name="scenes")
-app.add_typer(selfcheck.app, name="selfcheck")
-app.add_typer(train.app, name="train")
+
+def build(arguments: Sequence[str] = ()) -> typer.Typer:
+    """Return the command for a line of arguments: the verbs that take a system get its flags.
+
+    Raises as `with_system_flags`.
+    """
+    app = Verbs(
+        name="faultpath",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+    )
+    app.callback()(everywhere)
+    verb, *rest = arguments or ("",)
+    for name, command in _OF_SYSTEMS.items():
+        app.command(name)(with_system_flags(name, command, rest) if name == verb else command)
+    for name, command in _OTHERS.items():
+        app.command(name)(command)
+    for name, verbs in _GROUPS.items():
+        app.add_typer(verbs, name=name)
+    return app
 
 
-@app.callback()
+_OF_SYSTEMS = {"audit": audit.command, "interface": interface.command, "probe": probe.command}
+_OTHERS = {"claims": claims.command, "report": report.command, "reproduce": reproduce.command}
+_GROUPS = {"scenes": scenes.app, "selfcheck": selfcheck.app, "train": train.app}
+
+
 def everywhere(
     traceback: Annotated[
         bool,

@@ -1,7 +1,6 @@
 """`faultpath audit`: run the arms of one question, decide, report."""
 
 import hashlib
-import os
 import re
 import sys
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import TimeLimit, numbers, path, settings
+from faultpath.cli.options import SET, TimeLimit, numbers, path, settings, worker_count
 
 FAILED_TRIALS = 1
 LONGEST_NAME = 180
@@ -18,7 +17,11 @@ LONGEST_NAME = 180
 
 def command(
     system: Annotated[
-        str, typer.Argument(help="`quadrotor`, `module:attribute` or `file.py:attribute`.")
+        str,
+        typer.Argument(
+            help="`quadrotor`, `module:attribute` or `file.py:attribute`; --help after it shows "
+            "its own options too."
+        ),
     ],
     baseline: Annotated[str, typer.Option(help="Variant to compare with.")],
     repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
@@ -31,7 +34,7 @@ def command(
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
     scenes: Annotated[int | None, typer.Option(help="Run only the first so many scenes.")] = None,
     seeds: Annotated[
-        str, typer.Option(help="Seeds of the noise; quadrotor: also of the trained models.")
+        str, typer.Option(help="Seeds of the noise, and of trained models where there are any.")
     ] = "0",
     primary: Annotated[
         str | None,
@@ -41,28 +44,14 @@ def command(
         Literal["scenes", "models"],
         typer.Option(help="To new scenes, or to newly trained models too (several seeds)."),
     ] = "scenes",
-    wind: Annotated[str | None, typer.Option(help="Quadrotor: wind level, L0 to L3.")] = None,
-    environment: Annotated[
-        str | None, typer.Option(help="Quadrotor: obstacles or free-space.")
-    ] = None,
-    predictor: Annotated[
-        str | None, typer.Option(help="Quadrotor: wm-a-wind (default), dki, dki-drag, …")
-    ] = None,
-    clearance: Annotated[
-        str | None, typer.Option(help="Quadrotor: depth (default among obstacles) or true.")
-    ] = None,
-    planner: Annotated[str | None, typer.Option(help="Quadrotor: terminal or running.")] = None,
-    device: Annotated[str | None, typer.Option(help="Quadrotor: cpu (default) or cuda.")] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
-    ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
     ] = None,
     workers: Annotated[
         int | None,
         typer.Option(
-            help="Worker processes, 0 for none beside this one; default one a core, or one a GPU."
+            help="Worker processes, 0 for none beside this one; default one a core, if that helps."
         ),
     ] = None,
     time_limit: TimeLimit = None,
@@ -74,15 +63,7 @@ def command(
     from faultpath.patience import patience
     from faultpath.trials import SystemSpec, library_of, load_system
 
-    named = {
-        "wind": wind,
-        "environment": environment,
-        "predictor": predictor,
-        "clearance": clearance,
-        "planner": planner,
-        "device": device,
-    }
-    options = settings(set_ or [], {k: v for k, v in named.items() if v is not None})
+    options = settings(set_ or [])
     spec = SystemSpec(name=system, options=options)
     with patience(system, time_limit):
         built = load_system(spec)
@@ -108,15 +89,10 @@ def command(
 
     name = _name(audit.study.name, fault, library, scenes, seeds, options)
     folder, other = (out, "") if out else keyed(Path("runs"), name, system_code(built, spec).state)
-    count = _workers(options) if workers is None else workers
+    count = worker_count(built, workers)
 
     failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other, time_limit)
     return FAILED_TRIALS if failed else 0
-
-
-def _workers(options: dict[str, str]) -> int:
-    """Return one worker a core, or one alone to feed a GPU."""
-    return 1 if options.get("device", "cpu") != "cpu" else os.cpu_count() or 1
 
 
 def _name(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path, refuse_unless
+from faultpath.cli.options import TimeLimit, path, refuse_unless, worker_count
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
@@ -56,7 +56,6 @@ def command(
         )
         return _show(run, as_json)
     profile = profile or "paper"
-    from faultpath.cli.reproduce import crew
     from faultpath.studies.run import plan, standing
 
     options = {} if device is None else {"device": device}
@@ -66,7 +65,9 @@ def command(
     from faultpath.cli.studies import carry_out, tell
 
     line = ("faultpath", *sys.argv[1:])
-    done = carry_out(asked, folder, crew(workers, device), line, as_json, other, time_limit)
+    done = carry_out(
+        asked, folder, worker_count(asked.system, workers), line, as_json, other, time_limit
+    )
     if as_json:
         _print(done.reproduction.ledger)
     else:

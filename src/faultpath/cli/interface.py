@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import path, settings
+from faultpath.cli.options import SET, path, settings
 
 
 def command(
@@ -20,9 +20,7 @@ def command(
     schema: Annotated[
         Path | None, typer.Option(parser=path, help="Write the JSON Schema of interface files.")
     ] = None,
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="Option of the system, key=value.")
-    ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
     """Print a system's information interface, and draw it."""
     from faultpath.cli.terminal import SafeConsole

@@ -85,12 +85,14 @@ def _run(arguments: list[str]) -> int:
     """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
     import typer
 
-    from faultpath.cli.app import app
+    from faultpath.cli.app import build
     from faultpath.cli.options import check_arguments
 
     check_arguments(arguments)
     try:
-        with typer.main.get_command(app).make_context("faultpath", arguments) as context:
+        with typer.main.get_command(build(arguments)).make_context(
+            "faultpath", arguments
+        ) as context:
             status = context.command.invoke(context)
     except typer.Exit as end:
         status = end.exit_code

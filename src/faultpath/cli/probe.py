@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import numbers, path, settings
+from faultpath.cli.options import SET, numbers, path, settings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -35,9 +35,7 @@ def command(
         str, typer.Option(help="Variant whose flights, under correct inputs, give the windows.")
     ] = "true-parameter",
     seeds: Annotated[str, typer.Option(help="Seeds of the trained models.")] = "0",
-    set_: Annotated[
-        list[str] | None, typer.Option("--set", help="Any option of the system, key=value.")
-    ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
     out: Annotated[
         Path, typer.Option(parser=path, help="Folder that keeps recordings and measurements.")

@@ -1,13 +1,12 @@
 """`faultpath reproduce`: the paper's tables, figures and claims."""
 
-import os
 import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path
+from faultpath.cli.options import TimeLimit, path, worker_count
 
 FAILED_TRIALS = 1
 
@@ -45,14 +44,12 @@ def command(
 
     line = ("faultpath", *sys.argv[1:])
     done = carry_out(
-        asked, folder, crew(workers, device), line, first=other, time_limit_s=time_limit
+        asked,
+        folder,
+        worker_count(asked.system, workers),
+        line,
+        first=other,
+        time_limit_s=time_limit,
     )
     tell(asked, done)
     return FAILED_TRIALS if done.reproduction.failed_trials else 0
-
-
-def crew(workers: int | None, device: str | None) -> int:
-    """Return the number of worker processes: one a core, or one alone to feed a GPU."""
-    if workers is not None:
-        return workers
-    return 1 if device not in (None, "cpu") else os.cpu_count() or 1

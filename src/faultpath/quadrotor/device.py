@@ -2,13 +2,13 @@
 
 from collections.abc import Generator
 from contextlib import contextmanager
-from enum import StrEnum
 from typing import Any
 
 import torch
 from torch import Tensor
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.choices import DeviceName
 
 CPU = torch.device("cpu")
 
@@ -16,16 +16,9 @@ AT_HAND = frozenset({"cpu"})
 """Types of device whose values the host reads without waiting for queued work."""
 
 
-class DeviceName(StrEnum):
-    """Where worlds and planners are computed."""
-
-    CPU = "cpu"
-    CUDA = "cuda"
-
-    @property
-    def place(self) -> torch.device:
-        """The device itself; of several GPUs the first that is visible."""
-        return CPU if self is DeviceName.CPU else torch.device("cuda", 0)
+def device_of(name: DeviceName) -> torch.device:
+    """Return a device by name; of several GPUs the first that is visible."""
+    return CPU if name is DeviceName.CPU else torch.device("cuda", 0)
 
 
 def at_hand(device: torch.device) -> bool:

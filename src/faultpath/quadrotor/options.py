@@ -1,15 +1,18 @@
-"""The choices a user makes about the quadrotor system, and the frozen settings behind them."""
+"""What a user chose of the quadrotor, and the frozen settings behind it."""
 
-from collections.abc import Sequence
-from enum import StrEnum
 from typing import Self
 
 import torch
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.device import DeviceName, require
-from faultpath.quadrotor.models import PREDICTORS
+from faultpath.quadrotor.choices import (
+    ClearanceName,
+    Environment,
+    PlannerName,
+    QuadrotorChoices,
+    SamplerName,
+)
+from faultpath.quadrotor.device import device_of, require
 from faultpath.quadrotor.planner import (
     MPPI,
     AutoregressiveSampler,
@@ -27,43 +30,7 @@ from faultpath.quadrotor.planner import (
 )
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.rollout import rolling
-
-
-class Wind(StrEnum):
-    """Wind levels (paper, Section IV-B)."""
-
-    L0 = "L0"
-    L1 = "L1"
-    L2 = "L2"
-    L3 = "L3"
-
-
-class Environment(StrEnum):
-    """Whether the scene's obstacles are there or only its outer boundaries."""
-
-    OBSTACLES = "obstacles"
-    FREE_SPACE = "free-space"
-
-
-class ClearanceName(StrEnum):
-    """Source of the clearance channel."""
-
-    DEPTH = "depth"
-    TRUE = "true"
-
-
-class PlannerName(StrEnum):
-    """Planner variants: where along the horizon the distance to the goal counts."""
-
-    TERMINAL = "terminal"
-    RUNNING = "running"
-
-
-class SamplerName(StrEnum):
-    """Samplers of candidates; see `AutoregressiveSampler` and `planner.modes`."""
-
-    AUTOREGRESSIVE = "autoregressive"
-    MODE_PRESERVING = "mode-preserving"
+from faultpath.trials.options import call
 
 
 class PlannerSettings(BaseModel):
@@ -80,57 +47,28 @@ class PlannerSettings(BaseModel):
     """Fraction of the spread of the better half of the candidates' costs."""
 
 
-class QuadrotorOptions(BaseModel):
-    """One configuration of the quadrotor."""
+class QuadrotorOptions(QuadrotorChoices):
+    """One configuration of the quadrotor: what a user chose, and what is frozen."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    wind: Wind = Wind.L0
-    environment: Environment = Environment.OBSTACLES
-    clearance: ClearanceName = ClearanceName.DEPTH
-    predictor: str = "wm-a-wind"
-    """Predictor of the variants that name none, a key of `models.PREDICTORS`."""
-    predictor_seed: int = Field(default=0, ge=0, le=2)
-    """Which training of it; variants that name a predictor take the seed of their arm."""
-    planner: PlannerName = PlannerName.TERMINAL
-    sampler: SamplerName = SamplerName.AUTOREGRESSIVE
-    candidates: int = SamplerSettings().candidates
     settings: PlannerSettings = PlannerSettings()
-    device: DeviceName = DeviceName.CPU
-    """What computes worlds and planners; see `docs/design/device.md`."""
 
     @classmethod
-    def parse(cls, **options: str) -> Self:
-        """Read options as the command line gives them; `UserError` names what there is.
+    def of(cls, choices: QuadrotorChoices) -> Self:
+        """Return the options behind some choices; `UserError` where there is no such device.
 
         Trials in free space have ground-truth clearance, those among obstacles the depth model,
         unless `clearance` says otherwise (paper, Section IV-A).
         """
-        kinds: dict[str, Sequence[str]] = {
-            "wind": tuple(Wind),
-            "environment": tuple(Environment),
-            "clearance": tuple(ClearanceName),
-            "predictor": tuple(PREDICTORS),
-            "predictor_seed": ("0", "1", "2"),
-            "planner": tuple(PlannerName),
-            "sampler": tuple(SamplerName),
-            "candidates": ("512", "1024", "2048"),  # paper, Sections IV-A and VII-B
-            "device": tuple(DeviceName),
-        }
-        unknown = sorted(set(options) - set(kinds))
-        if unknown:
-            raise UserError(
-                f"the quadrotor has no option '{unknown[0]}'; it has {', '.join(kinds)}."
-            )
-        for option, value in options.items():
-            if value not in kinds[option]:
-                known = ", ".join(kinds[option])
-                raise UserError(f"unknown {option} '{value}'; choose one of {known}.")
-        if options.get("environment") == Environment.FREE_SPACE:
-            options.setdefault("clearance", ClearanceName.TRUE)
-        parsed = cls.model_validate(options)
-        require(parsed.device)
-        return parsed
+        given = choices.model_dump(include=choices.model_fields_set)
+        if choices.environment is Environment.FREE_SPACE:
+            given.setdefault("clearance", ClearanceName.TRUE)
+        require(choices.device)
+        return cls.model_validate(given)
+
+    @classmethod
+    def parse(cls, **options: str) -> Self:
+        """Read options as the command line gives them; `UserError` names what there is."""
+        return call(cls.of, options, "the quadrotor")
 
     @property
     def free_space(self) -> bool:
@@ -140,7 +78,7 @@ class QuadrotorOptions(BaseModel):
     @property
     def place(self) -> torch.device:
         """Where tensors are made."""
-        return self.device.place
+        return device_of(self.device)
 
     def build_planner(self, predictor: Predictor) -> MPPI:
         """Return the planner that the options name, around a predictor."""

@@ -15,13 +15,14 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.quadrotor import native
 from faultpath.quadrotor.checkpoint import shipped_folder
+from faultpath.quadrotor.choices import ClearanceName, DeviceName
 from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
-from faultpath.quadrotor.device import CPU, DeviceName, arithmetic, describe
+from faultpath.quadrotor.device import CPU, arithmetic, describe
 from faultpath.quadrotor.flight import Flight
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.navigator import Navigator, WindReconstruction
-from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
+from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
@@ -35,11 +36,6 @@ from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, System, Variant
 
 
-def create(**options: str) -> System:
-    """Build the quadrotor from options of the command line; `UserError` for a wrong one."""
-    return Quadrotor.parse(**options)
-
-
 class Quadrotor(System):
     """Flies a block of scenes with the modules under test behind taps."""
 
@@ -49,7 +45,8 @@ class Quadrotor(System):
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options
-        self.block_size = 50 if options.device is DeviceName.CPU else 100  # a GPU takes a library
+        self.parallel = options.device is DeviceName.CPU
+        self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
         self._wirings = {wiring.name: wiring for wiring in wirings(options)}
         self._variants = {

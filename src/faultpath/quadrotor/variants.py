@@ -11,9 +11,10 @@ from dataclasses import dataclass
 import torch
 
 from faultpath.interface import Interface
+from faultpath.quadrotor.choices import ClearanceName
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS, predictor, reconstruction
-from faultpath.quadrotor.options import ClearanceName, QuadrotorOptions
+from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.trials import Variant

@@ -4,9 +4,10 @@ from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
-from faultpath.trials.registry import load_measurer, load_system
+from faultpath.trials.registry import load_measurer, load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
 from faultpath.trials.system import Library, SceneRef, System, Variant
 from faultpath.trials.table import OutcomeTable, TrialRow
@@ -17,6 +18,8 @@ __all__ = [
     "FloorPlan",
     "Library",
     "Mismatch",
+    "Offered",
+    "Option",
     "Outcome",
     "OutcomeTable",
     "PairingRefused",
@@ -40,6 +43,7 @@ __all__ = [
     "load_system",
     "mismatch_words",
     "pair",
+    "system_options",
     "system_shown",
     "variant_shown",
 ]

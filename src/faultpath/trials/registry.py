@@ -2,7 +2,6 @@
 
 import importlib
 import importlib.util
-import inspect
 import os
 import sys
 from collections.abc import Generator
@@ -20,9 +19,10 @@ from faultpath.errors import SystemMistake, UserError
 from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
+from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
 
-BUILT_IN = {"quadrotor": "faultpath.quadrotor.system:create"}
+BUILT_IN = {"quadrotor": "faultpath.quadrotor.factory:create"}
 """Names that stand for a factory. They are strings, so that naming one imports nothing."""
 
 MEASURERS = {"quadrotor": "faultpath.quadrotor.evidence:measure"}
@@ -35,7 +35,7 @@ def load_system(spec: SystemSpec) -> System:
     """Build the system that `spec` names.
 
     The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`. The attribute
-    is called with the options as keyword arguments, all strings, and returns a `System`.
+    is called with the options, read as `trials.options` says, and returns a `System`.
     `UserError` for a name, attribute or option that does not exist, a missing package, or a module
     of the system's own of which this process would run another one of that name.
 
@@ -48,30 +48,46 @@ def load_system(spec: SystemSpec) -> System:
 
 
 def _load(spec: SystemSpec) -> System:
-    place, attribute = _target(spec)
     try:
-        module = _load_file(place) if place.endswith(".py") else _load_module(place, spec)
-        if module.__file__ is not None and spec.name not in BUILT_IN:
-            note_system(module.__file__)
-        factory = getattr(module, attribute, None)
-        if not callable(factory):
-            raise UserError(f"{place} has no function {attribute!r} that builds a system")
-        _check_options(spec, factory)
-        system = factory(**spec.options)
+        system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
     except ModuleNotFoundError as error:
         raise _missing(spec.name, error) from error
     if not isinstance(system, System):
         raise UserError(
-            f"{place}:{attribute} returned a {type(system).__name__}: it must return a "
+            f"{':'.join(_target(spec.name))} returned a {type(system).__name__}: it must return a "
             "faultpath.trials.system.System"
         )
     check_system(system, spec.name)
     return system
 
 
+def system_options(name: str) -> tuple[Option, ...]:
+    """Return the options that the system `name` takes, without building it.
+
+    A system of one's own is imported for that. `UserError` as `load_system`.
+    """
+    try:
+        with _undone_on_failure():
+            return options_of(_factory(name))
+    except ModuleNotFoundError as error:
+        raise _missing(name, error) from error
+
+
+def _factory(name: str) -> Factory:
+    """Return what builds the system `name`; raises as `load_system`, or `ModuleNotFoundError`."""
+    place, attribute = _target(name)
+    module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
+    if module.__file__ is not None and name not in BUILT_IN:
+        note_system(module.__file__)
+    factory = getattr(module, attribute, None)
+    if not callable(factory):
+        raise UserError(f"{place} has no function {attribute!r} that builds a system")
+    return factory
+
+
 def factory_root(spec: SystemSpec) -> Root:
     """Return the module that builds the system; `UserError` where `load_system` raises one."""
-    place, _ = _target(spec)
+    place, _ = _target(spec.name)
     if not place.endswith(".py"):
         if spec.name not in BUILT_IN:
             _look_here()
@@ -99,8 +115,8 @@ def load_measurer(name: str) -> Measurer:
         raise _missing(name, error) from error
 
 
-def _target(spec: SystemSpec) -> tuple[str, str]:
-    target = BUILT_IN.get(spec.name, spec.name)
+def _target(name: str) -> tuple[str, str]:
+    target = BUILT_IN.get(name, name)
     place, separator, attribute = target.rpartition(":")
     if (
         not separator
@@ -109,14 +125,14 @@ def _target(spec: SystemSpec) -> tuple[str, str]:
         or (place.startswith(".") and not place.endswith(".py"))
     ):
         raise UserError(
-            f"there is no system {spec.name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
+            f"there is no system {name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
             "factory as 'module:attribute' or 'path/to/file.py:attribute'"
         )
     return place, attribute
 
 
-def _load_module(name: str, spec: SystemSpec) -> ModuleType:
-    if spec.name not in BUILT_IN:
+def _load_module(name: str, system: str) -> ModuleType:
+    if system not in BUILT_IN:
         _look_here()
         _check_own(Root(name), Path.cwd())
     try:
@@ -217,20 +233,6 @@ def _look_beside(path: Path) -> None:
     """Find the files beside one, which it may import."""
     if str(path.parent) not in sys.path:
         sys.path.append(str(path.parent))
-
-
-def _check_options(spec: SystemSpec, factory: object) -> None:
-    if not callable(factory):
-        return
-    signature = inspect.signature(factory)
-    try:
-        signature.bind(**spec.options)
-    except TypeError as error:
-        known = [name for name, p in signature.parameters.items() if p.kind is not p.VAR_KEYWORD]
-        raise UserError(
-            f"the options of system {spec.name!r} do not fit ({error}): it takes "
-            f"{', '.join(known) or 'none'}"
-        ) from error
 
 
 def _missing(name: str, error: ModuleNotFoundError) -> SystemMistake:

@@ -69,6 +69,8 @@ class System(ABC):
     control_dt_s: float
     block_size: int = 20
     """Scenes handed to one call of `run`: the unit of work, of storage and of resuming."""
+    parallel: bool = True
+    """Whether several worker processes are faster than one; not where a GPU does the work."""
     trained: bool = False
     """Whether variants hold trained models: results then speak of these models, as trained."""
     ends: Mapping[Status, str] = MappingProxyType({})

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from faultpath.errors import UserError
 from faultpath.evidence import Recording
-from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.closed_loop import record_flights
 from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows, join
 from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
 from faultpath.store import atomic
-from faultpath.trials import SystemSpec
+from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.state import system_code
 
 BLOCK = 25
@@ -69,7 +69,7 @@ def spec(recording: Recording) -> SystemSpec:
 
 def quadrotor(recording: Recording) -> Quadrotor:
     """Return the system that a recording is flown with; `UserError` for a wrong option."""
-    system = create(**recording.options)
+    system = load_system(spec(recording))
     assert isinstance(system, Quadrotor)
     return system
 

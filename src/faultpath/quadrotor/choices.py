@@ -1,0 +1,96 @@
+"""What a user chooses of the quadrotor. Nothing here needs torch, so that asking is quick.
+
+A new option is one field of `QuadrotorChoices`: flags, help and messages follow from it.
+"""
+
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict
+
+from faultpath.trials import Offered
+
+
+class Wind(StrEnum):
+    """Wind levels (paper, Section IV-B)."""
+
+    L0 = "L0"
+    L1 = "L1"
+    L2 = "L2"
+    L3 = "L3"
+
+
+class Environment(StrEnum):
+    """Whether the scene's obstacles are there or only its outer boundaries."""
+
+    OBSTACLES = "obstacles"
+    FREE_SPACE = "free-space"
+
+
+class ClearanceName(StrEnum):
+    """Source of the clearance channel."""
+
+    DEPTH = "depth"
+    TRUE = "true"
+
+
+class PlannerName(StrEnum):
+    """Planner variants: where along the horizon the distance to the goal counts."""
+
+    TERMINAL = "terminal"
+    RUNNING = "running"
+
+
+class SamplerName(StrEnum):
+    """Samplers of candidates; see `AutoregressiveSampler` and `planner.modes`."""
+
+    AUTOREGRESSIVE = "autoregressive"
+    MODE_PRESERVING = "mode-preserving"
+
+
+class DeviceName(StrEnum):
+    """Where worlds and planners are computed."""
+
+    CPU = "cpu"
+    CUDA = "cuda"
+
+
+PREDICTORS = (
+    "dki",
+    "dki-drag",
+    "true-parameter",
+    "wm-a",
+    "wm-a+dcc",
+    "wm-u",
+    "wm-u+dcc",
+    "wm-a-wind",
+    "wm-a-nowind",
+)
+"""The names in `models.PREDICTORS`, which knows how to load each."""
+
+
+class QuadrotorChoices(BaseModel):
+    """One configuration of the quadrotor, as far as a user chooses it."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    wind: Annotated[Wind, "Wind level."] = Wind.L0
+    environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES
+    clearance: Annotated[
+        ClearanceName,
+        "From the depth model, or the geometry's own: a reference, and the default in free space.",
+    ] = ClearanceName.DEPTH
+    predictor: Annotated[str, "Predictor of the variants that name none.", Offered(*PREDICTORS)] = (
+        "wm-a-wind"
+    )
+    predictor_seed: Annotated[
+        int,
+        "Which training of it; variants that name a predictor take the seed of their arm.",
+        Offered(0, 1, 2),
+    ] = 0
+    planner: Annotated[PlannerName, "Where the distance to the goal counts."] = PlannerName.TERMINAL
+    sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
+    candidates: Annotated[
+        int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
+    ] = 512
+    device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU

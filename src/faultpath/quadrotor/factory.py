@@ -1,0 +1,12 @@
+"""What builds the quadrotor. Torch loads when it is built, not when its options are asked for."""
+
+from faultpath.quadrotor.choices import QuadrotorChoices
+from faultpath.trials import System
+
+
+def create(choices: QuadrotorChoices) -> System:
+    """Build the quadrotor; `UserError` where the device is not there."""
+    from faultpath.quadrotor.options import QuadrotorOptions
+    from faultpath.quadrotor.system import Quadrotor
+
+    return Quadrotor(QuadrotorOptions.of(choices))

@@ -1,0 +1,198 @@
+"""The options of a system, read from what its factory takes, and handed to it.
+
+A factory takes keyword parameters, or one pydantic model with a field for each option. Annotations
+say of what type an option is, what may be chosen, and, as a text in `Annotated`, what it means:
+
+    def create(gain: Annotated[Literal["low", "high"], "Gain of the controller."] = "low") -> System
+
+Options are text on their way to a factory, because worker processes and run folders get them so.
+"""
+
+import inspect
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from enum import Enum
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+
+from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
+
+from faultpath.errors import UserError
+
+Factory = Callable[..., object]
+_Built = TypeVar("_Built")
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+@dataclass(frozen=True)
+class Option:
+    """One option of a system."""
+
+    name: str
+    help: str = ""
+    choices: tuple[str, ...] = ()
+    """What may be chosen, as text; empty where the values cannot be listed."""
+    default: str | None = None
+    """`None` where there is none, or where other options decide."""
+
+
+class Offered:
+    """In `Annotated`: what of a wider type may be chosen from outside, such as three numbers."""
+
+    def __init__(self, *choices: object) -> None:
+        self.choices = {_text(choice): choice for choice in choices}
+
+
+@dataclass(frozen=True)
+class _Slot:
+    """Where a factory takes an option."""
+
+    option: Option
+    annotation: Any
+    values: Mapping[str, Any]
+    """By text, where they can be listed."""
+    required: bool
+
+    def read(self, text: str, system: str) -> Any:
+        """Return the value that `text` stands for; `UserError` where there is none."""
+        if self.values:
+            if text in self.values:
+                return self.values[text]
+            known = ", ".join(self.values)
+            raise UserError(f"unknown {self.option.name} '{text}'; choose one of {known}.")
+        try:
+            return TypeAdapter[Any](self.annotation).validate_python(text)
+        except PydanticSchemaGenerationError:
+            return text  # a type of the system's own: it may make of the text what it likes
+        except ValidationError as error:
+            said = error.errors(include_url=False)[0]["msg"]
+            raise UserError(
+                f"{system} cannot have the {self.option.name} '{text}': "
+                f"{said[0].lower()}{said[1:].rstrip('.')}."
+            ) from None
+
+
+def options_of(factory: Factory) -> tuple[Option, ...]:
+    """Return the options that a factory declares, in its order."""
+    return tuple(slot.option for slot in _slots(factory).values())
+
+
+def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) -> _Built:
+    """Return what a factory builds from options given as text.
+
+    Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
+    for a value that the option cannot have.
+    """
+    slots, model = _slots(factory), _model(factory)
+    names = ", ".join(slots)
+    for name in given:
+        if name not in slots and not _takes_any(factory):
+            raise UserError(
+                f"the options of {system} do not include '{name}': it takes {names or 'none'}."
+            )
+    for name, slot in slots.items():
+        if slot.required and name not in given:
+            raise UserError(f"{system} needs the option '{name}': give it, it takes {names}.")
+    values = {k: slots[k].read(v, system) if k in slots else v for k, v in given.items()}
+    return factory(**values) if model is None else factory(build(model, values, system))
+
+
+def build(model: type[_Model], values: Mapping[str, Any], system: str) -> _Model:
+    """Return the model of some options that fit one by one; `UserError` where not together."""
+    try:
+        return model.model_validate(values)
+    except ValidationError as error:
+        said = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
+        raise UserError(f"the options of {system} do not fit: {said.rstrip('.')}.") from None
+
+
+def as_text(options: Mapping[str, object]) -> dict[str, str]:
+    """Return options as the text that stands for them; `UserError` for what has none."""
+    for name, value in options.items():
+        if not isinstance(value, str | int | float | Enum):
+            raise UserError(
+                f"the option {name!r} is a {type(value).__name__}: give text or a number."
+            )
+    return {name: _text(value) for name, value in options.items()}
+
+
+def _slots(factory: Factory) -> dict[str, _Slot]:
+    model = _model(factory)
+    if model is not None:
+        return {
+            name: _slot(name, info.annotation, info.metadata, info.default, info.is_required())
+            for name, info in model.model_fields.items()
+        }
+    found: dict[str, _Slot] = {}
+    hints = _hints(factory)
+    for name, parameter in _parameters(factory).items():
+        if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
+            written = parameter.annotation
+            known = str if written is parameter.empty or isinstance(written, str) else written
+            kind, *notes = _split(hints.get(name, known))
+            required = parameter.default is parameter.empty
+            found[name] = _slot(name, kind, notes, parameter.default, required)
+    return found
+
+
+def _slot(name: str, kind: Any, notes: Iterable[Any], default: Any, required: bool) -> _Slot:
+    notes = tuple(notes)
+    said = " ".join(note for note in notes if isinstance(note, str))
+    values = next((note.choices for note in notes if isinstance(note, Offered)), _values(kind))
+    shown = None if required or default is None else _text(default)
+    return _Slot(Option(name, said, tuple(values), shown), kind, values, required)
+
+
+def _values(kind: Any) -> dict[str, Any]:
+    """Return what can be chosen of a type, by text; empty where that cannot be listed."""
+    if kind is bool:
+        return {"true": True, "false": False}
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return {_text(member): member for member in kind}
+    if get_origin(kind) is Literal:
+        return {_text(value): value for value in get_args(kind)}
+    inner = [each for each in get_args(kind) if each is not type(None)]
+    if len(inner) == 1 and type(None) in get_args(kind):
+        return _values(inner[0])
+    return {}
+
+
+def _split(hint: Any) -> tuple[Any, ...]:
+    return get_args(hint) if get_origin(hint) is Annotated else (hint,)
+
+
+def _text(value: object) -> str:
+    if isinstance(value, Enum):
+        return str(value.value)
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _model(factory: Factory) -> type[BaseModel] | None:
+    """Return the model that a factory takes in place of parameters, if it does."""
+    names = list(_parameters(factory))
+    kind = _hints(factory).get(names[0]) if len(names) == 1 else None
+    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
+
+
+def _takes_any(factory: Factory) -> bool:
+    return any(p.kind is p.VAR_KEYWORD for p in _parameters(factory).values())
+
+
+def _parameters(factory: Factory) -> Mapping[str, inspect.Parameter]:
+    try:
+        return inspect.signature(factory).parameters
+    except (TypeError, ValueError):  # of some built-in functions nothing is known
+        return {}
+
+
+def _hints(factory: Factory) -> dict[str, Any]:
+    made: Any = factory.__init__ if isinstance(factory, type) else factory
+    found: dict[str, Any] = {}
+    for name, written in getattr(made, "__annotations__", {}).items():
+        holder = types.SimpleNamespace(__annotations__={name: written})
+        names = getattr(made, "__globals__", {})
+        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
+            found |= typing.get_type_hints(holder, names, include_extras=True)
+    return found

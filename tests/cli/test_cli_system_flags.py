@@ -1,0 +1,88 @@
+"""A system's own options as flags: shown with it, read with it, and of no other system."""
+
+import json
+
+import pytest
+from cli_runs import ROOT, TOY, audit, faultpath
+
+QUADROTOR = ("wind", "environment", "clearance", "predictor", "planner", "candidates", "device")
+
+MINE = f"""
+import sys
+from typing import Annotated, Literal
+sys.path.append({str(ROOT / "examples")!r})
+import toy
+
+def create(
+    gear: Annotated[Literal["low", "high"], "Gear of the cart."] = "low",
+    steps: int = 3,
+    scenes: str = "",
+):
+    assert isinstance(steps, int)
+    return toy.create()
+"""
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(MINE)
+
+
+@pytest.mark.parametrize("verb", ["audit", "interface", "probe"])
+def test_help_shows_the_options_of_the_system_that_is_named(verb):
+    shown = faultpath(verb, "quadrotor", "--help").out
+    assert "Options of quadrotor" in shown
+    assert all(f"--{name} " in shown for name in QUADROTOR)
+    for other in ((verb, "--help"), (verb, TOY, "--help"), (verb, "nowhere.py:x", "--help")):
+        ended = faultpath(*other)
+        assert ended.status == 0
+        assert "--set" in ended.out
+        assert "Options of" not in ended.out
+        assert "uadrotor:" not in ended.out
+        assert not any(f"--{name} " in ended.out for name in QUADROTOR)
+    mine = faultpath(verb, "--help", "mine.py:create").out
+    assert "Options of mine.py:create" in mine
+    assert "Gear of the cart; default low." in mine
+    assert "<low|high>" in mine
+
+
+def test_a_flag_is_what_set_would_be(tmp_path):
+    line = {"system": "mine.py:create", "scenes": 2}
+    assert audit("--gear", "high", "--steps=4", out="one", **line).status == 0
+    assert audit("--set", "gear=high", "--set", "steps=4", out="two", **line).status == 0
+    records = [json.loads((tmp_path / name / "record.json").read_text()) for name in ("one", "two")]
+    assert records[0] == records[1]
+    assert records[0]["question"]["options"] == {"gear": "high", "steps": "4"}
+
+
+def test_a_flag_may_stand_before_the_system():
+    ended = faultpath("interface", "--gear", "high", "mine.py:create")
+    assert (ended.status, ended.err) == (0, "")
+    assert "'third'" in faultpath("interface", "--gear", "third", "mine.py:create").refused()
+
+
+def test_a_flag_of_the_verb_keeps_its_meaning():
+    assert audit("--set", "scenes=x", system="mine.py:create", scenes=2, out="run").status == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "options", "says"),
+    [
+        (["--wnd", "L3"], {"system": "quadrotor"}, ["--wnd", "--wind, --environment"]),
+        (["--wind=L3"], {}, ["--wind", "toy.py:create", "takes none"]),
+        (["--gear", "3"], {"system": "mine.py:create"}, ["'3'", "low, high"]),
+        (["--steps", "x"], {"system": "mine.py:create"}, ["steps 'x'", "integer"]),
+        (["--gear", "low", "--set", "gear=low"], {"system": "mine.py:create"}, ["'gear' twice"]),
+        (["--wind", "L3"], {"system": "nowhere.py:create"}, ["no file 'nowhere.py'"]),
+        (["--wind", "L3"], {"system": "quadcopter"}, ["no system 'quadcopter'"]),
+    ],
+)
+def test_a_wrong_flag_is_told_in_a_sentence(arguments, options, says, tmp_path):
+    sentence = audit(*arguments, **options).refused()
+    for part in says:
+        assert part in sentence
+    assert [path.name for path in tmp_path.iterdir() if path.suffix != ".py"] in (
+        [],
+        ["__pycache__"],
+    )
