@@ -9,7 +9,7 @@ from cli_runs import ROOT, faultpath
 from faultpath.cli.main import INTERRUPTED
 from faultpath.quadrotor import checkpoint
 from faultpath.quadrotor.card import read_card
-from faultpath.quadrotor.training import catalogue, jobs
+from faultpath.quadrotor.training import catalogue, job_pools
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
 from fitting_toys import Toy, entry
@@ -88,7 +88,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
         progress(1.0, 2.0)
         asked.append((folder, pools, workers))
 
-    monkeypatch.setattr(jobs, "collect", collect)
+    monkeypatch.setattr(job_pools, "collect", collect)
     monkeypatch.setattr(
         catalogue,
         "ALL",
@@ -96,7 +96,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
     )
     ended = _train("one", "--data", "flights")
     assert ended.status == 0, ended.err
-    assert asked == [(Path("flights"), ["nominal"], 1)]
+    assert asked == [(Path("flights"), ["nominal"], 0)]
     assert "Collecting nominal" in ended.out
 
 
@@ -110,7 +110,7 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
     needy = catalogue.Entry(
         "needy", entry("needy").factory, ("flown",), "", 9.0, seeds=(0,), after=("one",)
     )
-    monkeypatch.setattr(jobs, "collect", collect)
+    monkeypatch.setattr(job_pools, "collect", collect)
     monkeypatch.setattr(catalogue, "ALL", (needy, entry("one")))
     ended = _train("needy", "one")
     assert ended.status == 0, ended.err

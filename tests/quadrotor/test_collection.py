@@ -35,7 +35,7 @@ def short():
 
 @pytest.fixture(scope="module")
 def pools(short, tmp_path_factory):
-    return collect(tmp_path_factory.mktemp("data"), workers=1, episodes=SMALL)
+    return collect(tmp_path_factory.mktemp("data"), workers=0, episodes=SMALL)
 
 
 def contents(paths):
@@ -82,7 +82,7 @@ def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(p
 
 def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
     monkeypatch.setattr(collection, "SHARD", 4)
-    again = collect(tmp_path, workers=1, episodes=SMALL)
+    again = collect(tmp_path, workers=0, episodes=SMALL)
     for name, path in pools.items():
         one, two = read_pool(path), read_pool(again[name])
         assert np.array_equal(one.values, two.values, equal_nan=True)
@@ -99,9 +99,9 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
             raise Interrupted
 
     with pytest.raises(Interrupted):
-        collect(tmp_path, workers=1, episodes=SMALL, progress=interrupt)
+        collect(tmp_path, workers=0, episodes=SMALL, progress=interrupt)
     seen = []
-    paths = collect(tmp_path, workers=1, episodes=SMALL, progress=lambda *told: seen.append(told))
+    paths = collect(tmp_path, workers=0, episodes=SMALL, progress=lambda *told: seen.append(told))
     assert seen[0] == (3 * 6.0, 12 * 6.0)
     assert seen[-1] == (12 * 6.0, 12 * 6.0)
     assert contents(paths) == contents(pools)
@@ -124,26 +124,26 @@ def test_a_killed_collection_of_two_workers_ends_as_one_of_this_process(tmp_path
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
-    finished = collect(killed, ("wind",), 1, {"wind": 3})
-    assert contents(finished) == contents(collect(whole, ("wind",), 1, {"wind": 3}))
+    finished = collect(killed, ("wind",), 0, {"wind": 3})
+    assert contents(finished) == contents(collect(whole, ("wind",), 0, {"wind": 3}))
 
 
 def test_a_pool_that_is_there_is_kept(pools, tmp_path):
-    first = collect(tmp_path, pools=("nominal",), workers=1, episodes=SMALL)["nominal"]
+    first = collect(tmp_path, pools=("nominal",), workers=0, episodes=SMALL)["nominal"]
     stamp = first.stat().st_mtime_ns
     seen = []
-    collect(tmp_path, ("nominal",), 1, SMALL, progress=lambda *told: seen.append(told))
+    collect(tmp_path, ("nominal",), 0, SMALL, progress=lambda *told: seen.append(told))
     assert first.stat().st_mtime_ns == stamp
     assert seen == [(0.0, 0.0)]
 
 
 def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):
-    path = collect(tmp_path, ("nominal",), 1, SMALL, seed=1)["nominal"]
+    path = collect(tmp_path, ("nominal",), 0, SMALL, seed=1)["nominal"]
     assert not np.array_equal(
         read_pool(path).values[:, 0], read_pool(pools["nominal"]).values[:, 0]
     )
     with pytest.raises(UserError, match="collected with another 'seed'"):
-        collect(tmp_path, ("nominal",), 1, SMALL, seed=2)
+        collect(tmp_path, ("nominal",), 0, SMALL, seed=2)
 
 
 def test_provenance_says_how_the_pool_was_made(pools):
@@ -177,7 +177,7 @@ def test_mistakes_are_told(pools, tmp_path):
 
 @pytest.mark.parametrize("damaged", ["nominal.parquet", "nominal.episodes.parquet", "nominal.json"])
 def test_a_damaged_pool_is_not_read(damaged, tmp_path):
-    path = collect(tmp_path, ("nominal",), 1, {"nominal": 1})["nominal"]
+    path = collect(tmp_path, ("nominal",), 0, {"nominal": 1})["nominal"]
     (tmp_path / damaged).write_bytes(b"?" + (tmp_path / damaged).read_bytes()[1:])
     with pytest.raises(UserError, match="collect it again"):
         read_pool(path)

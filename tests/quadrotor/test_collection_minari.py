@@ -56,7 +56,7 @@ def path(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(flight, "EPISODE_STEPS", 10)
         patch.setattr(flight, "EPISODE_S", 0.5)
-        yield collect(tmp_path_factory.mktemp("data"), ("wind",), 1, {"wind": 4})["wind"]
+        yield collect(tmp_path_factory.mktemp("data"), ("wind",), 0, {"wind": 4})["wind"]
 
 
 def test_every_episode_is_exported_with_its_states_commands_and_vehicle(path, made):

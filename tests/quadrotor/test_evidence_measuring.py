@@ -77,11 +77,11 @@ def test_a_killed_run_goes_on_to_the_same_bytes(whole, library, stop, tmp_path):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        measure(asked(library), None, tmp_path, 1, killing)
+        measure(asked(library), None, tmp_path, 0, killing)
     kept = contents(tmp_path)
     assert 0 < len(kept) < len(contents(folder))
     told = []
-    measure(asked(library), None, tmp_path, 1, lambda done, total: told.append((done, total)))
+    measure(asked(library), None, tmp_path, 0, lambda done, total: told.append((done, total)))
     assert told[0] == (0, 6 - stop)
     assert contents(tmp_path) == contents(folder)
 
@@ -89,7 +89,7 @@ def test_a_killed_run_goes_on_to_the_same_bytes(whole, library, stop, tmp_path):
 def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, library, tmp_path):
     folder, table = whole
     told = []
-    again = measure(asked(library), 2, folder, 1, lambda done, total: told.append(total))
+    again = measure(asked(library), 2, folder, 0, lambda done, total: told.append(total))
     assert told == [0]
     for measurement in table:
         assert np.array_equal(again.values(measurement).values, table.values(measurement).values)

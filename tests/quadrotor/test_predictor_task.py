@@ -19,7 +19,7 @@ EPISODES = {"nominal": 70, "wind": 70}
 @pytest.fixture(scope="module")
 def data(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("data")
-    collect(folder, workers=1, episodes=EPISODES)
+    collect(folder, workers=0, episodes=EPISODES)
     return folder
 
 

@@ -78,7 +78,7 @@ def save(folder, name, seed, data_sha256=None):
 @pytest.fixture(scope="module")
 def data(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("data")
-    collect(folder, workers=1, episodes=EPISODES)
+    collect(folder, workers=0, episodes=EPISODES)
     return folder
 
 

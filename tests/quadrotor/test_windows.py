@@ -27,7 +27,7 @@ torch.set_num_threads(1)
 @pytest.fixture(scope="module")
 def pools(tmp_path_factory):
     folder = tmp_path_factory.mktemp("data")
-    return collect(folder, workers=1, episodes={"nominal": 40, "wind": 40})
+    return collect(folder, workers=0, episodes={"nominal": 40, "wind": 40})
 
 
 @pytest.fixture(scope="module")

@@ -66,7 +66,7 @@ class Measurer(Protocol):
         measurements: Sequence[Measurement],
         scenes: int | None,
         folder: Path,
-        workers: int = 1,
+        workers: int = 0,
         progress: Progress | None = None,
     ) -> EvidenceTable:
         """Record what is missing, measure what is missing, and return all of `measurements`.
@@ -75,7 +75,7 @@ class Measurer(Protocol):
             measurements: What to measure; one that stands there twice is measured once.
             scenes: The first so many scenes of each library; `None`: all.
             folder: Where recordings and measurements are kept, so that the next call goes on.
-            workers: Processes; below 2 everything is done in this one.
+            workers: Processes; 0: everything is done in this one.
             progress: Is told how far it is.
 
         Raises:

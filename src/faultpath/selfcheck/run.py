@@ -3,7 +3,6 @@
 import math
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -13,6 +12,7 @@ from faultpath.selfcheck.coverage import break_even_grid, interval_grid, models_
 from faultpath.selfcheck.detection import detection_grid
 from faultpath.selfcheck.model import Measured, Report, Section
 from faultpath.selfcheck.populations import SCENES
+from faultpath.work import local, run_all
 
 
 class Task(Protocol):
@@ -52,7 +52,8 @@ PROFILES = {
     "full": Profile(SCENES, 20_000, 4_000, 500, 200, 1_000, 2_000),
     "quick": Profile((25,), 500, 200, 20, 1, 10, 30),
 }
-_CHUNK = 8
+_EACH = 8
+"""Settings that are worth starting a process for."""
 
 Progress = Callable[[int, int, float | None], None]
 """Told how many settings are done, of how many, and the seconds left as far as known."""
@@ -61,7 +62,7 @@ Progress = Callable[[int, int, float | None], None]
 def check_statistics(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
     """Simulate everything that ``profile`` holds, on no more processes than it can keep busy.
 
-    `UserError` for an unknown profile.
+    One process is this one itself. `UserError` for an unknown profile.
     """
     if profile not in PROFILES:
         raise UserError(f"there is no profile {profile!r}: choose {' or '.join(PROFILES)}.")
@@ -71,33 +72,20 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
     order = sorted(range(len(tasks)), key=lambda i: (i * 7919) % len(tasks))
     found: dict[int, Measured] = {}
 
-    def note(index: int, measured: Measured) -> None:
-        found[index] = measured
-        if progress is not None:
-            spent = time.perf_counter() - start
-            left = spent * (len(tasks) - len(found)) / len(found) if len(found) > 20 else None
-            progress(len(found), len(tasks), left)
-
-    processes = min(processes, math.ceil(len(tasks) / _CHUNK))
-    if processes > 1:
-        with ProcessPoolExecutor(processes) as pool:
-            mixed = [tasks[i] for i in order]
-            measured = pool.map(_measure, mixed, chunksize=_CHUNK)
-            for index, each in zip(order, measured, strict=True):
-                note(index, each)
-    else:
-        for index in order:
-            note(index, tasks[index].measure())
+    most = math.ceil(len(tasks) / _EACH)
+    with local(min(processes, most) if processes > 1 else 0) as executor:
+        for place, measured in run_all(executor, [tasks[index].measure for index in order]):
+            found[order[place]] = measured
+            if progress is not None:
+                spent = time.perf_counter() - start
+                left = spent * (len(tasks) - len(found)) / len(found) if len(found) > 20 else None
+                progress(len(found), len(tasks), left)
     done = [found[index] for index in range(len(tasks))]
     return Report(
         profile=profile,
         seconds=round(time.perf_counter() - start, 1),
         sections=tuple(_section(name, done) for name in dict.fromkeys(m.section for m in done)),
     )
-
-
-def _measure(task: Task) -> Measured:
-    return task.measure()
 
 
 def _section(name: str, done: Sequence[Measured]) -> Section:

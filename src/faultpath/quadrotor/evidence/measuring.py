@@ -1,17 +1,10 @@
 """Measuring: record what is missing, measure what is missing, and keep both."""
 
 import hashlib
-import os
-import signal
-import threading
-from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from multiprocessing import get_context, parent_process
 from pathlib import Path
-
-import torch
 
 from faultpath.evidence import EvidenceTable, Measurement, Progress
 from faultpath.quadrotor.device import arithmetic
@@ -21,8 +14,7 @@ from faultpath.quadrotor.training.provenance import code_of
 from faultpath.store import atomic, make_folder
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.lock import locked
-
-_ONE_THREAD = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+from faultpath.work import local, run_all
 
 
 @dataclass(frozen=True)
@@ -76,7 +68,7 @@ def measure(
     measurements: Sequence[Measurement],
     scenes: int | None,
     folder: Path,
-    workers: int = 1,
+    workers: int = 0,
     progress: Progress | None = None,
 ) -> EvidenceTable:
     """Measure the quadrotor on recorded windows; see `faultpath.evidence.Measurer`."""
@@ -105,10 +97,11 @@ def measure(
         ]
         total, done = sum(job.flights for job in (*missing, *waiting)), 0
         tell(done, total)
-        for stage in (missing, waiting):
-            for job in _run_all(stage, workers):
-                done += job.flights
-                tell(done, total)
+        with local(workers) as executor:
+            for stage in (missing, waiting):
+                for place, _ in run_all(executor, [job.run for job in stage]):
+                    done += stage[place].flights
+                    tell(done, total)
     found = {job.measurement: read_evidence(job.path).values(job.measurement) for job in jobs}
     return EvidenceTable({measurement: found[measurement] for measurement in asked})
 
@@ -116,40 +109,3 @@ def measure(
 @lru_cache(maxsize=1)
 def _recorded(blocks: tuple[Block, ...], folder: Path) -> Recorded:
     return recorded(blocks, folder)
-
-
-def _run_all(jobs: Sequence[Flying | Measuring], workers: int) -> Iterator[Flying | Measuring]:
-    """Run jobs and yield each when it is done; fewer than two workers are this process itself."""
-    if min(workers, len(jobs)) < 2:
-        for job in jobs:
-            job.run()
-            yield job
-        return
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(dict.fromkeys(_ONE_THREAD, "1"))
-    pool = ProcessPoolExecutor(min(workers, len(jobs)), get_context("spawn"), _start)
-    try:
-        running = {pool.submit(job.run): job for job in jobs}
-        for future in as_completed(running):
-            future.result()
-            yield running[future]
-    finally:
-        pool.shutdown(cancel_futures=True)
-        for name, value in before.items():
-            os.environ.pop(name, None)
-            if value is not None:
-                os.environ[name] = value
-
-
-def _start() -> None:
-    """Make a worker process one thread that ends with Ctrl-C, silently, and with its parent."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    torch.set_num_threads(1)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = parent_process()
-    assert parent is not None
-    parent.join()
-    os._exit(1)

@@ -8,11 +8,10 @@ it was and ends with the same bytes.
 
 import hashlib
 import json
-import multiprocessing
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +35,7 @@ from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.streams import generator
+from faultpath.work import local, run_all
 
 FORMAT = 2
 PER_METRE = 10_000
@@ -132,9 +132,11 @@ def collect(
             atomic.sweep(place)
             todo = [(scene, shard) for scene, shard in shards if not shard.exists()]
             kept = len(shards) - len(todo)
-            for made in _work(recipe, todo, workers):
-                if progress is not None:
-                    progress(kept + made, len(shards))
+            calls = [partial(_make, recipe, *each) for each in todo]
+            with local(workers) as executor:
+                for made, _ in enumerate(run_all(executor, calls), 1):
+                    if progress is not None:
+                        progress(kept + made, len(shards))
         atomic.write_text(path, json.dumps(asked, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
@@ -235,21 +237,6 @@ def _points(recipe: Recipe, image: Tensor, random: np.random.Generator) -> Tenso
 def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene, Path]]:
     place = provenance_path(folder).with_suffix("") / digest(recipe)[:16]
     return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
-
-
-def _work(recipe: Recipe, todo: Sequence[tuple[Scene, Path]], workers: int) -> Iterator[int]:
-    """Make shards and yield how many there are."""
-    if workers < 2:
-        for made, (scene, shard) in enumerate(todo, 1):
-            _make(recipe, scene, shard)
-            yield made
-        return
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(workers, context, torch.set_num_threads, (1,)) as pool:
-        futures = [pool.submit(_make, recipe, *each) for each in todo]
-        for made, future in enumerate(as_completed(futures), 1):
-            future.result()
-            yield made
 
 
 def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:

@@ -46,7 +46,7 @@ class ClearanceTask(Task):
 
     def load(self) -> None:
         """Read the images; make them first where they are missing."""
-        clearance_data.collect(self._folder, self._recipe, workers=1)
+        clearance_data.collect(self._folder, self._recipe, workers=0)
         self.use(clearance_data.read(self._folder, self._recipe))
 
     def use(self, samples: Samples) -> None:

@@ -11,7 +11,6 @@ import json
 import logging
 import shutil
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import closing
 from pathlib import Path
 
 import faultpath
@@ -26,9 +25,10 @@ from faultpath.quadrotor.training.provenance import (
     code_sha256,
     read_provenance,
 )
-from faultpath.quadrotor.training.shards import Shard, fly_shards
+from faultpath.quadrotor.training.shards import Shard
 from faultpath.store import atomic
 from faultpath.store.lock import locked
+from faultpath.work import local, run_all
 
 EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
 SHARD = 1024
@@ -52,7 +52,8 @@ def collect(
     """Collect `pools` into `folder` and return the file of each pool.
 
     A pool that is there already is kept, one that was begun is finished. `episodes` gives the
-    number of episodes of a pool where it is not the paper's. Raises `UserError` for a pool that
+    number of episodes of a pool where it is not the paper's; `workers` is the number of processes,
+    0 for this one. Raises `UserError` for a pool that
     does not exist, for one that was collected by another recipe, and when `folder` cannot be
     written.
     """
@@ -145,9 +146,9 @@ def _fly(shards: Sequence[Shard], workers: int, progress: Progress | None) -> No
             progress(done * EPISODE_S, total * EPISODE_S)
 
     report()
-    with closing(fly_shards(todo, workers)) as flown:
-        for shard in flown:
-            done += shard.count
+    with local(workers) as executor:
+        for place, _ in run_all(executor, [shard.fly for shard in todo]):
+            done += todo[place].count
             report()
 
 

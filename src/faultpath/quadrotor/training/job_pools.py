@@ -47,8 +47,8 @@ def collect_missing(
     for pool in missing_pools(jobs, data):
         report = None if progress is None else partial(progress, pool)
         if pool == CLEARANCE_POOL:
-            clearance_data.collect(data, workers=max(workers, 1), progress=report)
+            clearance_data.collect(data, workers=workers, progress=report)
         elif pool == trajectories.POOL:
-            trajectories.record(data, max(workers, 1), progress=report)
+            trajectories.record(data, workers, progress=report)
         else:
-            collect(data, [pool], max(workers, 1), progress=report)
+            collect(data, [pool], workers, progress=report)

@@ -6,15 +6,11 @@ geometry's, so that the pool does not depend on the depth model.
 """
 
 import hashlib
-import os
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import chain, product
-from multiprocessing import get_context
+from functools import partial
+from itertools import product
 from pathlib import Path
-
-import torch
 
 import faultpath
 from faultpath.execution.provenance import packages
@@ -34,6 +30,7 @@ from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
+from faultpath.work import local, run_all
 
 POOL = "trajectory"
 LIBRARY = "selection"
@@ -83,30 +80,19 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
         atomic.sweep(place)
         todo = [shard for shard in shards() if not (place / f"{shard.name}.rows").exists()]
         done = len(shards()) - len(todo)
-        for finished in chain((0,), _fly_all(todo, place, workers)):
-            done += finished
-            if progress is not None:
-                progress(done * BLOCK, len(shards()) * BLOCK)
+        tell = progress or (lambda done, total: None)
+        tell(done * BLOCK, len(shards()) * BLOCK)
+        with local(workers) as executor:
+            for _ in run_all(executor, [partial(fly, shard, place) for shard in todo]):
+                done += 1
+                tell(done * BLOCK, len(shards()) * BLOCK)
         _assemble(path, place)
     return path
-
-
-def _fly_all(todo: Sequence[Shard], place: Path, workers: int) -> Iterator[int]:
-    if workers < 2:
-        for shard in todo:
-            fly(shard, place)
-            yield 1
-        return
-    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"))
-    with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        for _ in pool.map(fly, todo, [place] * len(todo)):
-            yield 1
 
 
 @native.using(native.PORTABLE)
 def fly(shard: Shard, place: Path) -> None:
     """Fly a shard and write its two files, the rows last."""
-    torch.set_num_threads(1)
     system = Quadrotor.parse(wind=shard.level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
     flights = record_flights(system, VARIANT, scenes[shard.first : shard.first + BLOCK], SEED)

@@ -1,0 +1,30 @@
+"""Where work runs: a call goes out to a worker, and what it returns comes back."""
+
+from faultpath.work.executor import (
+    End,
+    Executor,
+    Failed,
+    Here,
+    Lost,
+    Returned,
+    WorkerLost,
+    run_all,
+    tell,
+)
+from faultpath.work.processes import Processes, local
+from faultpath.work.threads import one_thread
+
+__all__ = [
+    "End",
+    "Executor",
+    "Failed",
+    "Here",
+    "Lost",
+    "Processes",
+    "Returned",
+    "WorkerLost",
+    "local",
+    "one_thread",
+    "run_all",
+    "tell",
+]

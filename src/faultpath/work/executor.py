@@ -1,0 +1,170 @@
+"""What an executor is, and how a list of calls runs on one."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from contextvars import ContextVar
+from dataclasses import dataclass
+from typing import Any, Self, TypeVar
+
+from faultpath.errors import UserError
+from faultpath.work.threads import one_thread
+
+T = TypeVar("T")
+
+Call = Callable[[], Any]
+"""What a worker runs: a function of a module, bound to its arguments with `functools.partial`, or
+a method of a plain object. Unless it runs in this process, it and what it returns are pickled."""
+Told = Callable[[Any], None]
+"""Called, in the process that submitted, with what the call tells on its way."""
+
+_TICK_S = 0.5
+
+
+@dataclass(frozen=True)
+class Returned:
+    """The call returned."""
+
+    value: Any
+
+
+@dataclass(frozen=True)
+class Failed:
+    """The call raised an error; from another process, its traceback stands in the error's notes."""
+
+    error: Exception
+
+
+@dataclass(frozen=True)
+class Lost:
+    """The worker ended in the middle of the call."""
+
+    how: str
+
+
+End = Returned | Failed | Lost
+
+
+class WorkerLost(UserError):
+    """A worker ended by itself, and nothing else can be done than to say so."""
+
+
+def ignore(message: object) -> None:
+    """Take no notice of what a call tells."""
+    del message
+
+
+class Executor(ABC):
+    """Numbered workers, each with one thread and one call at a time.
+
+    A worker keeps what its calls have left in memory, so that a caller who has related calls gives
+    them to the same one. One that is lost or cancelled is replaced. Leaving the context ends all.
+    """
+
+    in_process = False
+    """Whether calls run in this process: nothing is pickled, and no call can be cancelled."""
+
+    @abstractmethod
+    def free(self) -> Sequence[int]:
+        """Return the workers that could begin a call now."""
+
+    @abstractmethod
+    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+        """Hand a call to a free worker."""
+
+    @abstractmethod
+    def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
+        """Wait for news, at most so long; pass on what calls tell and yield those that ended."""
+
+    @abstractmethod
+    def cancel(self, worker: int) -> None:
+        """Stop the call of a worker, in the middle of its work; it yields no end."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """End every worker now, in the middle of its work if need be."""
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def run_all(executor: Executor, calls: Sequence[Callable[[], T]]) -> Iterator[tuple[int, T]]:
+    """Run calls and yield the place of each in `calls` with what it returned, as they end.
+
+    Raises the error of the first call that fails, and `WorkerLost` where a worker ends.
+    """
+    waiting = iter(enumerate(calls))
+    running: dict[int, int] = {}
+    while True:
+        for worker, (place, call) in zip(executor.free(), waiting, strict=False):
+            running[worker] = place
+            executor.submit(worker, call)
+        if not running:
+            return
+        for worker, end in executor.completions(_TICK_S):
+            place = running.pop(worker)
+            if isinstance(end, Failed):
+                raise end.error
+            if isinstance(end, Lost):
+                raise WorkerLost(f"{end.how}; run the same again: what was finished is kept")
+            yield place, end.value
+
+
+_told: ContextVar[Told] = ContextVar("told", default=ignore)
+
+
+def tell(message: object) -> None:
+    """Tell whoever submitted the call that runs here; outside of one, nobody."""
+    _told.get()(message)
+
+
+def ended(call: Call, told: Told) -> Returned | Failed:
+    """Run a call on one thread and return its end. `sys.exit` is an error like any other."""
+    before = _told.set(told)
+    try:
+        with one_thread():
+            return Returned(call())
+    except SystemExit as error:
+        exited = RuntimeError(f"it called sys.exit({error.code!r})")
+        exited.__cause__ = error
+        return Failed(exited)
+    except Exception as error:
+        return Failed(error)
+    finally:
+        _told.reset(before)
+
+
+class Here(Executor):
+    """Runs each call in this process, for tests and debuggers."""
+
+    in_process = True
+
+    def __init__(self) -> None:
+        self._waiting: tuple[Call, Told] | None = None
+
+    def free(self) -> Sequence[int]:
+        """Return 0 unless a call waits."""
+        return () if self._waiting else (0,)
+
+    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+        """Keep the call until `completions` runs it."""
+        assert worker in self.free()
+        self._waiting = call, told
+
+    def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
+        """Run the call that waits, however long it takes."""
+        del timeout_s
+        if self._waiting is not None:
+            waiting, self._waiting = self._waiting, None
+            yield 0, ended(*waiting)
+
+    def cancel(self, worker: int) -> None:
+        """Forget the call that waits; one that runs cannot be stopped."""
+        del worker
+        self._waiting = None
+
+    def close(self) -> None:
+        """Forget the call that waits."""
+        self._waiting = None

@@ -1,0 +1,57 @@
+"""A worker process: runs the calls that its parent sends, one after the other."""
+
+import faulthandler
+import os
+import pickle
+import signal
+import threading
+import traceback
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
+from typing import Any
+
+from faultpath.work.executor import Failed, Returned, ended
+
+
+def main(channel: int, lifeline: int) -> None:
+    """Serve the parent over the socket `channel` until it is closed.
+
+    Nothing is ever written to the pipe `lifeline`. It ends when the parent is gone, however it
+    went, and this process then ends as well, in the middle of its work.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    faulthandler.enable()
+    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
+    with Connection(channel) as parent, suppress(EOFError, ConnectionError):
+        while True:
+            parent.send_bytes(_served(parent, parent.recv_bytes()))
+
+
+def _served(parent: "Connection[Any, Any]", packed: bytes) -> memoryview:
+    """Run a call and return its end, packed."""
+    try:
+        call = pickle.loads(packed)
+    except Exception as error:
+        return _packed(Failed(error))
+    return _packed(ended(call, lambda message: parent.send((message,))))
+
+
+def _packed(end: Returned | Failed) -> memoryview:
+    try:
+        if isinstance(end, Failed):
+            # A traceback is not sent, and not every error that can be packed can be unpacked.
+            end.error.add_note("".join(traceback.format_exception(end.error)))
+            pickle.loads(ForkingPickler.dumps(end))
+        return ForkingPickler.dumps(end)
+    except Exception as error:
+        said = end.error if isinstance(end, Failed) else error
+        instead = RuntimeError(f"{type(said).__name__}: {said}")
+        instead.__notes__ = getattr(said, "__notes__", [])
+        return ForkingPickler.dumps(Failed(instead))
+
+
+def _end_with(lifeline: int) -> None:
+    os.read(lifeline, 1)
+    os._exit(1)
