@@ -3,7 +3,7 @@
 from faultpath.execution.schedule import Schedule, Task
 from faultpath.execution.units import Unit, plan
 from faultpath.trials.arm import Arm
-from faultpath.trials.system import Library, SceneRef
+from faultpath.trials.declared import Library, SceneRef
 
 SCENES = tuple(SceneRef(f"s{i}", i) for i in range(10))
 LIBRARY = Library("ten", SCENES, "hash")

@@ -14,8 +14,8 @@ import numpy as np
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.streams import generator
 from faultpath.taps import Reading, Taps
+from faultpath.trials import Library, SceneRef, System, Variant
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.system import Library, SceneRef, System, Variant
 
 STEPS = 12
 CONSUMERS = ("planner.thrust", "observer.balance")

@@ -8,7 +8,7 @@ from itertools import groupby
 
 import faultpath
 from faultpath.trials.arm import Arm
-from faultpath.trials.system import Library, SceneRef
+from faultpath.trials.declared import Library, SceneRef
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,7 @@ from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault, fault_from_jso
 from faultpath.faults.noise import Drift, Noise
 from faultpath.faults.parse import FaultPreset, parse_fault
 from faultpath.faults.probes import Replace, Shuffle
-from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
-from faultpath.faults.sequence import Sequence
+from faultpath.faults.registry import INTERVENTIONS, AnyIntervention, Sequence
 from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
 from faultpath.faults.values import Erase, Offset, Quantise, Scale, UniformScale
 from faultpath.faults.window import Window

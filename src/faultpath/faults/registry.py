@@ -1,15 +1,53 @@
-"""Every intervention that there is: one line each."""
+"""Every intervention that there is, and several of them in turn."""
 
-from typing import Annotated, TypeAlias, get_args
+from typing import Annotated, Literal, Self, TypeAlias, get_args
 
-from pydantic import Discriminator
+from pydantic import Discriminator, Field
 
-from faultpath.faults.base import Intervention
+from faultpath.arrays import Array, pick
+from faultpath.faults.base import Intervention, Memory, Moment
 from faultpath.faults.noise import Drift, Noise
 from faultpath.faults.probes import Replace, Shuffle
-from faultpath.faults.sequence import Sequence
 from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
 from faultpath.faults.values import Erase, Offset, Quantise, Scale, UniformScale
+from faultpath.interface import Channel
+
+
+class Sequence(Intervention):
+    """Apply interventions in turn: each acts on what the one before delivers.
+
+    Each part begins at the onset, so a delay after a scale still delivers what came unscaled
+    before it, just as two faults with one window do. Parts draw independently of each other.
+    Interventions that follow each other in time are several faults, each with its window.
+    """
+
+    kind: Literal["sequence"] = "sequence"
+    parts: "tuple[AnyIntervention, ...]" = Field(min_length=1)
+
+    def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
+        """Return the last part's value; the memory holds one entry a part."""
+        value, carried = reading, ()
+        for index, part in enumerate(self.parts):
+            here = at.part(index)
+            past = part.begin(value, here) if memory is None else memory[index]
+            changed, past = part.apply(value, past, here)
+            value = pick(at.elapsed >= 0, changed, value)
+            carried = (*carried, past)
+        return value, carried
+
+    def words(self) -> str:
+        """Return the parts' words in turn."""
+        return ", then ".join(part.words() for part in self.parts)
+
+    def resolved(self, channel: Channel) -> Self:
+        """Resolve every part."""
+        parts = tuple(part.resolved(channel) for part in self.parts)
+        return self.model_copy(update={"parts": parts})
+
+    def misfit(self, shape: tuple[int, ...]) -> str | None:
+        """Return what the first part that does not fit says."""
+        return next(filter(None, (part.misfit(shape) for part in self.parts)), None)
+
 
 Listed: TypeAlias = (
     Scale
@@ -30,7 +68,7 @@ Listed: TypeAlias = (
 AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]
 """Any intervention, told apart in JSON by its `kind`."""
 
-Sequence.model_rebuild(_types_namespace={"AnyIntervention": AnyIntervention})
+Sequence.model_rebuild()
 
 INTERVENTIONS: dict[str, type[Intervention]] = {
     intervention.model_fields["kind"].default: intervention for intervention in get_args(Listed)

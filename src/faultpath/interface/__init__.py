@@ -11,10 +11,10 @@ from faultpath.interface.graph import (
     reads_of,
     transitive_consumers,
 )
+from faultpath.interface.interface import Interface
 from faultpath.interface.model import (
     Channel,
     Gap,
-    Interface,
     Provenance,
     Source,
     Uncertainty,

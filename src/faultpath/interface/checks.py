@@ -1,15 +1,13 @@
 """What must hold between the parts of an interface; each refusal says where and what to do."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
 
 from pydantic_core import PydanticCustomError
 
 from faultpath.arrays import misfit
+from faultpath.interface.graph import readers
+from faultpath.interface.model import Channel, Declared, Source
 from faultpath.interface.words import listed, unknown
-
-if TYPE_CHECKING:
-    from faultpath.interface.model import Channel, Interface, Source
 
 _LONGEST_CYCLE = 10
 """Names of a cycle that are shown."""
@@ -21,7 +19,7 @@ def _refuse(where: Where, sentence: str) -> PydanticCustomError:
     return PydanticCustomError("interface", "{sentence}", {"sentence": sentence, "where": where})
 
 
-def check_interface(interface: "Interface") -> None:
+def check_interface(interface: Declared) -> None:
     """Raise a pydantic error, with the path to the part in its context, unless all fits."""
     _check_unique("source", (s.name for s in interface.sources), "sources")
     _check_unique("channel", (c.name for c in interface.channels), "channels")
@@ -41,7 +39,7 @@ def _check_unique(what: str, names: Iterable[str], *where: str | int) -> None:
         seen.add(name)
 
 
-def _check_groups(interface: "Interface") -> None:
+def _check_groups(interface: Declared) -> None:
     channels = {channel.name for channel in interface.channels}
     for index, source in enumerate(interface.sources):
         if source.correlation_group in channels:
@@ -52,7 +50,7 @@ def _check_groups(interface: "Interface") -> None:
             )
 
 
-def _check_channel(known: "Mapping[str, Source]", channel: "Channel", where: Where) -> None:
+def _check_channel(known: Mapping[str, Source], channel: Channel, where: Where) -> None:
     _check_unique(f"channel '{channel.name}': source", channel.sources, *where, "sources")
     _check_unique(f"channel '{channel.name}': consumer", channel.consumers, *where, "consumers")
     for index, name in enumerate(channel.sources):
@@ -72,7 +70,7 @@ def _check_channel(known: "Mapping[str, Source]", channel: "Channel", where: Whe
         raise _refuse((*where, "erasure_default"), f"channel '{channel.name}': {wrong}")
 
 
-def _check_reconstructions(interface: "Interface") -> None:
+def _check_reconstructions(interface: Declared) -> None:
     known = {source.name: source for source in interface.sources}
     readers = {consumer.split(".")[0] for c in interface.channels for consumer in c.consumers}
     for module, name in interface.reconstructs.items():
@@ -101,10 +99,8 @@ def _check_reconstructions(interface: "Interface") -> None:
             )
 
 
-def _check_cycles(interface: "Interface") -> None:
+def _check_cycles(interface: Declared) -> None:
     """Look at every module and every read once, however they are joined."""
-    from faultpath.interface.graph import readers
-
     read_by = readers(interface)
     below = {
         module: [reader for reader in read_by.get(source, ()) if reader in interface.reconstructs]

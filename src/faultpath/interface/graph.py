@@ -7,10 +7,8 @@ channel's faults on to everything that reads its output.
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from faultpath.interface.model import Interface
+from faultpath.interface.model import Declared
 
 
 def module_of(consumer: str) -> str:
@@ -18,12 +16,12 @@ def module_of(consumer: str) -> str:
     return consumer.partition(".")[0]
 
 
-def modules(interface: "Interface") -> tuple[str, ...]:
+def modules(interface: Declared) -> tuple[str, ...]:
     """Return every module that reads something, in the order of declaration."""
     return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.consumers))
 
 
-def reads_of(interface: "Interface", module: str) -> tuple[tuple[str, str], ...]:
+def reads_of(interface: Declared, module: str) -> tuple[tuple[str, str], ...]:
     """Return `(channel, consumer)` for every read of `module`, in the order of declaration."""
     return tuple(
         (channel.name, consumer)
@@ -34,7 +32,7 @@ def reads_of(interface: "Interface", module: str) -> tuple[tuple[str, str], ...]
 
 
 def feeds(
-    interface: "Interface", module: str, bindings: Mapping[str, str] | None = None
+    interface: Declared, module: str, bindings: Mapping[str, str] | None = None
 ) -> tuple[str, ...]:
     """Return the modules that read what `module` reconstructs.
 
@@ -46,7 +44,7 @@ def feeds(
 
 
 def readers(
-    interface: "Interface", bindings: Mapping[str, str] | None = None
+    interface: Declared, bindings: Mapping[str, str] | None = None
 ) -> dict[str, tuple[str, ...]]:
     """Return the modules that read each source, in the order of declaration; `bindings` as above.
 
@@ -59,7 +57,7 @@ def readers(
     return {source: tuple(names) for source, names in found.items()}
 
 
-def _fed(interface: "Interface", bindings: Mapping[str, str] | None) -> dict[str, list[int]]:
+def _fed(interface: Declared, bindings: Mapping[str, str] | None) -> dict[str, list[int]]:
     """Return, for each source, the places of the channels that it feeds."""
     found: dict[str, list[int]] = {}
     for index, channel in enumerate(interface.channels):
@@ -68,13 +66,13 @@ def _fed(interface: "Interface", bindings: Mapping[str, str] | None) -> dict[str
     return found
 
 
-def direct_consumers(interface: "Interface", channel: str) -> tuple[str, ...]:
+def direct_consumers(interface: Declared, channel: str) -> tuple[str, ...]:
     """Return the consumers that read `channel` itself; raises `UserError` for an unknown name."""
     return interface.channel(channel).consumers
 
 
 def transitive_consumers(
-    interface: "Interface", channel: str, bindings: Mapping[str, str] | None = None
+    interface: Declared, channel: str, bindings: Mapping[str, str] | None = None
 ) -> tuple[str, ...]:
     """Return the consumers that a fault on `channel` reaches, directly or through reconstructions.
 
@@ -111,9 +109,7 @@ class Ranked:
     """Probe response where one was given, else the expected uncertainty of the first source."""
 
 
-def rank(
-    interface: "Interface", responses: Mapping[str, float] | None = None
-) -> tuple[Ranked, ...]:
+def rank(interface: Declared, responses: Mapping[str, float] | None = None) -> tuple[Ranked, ...]:
     """Return the channels, the one to audit first in front.
 
     By consumer count, then by `responses` (channel to probe response at the expected deployment
@@ -142,7 +138,7 @@ def rank(
     return tuple(found)
 
 
-def groups(interface: "Interface") -> dict[str, tuple[str, ...]]:
+def groups(interface: Declared) -> dict[str, tuple[str, ...]]:
     """Return each error-correlation group and the channels that its sources feed."""
     found: dict[str, dict[str, None]] = {}
     for channel in interface.channels:

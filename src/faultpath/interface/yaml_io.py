@@ -10,7 +10,7 @@ from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from faultpath.errors import UserError
-from faultpath.interface.model import Interface
+from faultpath.interface.interface import Interface
 
 _DEEPEST = 12
 _LONGEST = 1_000_000

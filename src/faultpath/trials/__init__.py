@@ -2,6 +2,7 @@
 
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
+from faultpath.trials.declared import Library, SceneRef, Variant
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.options import Offered, Option
@@ -9,7 +10,7 @@ from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
 from faultpath.trials.registry import load_measurer, load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
-from faultpath.trials.system import Library, SceneRef, System, Variant
+from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 __all__ = [

@@ -8,8 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 
 from faultpath.errors import UserError
 from faultpath.interface import Interface
+from faultpath.trials.declared import Variant
 from faultpath.trials.floorplan import FloorPlan
-from faultpath.trials.system import System, Variant
+from faultpath.trials.system import System
 
 
 class _Frozen(BaseModel):

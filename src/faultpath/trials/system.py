@@ -2,60 +2,15 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from os import PathLike
 from types import MappingProxyType
 
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.taps import Taps
-from faultpath.trials.checks import check_library, check_scene, check_variant
+from faultpath.trials.declared import Library, Variant
 from faultpath.trials.floorplan import FloorPlan
 from faultpath.trials.outcome import Outcome, Status
-
-
-@dataclass(frozen=True)
-class Variant:
-    """One way to wire the system: which source feeds each channel, and which consumers exist."""
-
-    name: str
-    description: str
-    consumers: frozenset[str]
-    """The taps that this variant reads; a fault cannot reach any other."""
-    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Channel to source, where it is not the channel's first source."""
-    privileged: frozenset[str] = frozenset()
-    """Privileged sources that this variant may read, because it says so here."""
-
-    def __post_init__(self) -> None:
-        """Raise `SystemMistake` for parts of another type."""
-        check_variant(self)
-
-
-@dataclass(frozen=True)
-class SceneRef:
-    """A scene as the core knows it: its name, its place in the library and its kind."""
-
-    id: str
-    index: int
-    topology: str = ""
-
-    def __post_init__(self) -> None:
-        """Raise `SystemMistake` for what no table could hold."""
-        check_scene(self)
-
-
-@dataclass(frozen=True)
-class Library:
-    """A frozen set of scenes."""
-
-    name: str
-    scenes: tuple[SceneRef, ...]
-    content_hash: str
-
-    def __post_init__(self) -> None:
-        """Raise `SystemMistake` for scenes that are none, or that share a name."""
-        check_library(self)
 
 
 class System(ABC):

@@ -6,8 +6,8 @@ from functools import cached_property
 
 from faultpath.errors import UserError
 from faultpath.trials.arm import Row, Study
+from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.outcome import Outcome
-from faultpath.trials.system import Library, SceneRef
 
 
 @dataclass(frozen=True)

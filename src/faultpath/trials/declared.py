@@ -1,0 +1,122 @@
+"""What a system is declared with: variants and libraries of scenes, checked as they are made."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from numbers import Integral
+from typing import Any, cast
+
+from faultpath.errors import SystemMistake
+from faultpath.text import one_line, steers
+
+_LONGEST_NAME = 200
+_LARGEST_INDEX = 2**63 - 1
+"""What the tables hold."""
+
+
+def check_name(what: str, name: Any) -> None:
+    """Raise `SystemMistake` for what cannot be a name in tables, files and on the terminal."""
+    if not isinstance(name, str):
+        raise SystemMistake(f"{what} is {shown(name)}: it must be text")
+    if not name:
+        raise SystemMistake(f"{what} is empty: give it a name")
+    if len(name) > _LONGEST_NAME:
+        raise SystemMistake(
+            f"{what} has {len(name)} characters: a name has at most {_LONGEST_NAME}"
+        )
+    if steers(name):
+        raise SystemMistake(f"{what} is {shown(name)}: a name holds no control characters")
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to wire the system: which source feeds each channel, and which consumers exist."""
+
+    name: str
+    description: str
+    consumers: frozenset[str]
+    """The taps that this variant reads; a fault cannot reach any other."""
+    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Channel to source, where it is not the channel's first source."""
+    privileged: frozenset[str] = frozenset()
+    """Privileged sources that this variant may read, because it says so here."""
+
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for parts of another type."""
+        _check_variant(self)
+
+
+@dataclass(frozen=True)
+class SceneRef:
+    """A scene as the core knows it: its name, its place in the library and its kind."""
+
+    id: str
+    index: int
+    topology: str = ""
+
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for what no table could hold."""
+        _check_scene(self)
+
+
+@dataclass(frozen=True)
+class Library:
+    """A frozen set of scenes."""
+
+    name: str
+    scenes: tuple[SceneRef, ...]
+    content_hash: str
+
+    def __post_init__(self) -> None:
+        """Raise `SystemMistake` for scenes that are none, or that share a name."""
+        _check_library(self)
+
+
+def _check_scene(scene: SceneRef) -> None:
+    """Raise `SystemMistake` for a scene that no table could hold."""
+    check_name("the id of a scene", scene.id)
+    index: Any = scene.index
+    if not isinstance(index, Integral) or not 0 <= int(index) <= _LARGEST_INDEX:
+        raise SystemMistake(
+            f"scene '{scene.id}' has the index {shown(index)}: it is its place in the library, a "
+            "whole number from 0 to 2^63 - 1"
+        )
+    if scene.topology != "":
+        check_name(f"the topology of scene '{scene.id}'", scene.topology)
+
+
+def _check_library(library: Library) -> None:
+    """Raise `SystemMistake` for scenes that are none, or that share a name."""
+    check_name("the name of a library", library.name)
+    said = f"library '{library.name}'"
+    check_name(f"the content hash of {said}", library.content_hash)
+    seen: set[str] = set()
+    for scene in _items(f"{said}: scenes", library.scenes):
+        if not isinstance(scene, SceneRef):
+            raise SystemMistake(f"{said} holds {shown(scene)}: every scene is a SceneRef")
+        if scene.id in seen:
+            raise SystemMistake(f"{said} holds scene '{scene.id}' twice: name each scene once")
+        seen.add(scene.id)
+
+
+def _check_variant(variant: Variant) -> None:
+    """Raise `SystemMistake` for a variant whose parts are of other types than declared."""
+    check_name("the name of a variant", variant.name)
+    said = f"variant '{variant.name}'"
+    for what in ("consumers", "privileged"):
+        for name in _items(f"{said}: {what}", getattr(variant, what)):
+            check_name(f"{said}: one of {what}", name)
+    bindings: Any = variant.bindings
+    if not isinstance(bindings, Mapping):
+        raise SystemMistake(f"{said}: bindings is {shown(bindings)}: map channels to sources")
+
+
+def _items(what: str, found: Any) -> Iterable[Any]:
+    if isinstance(found, (str, bytes)) or not isinstance(found, Iterable):
+        raise SystemMistake(f"{what} is {shown(found)}: give several, as a tuple or a set")
+    return cast("Iterable[Any]", found)
+
+
+def shown(found: Any) -> str:
+    """Return a wrong value in a line that is short enough for a message."""
+    text = one_line(repr(found))
+    return text if len(text) <= 80 else f"{text[:80]}…"
