@@ -29,8 +29,8 @@ class Draws:
         compare=False,
     )
     """What was last drawn: the other consumers of the same step ask for it again."""
-    _parts: dict[int, "Draws"] = field(
-        default_factory=dict[int, "Draws"], init=False, repr=False, compare=False
+    _parts: dict[str, "Draws"] = field(
+        default_factory=dict[str, "Draws"], init=False, repr=False, compare=False
     )
 
     def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
@@ -47,9 +47,16 @@ class Draws:
 
     def part(self, index: int) -> "Draws":
         """Return the independent draws of one part of a composed intervention."""
-        if index not in self._parts:
-            self._parts[index] = Draws(self.scenes, self.seed, f"{self.cause}/{index}")
-        return self._parts[index]
+        return self._beside(f"/{index}")
+
+    def of_ask(self, ask: int) -> "Draws":
+        """Return the independent draws of one ask within a step; the first has those of none."""
+        return self._beside(f"?{ask}") if ask else self
+
+    def _beside(self, suffix: str) -> "Draws":
+        if suffix not in self._parts:
+            self._parts[suffix] = Draws(self.scenes, self.seed, self.cause + suffix)
+        return self._parts[suffix]
 
     def _rows(
         self, what: str, size: Any, step: int, draw: Callable[[np.random.Generator], Any]

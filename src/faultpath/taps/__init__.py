@@ -11,6 +11,7 @@ from faultpath.taps.errors import (
     UndeclaredReader,
     WrittenTo,
 )
+from faultpath.taps.query import Query
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
 from faultpath.taps.tap import StrikeState
@@ -23,6 +24,7 @@ __all__ = [
     "ModuleTaps",
     "NotDelivered",
     "NotFinite",
+    "Query",
     "Reading",
     "Receipt",
     "Receipts",

@@ -10,7 +10,7 @@ class Reading:
     """What a source says. A consumer cannot write to it; its owner may once the step is over."""
 
     value: Array
-    """`[B, ...]`, one row a scene, in the source's unit."""
+    """`[B, ...]`, one row a scene, in the source's unit; or a `Query` whose answers are."""
     source: str
     step: int
     """Control step at which the value was valid."""

@@ -30,6 +30,8 @@ class Receipt:
     source: str
     deliveries: int
     """Control steps at which the consumer got the channel."""
+    asks: int
+    """Answers that it got of a query; 0 for a channel with one reading a step."""
     first_step: int | None
     last_step: int | None
     strikes: tuple[StrikeReceipt, ...]

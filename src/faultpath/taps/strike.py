@@ -15,7 +15,7 @@ from faultpath.taps.tally import Tally
 class Strike:
     """A resolved fault as it acts on the deliveries of one tap."""
 
-    __slots__ = ("_begun", "_draws", "_dt_s", "_memory", "_near", "_window", "fault", "in_force")
+    __slots__ = ("_draws", "_dt_s", "_memories", "_near", "_window", "fault", "in_force")
 
     def __init__(self, fault: Fault, window: Window, draws: Draws, dt_s: float) -> None:
         self.fault = fault
@@ -24,24 +24,24 @@ class Strike:
         self._near: Window | None = None
         self._draws = draws
         self._dt_s = dt_s
-        self._memory: Memory = None
-        self._begun = False
+        self._memories: dict[int, Memory] = {}
+        """By ask within a step; a reading that is no query is ask 0."""
 
-    def act(self, reading: Array, step: int) -> tuple[Array, Any]:
+    def act(self, reading: Array, step: int, ask: int = 0) -> tuple[Array, Any]:
         """Return the value and whether the fault is in force: a bool or a bool array `[B]`.
 
         Raises `UserError` where the intervention cannot act on such a reading.
         """
         if self._window.over(step):
-            self._memory = None
+            self._memories.clear()
             return reading, False
         if self._near is None:
             self._near = self._window.beside(reading)
-        at = Moment(step, step - self._near.onset, self._dt_s, self._draws)
-        if not self._begun:
-            self._memory = self.fault.intervention.begin(reading, at)
-            self._begun = True
-        value, self._memory = self.fault.intervention.apply(reading, self._memory, at)
+        at = Moment(step, step - self._near.onset, self._dt_s, self._draws.of_ask(ask))
+        doing = self.fault.intervention
+        if ask not in self._memories:
+            self._memories[ask] = doing.begin(reading, at)
+        value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
         if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
             raise self._unfit(
                 f"turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
@@ -82,7 +82,8 @@ class Strike:
 
     def memory_words(self) -> str:
         """Return what the intervention carries, in short form."""
-        return _words(self._memory)
+        memories = tuple(self._memories.values())
+        return _words(memories[0] if len(memories) == 1 else memories or None)
 
 
 def _words(memory: Memory) -> str:

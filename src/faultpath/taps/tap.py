@@ -35,6 +35,8 @@ class Tap:
 
     __slots__ = (
         "altered",
+        "asked",
+        "asks",
         "cached",
         "channel",
         "consumer",
@@ -62,6 +64,10 @@ class Tap:
         """Of every reading, scenes first."""
         self.strikes: tuple[Strike, ...] = ()
         self.deliveries = 0
+        self.asks = 0
+        """Answers of a query, over all steps."""
+        self.asked = 0
+        """Those of the last step."""
         self.first_step = -1
         self.last_step = -1
         self.given: Array = None
@@ -89,6 +95,7 @@ class Tap:
             consumer=self.consumer,
             source=self.source,
             deliveries=self.deliveries,
+            asks=self.asks,
             first_step=self.first_step if self.deliveries else None,
             last_step=self.last_step if self.deliveries else None,
             strikes=tuple(

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +23,7 @@ from faultpath.taps.errors import (
     WrittenTo,
 )
 from faultpath.taps.guard import Watch
+from faultpath.taps.query import Query
 from faultpath.taps.reading import Reading
 from faultpath.taps.receipts import Missed, Receipts, check_delivered
 from faultpath.taps.strike import Strike
@@ -115,7 +118,7 @@ class Taps:
 
         Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array comes
         as a view that cannot be written to. A second delivery in one step returns what the first
-        did, with a fault or without.
+        did, with a fault or without. A query comes as a function of its request; see `Query`.
 
         Raises:
             UndeclaredReader: This variant has no such consumer of the channel.
@@ -140,29 +143,56 @@ class Taps:
                     "new taps"
                 )
             if tap.first_step < 0:
-                check_first(tap, value, self._scenes)
+                if not isinstance(value, Query):
+                    check_first(tap, value, self._scenes)
                 tap.first_step = step
             tap.last_step = step
             tap.deliveries += 1
             tap.given = value
-            if tap.strikes:
-                value = self._struck_value(tap, value, step)
-            if isinstance(value, np.ndarray):
-                if value is not self._open:  # consumers of one array share the view of it
-                    self._open, self._closed = value, read_only(value)
-                value = self._closed
-            elif tap.watch is not None:
-                value = tap.watch.hand_out(value)
-            tap.cached = value
+            tap.cached = self._handed(tap, value, step)
         elif value is not tap.given:
             check_same(tap, value, step)
         return tap.cached
 
-    def _struck_value(self, tap: Tap, reading: Array, step: int) -> Array:
+    def _handed(self, tap: Tap, value: Any, step: int) -> Any:
+        """Return what the consumer gets of a step's value."""
+        if isinstance(value, Query):
+            tap.asked = 0
+            return partial(self._answer, tap, value, step)
+        if tap.strikes:
+            value = self._struck_value(tap, value, step)
+        if isinstance(value, np.ndarray):
+            if value is not self._open:  # consumers of one array share the view of it
+                self._open, self._closed = value, read_only(value)
+            return self._closed
+        return value if tap.watch is None else tap.watch.hand_out(value)
+
+    def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
+        """Return what the tap makes of one answer of a query."""
+        if step != tap.last_step:
+            raise MalformedReading(
+                f"tap {tap}: the query of step {step} was asked in step {tap.last_step}; ask what "
+                "was delivered in this step"
+            )
+        answer = read_only(query.answer(request))
+        ask, first = tap.asked, not tap.asks
+        tap.asked, tap.asks = ask + 1, tap.asks + 1
+        if not (first or tap.strikes or tap.watch):
+            return answer
+        given = value = query.value(answer)
+        if first:
+            check_first(tap, value, self._scenes)
+        if tap.strikes:
+            value = self._struck_value(tap, value, step, ask)
+        if tap.watch is not None:
+            value = tap.watch.hand_out(value)
+        return answer if value is given else query.changed(answer, value)
+
+    def _struck_value(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
         check_shape(tap, reading)
         value, struck = reading, False
         for strike in tap.strikes:
-            value, in_force = strike.act(value, step)
+            value, in_force = strike.act(value, step, ask)
             in_force = self._running.among(in_force, reading)
             strike.in_force.note(step, in_force)
             struck = in_force if struck is False else struck | in_force
