@@ -1,9 +1,9 @@
 """The isolated/shared reversal in one dimension: a cart with a shared gain estimate.
 
-A cart accelerates by `gain * u + slope`. Two modules read the same estimate of the gain:
+A cart accelerates by `gain * push + slope`. Two modules read the same estimate of the gain:
 
-    controller   u = (wanted acceleration - estimated slope) / gain estimate
-    observer     estimated slope = measured acceleration - gain estimate * u
+    controller   push = (wanted acceleration - estimated slope) / gain estimate
+    observer     estimated slope = measured acceleration - gain estimate * push
 
 Baseline `calibrated`: the observer uses the gain estimate. Repair `blind`: it uses the typical
 gain 1 instead, so a wrong estimate cannot mislead it. Strike the observer alone and the repair
@@ -14,97 +14,144 @@ wins. Strike both, as one wrong estimate would, and the baseline wins: its two e
 """
 
 import hashlib
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faultpath.interface import read_interface
+from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.streams import generator
-from faultpath.taps import Reading, Taps
-from faultpath.trials import Library, Outcome, SceneRef, Status, System, Variant
+from faultpath.trials import Library, LoopSystem, SceneRef, Status, System, Wiring
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
 
-INTERFACE = read_interface("""
+FACTS = """
 name: toy
 sources:
 - {name: gain_estimate, unit: '1', provenance: estimated}
 - {name: speedometer, unit: m/s, provenance: measured}
 - {name: odometer, unit: m, provenance: measured}
 - {name: observed_slope, unit: m/s^2, provenance: reconstructed}
+- {name: goal, unit: m, provenance: commanded}
+- {name: command, unit: m/s^2, provenance: commanded}
 channels:
-- name: gain
-  sources: [gain_estimate]
-  consumers: [controller.inverse, observer.model]
-  gap: fidelity
-- {name: velocity, sources: [speedometer], consumers: [controller.feedback, observer.difference]}
-- {name: position, sources: [odometer], consumers: [controller.feedback]}
-- name: slope
-  sources: [observed_slope]
-  consumers: [controller.feedforward]
-  gap: availability
-reconstructs: {observer: observed_slope}
-""")
-EVERYONE = frozenset(c for channel in INTERFACE.channels for c in channel.consumers)
+- {name: gain, sources: [gain_estimate], gap: fidelity}
+- {name: velocity, sources: [speedometer]}
+- {name: position, sources: [odometer]}
+- {name: slope, sources: [observed_slope], gap: availability}
+- {name: target, sources: [goal]}
+- {name: push, sources: [command]}
+"""
 
 
-class Toy(System):
-    name, control_dt_s, interface = "toy", DT_S, INTERFACE
+@dataclass(frozen=True)
+class Carts:
+    """Every array is `[B]`; `draws` is what decides a scene."""
+
+    draws: np.ndarray
+    gain: np.ndarray
+    slope: np.ndarray
+    goal: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    step: int = 0
+
+
+class Cart(Plant):
+    name, steps = "cart", STEPS
+    senses = ("gain_estimate", "speedometer", "odometer", "goal")
+    reads = frozenset({Port("push", "motor")})
+
+    def start(self, batch):
+        draws = np.array([generator("toy/cart", s, 0).uniform(size=3) for s in batch.scenes])
+        gain, slope, goal = (draws * [0.8, 4.0, 4.0] + [0.6, -2.0, 3.0]).T
+        return Carts(draws, gain, slope, goal, *np.zeros((2, len(draws))))
+
+    def sense(self, now):
+        return dict(zip(self.senses, (now.gain, now.velocity, now.position, now.goal), strict=True))
+
+    def advance(self, now, inputs):
+        velocity = now.velocity + (now.gain * inputs["push", "motor"] + now.slope) * DT_S
+        position = now.position + velocity * DT_S
+        return replace(now, velocity=velocity, position=position, step=now.step + 1)
+
+    def progress(self, now):
+        missed = np.abs(now.goal - now.position)
+        running = np.full(len(missed), now.step < STEPS)
+        return Progress(
+            running=running,
+            succeeded=~running & (missed < TOLERANCE_M),
+            crashed=np.zeros(len(missed), bool),
+            time_s=np.full(len(missed), now.step * DT_S),
+            terminal_distance_m=missed,
+        )
+
+    def conditions(self, now):
+        hashes = [hashlib.sha256(draw.tobytes()).hexdigest()[:16] for draw in now.draws]
+        return hashes, hashes
+
+    def position(self, now):
+        return np.stack([now.position, *np.zeros((2, len(now.position)))], axis=-1)
+
+
+class Observer(Module):
+    name, writes = "observer", ("observed_slope",)
+    reads_past = frozenset({Port("push", "executed")})
+
+    def __init__(self, calibrated: bool):
+        gauge = {Port("gain", "model")} if calibrated else set()
+        self.reads = frozenset({Port("velocity", "difference"), *gauge})
+
+    def step(self, inputs, memory):
+        now = inputs["velocity", "difference"]
+        gain = inputs.get(Port("gain", "model"), 1.0)
+        if memory is None:  # there is no finished interval yet at the first step
+            estimate = np.zeros_like(now)
+        else:
+            before, estimate = memory
+            acceleration = (now - before) / DT_S
+            estimate = 0.5 * estimate + 0.5 * (acceleration - gain * inputs["push", "executed"])
+        return {"observed_slope": estimate}, (now, estimate)
+
+
+class Controller(Module):
+    name, writes = "controller", ("command",)
+    reads = frozenset(
+        {
+            Port("gain", "inverse"),
+            Port("position", "feedback"),
+            Port("velocity", "feedback"),
+            Port("slope", "feedforward"),
+            Port("target", "reference"),
+        }
+    )
+
+    def before(self, batch):
+        return {"command": np.zeros(len(batch.scenes))}
+
+    def step(self, inputs, memory):
+        left = inputs["target", "reference"] - inputs["position", "feedback"]
+        wanted = left - 2.0 * inputs["velocity", "feedback"] - inputs["slope", "feedforward"]
+        return {"command": wanted / inputs["gain", "inverse"]}, memory
+
+
+class Toy(LoopSystem):
+    name, control_dt_s = "toy", DT_S
+    interface = interface_of(FACTS, (Controller(), Observer(calibrated=True), Cart()))
     ends = {Status.TIMEOUT: "missed"}  # noqa: RUF012 - never changed
-    variants = {  # noqa: RUF012 - never changed
-        "calibrated": Variant("calibrated", "The observer reads the gain estimate.", EVERYONE),
-        "blind": Variant("blind", "It assumes gain 1.", EVERYONE - {"observer.model"}),
+    wirings = {  # noqa: RUF012 - never changed
+        "calibrated": Wiring("The observer reads the gain estimate."),
+        "blind": Wiring("It assumes gain 1."),
     }
+
+    def plant(self):
+        return Cart()
+
+    def modules(self, variant, seed):
+        return Observer(variant == "calibrated"), Controller()
 
     def library(self, name: str) -> Library:
         scenes = tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))
         return Library(name, scenes, "carts-1")
-
-    def run(self, variant, scenes, taps: Taps, seed):
-        draws = [generator("toy/cart", scene, 0).uniform(size=3) for scene in scenes]
-        gain, slope, goal = (np.array(draws) * [0.8, 4.0, 4.0] + [0.6, -2.0, 3.0]).T
-        controller, observer = taps.for_module("controller"), taps.for_module("observer")
-        position, velocity, before, u, estimate = np.zeros((5, len(scenes)))
-        trace = [position]
-        for step in range(STEPS):
-            gauge = Reading(gain, "gain_estimate", step)
-            speed = Reading(velocity, "speedometer", step)
-            model = np.ones_like(gain)
-            if variant == "calibrated":
-                model = observer.deliver("gain", "model", gauge, step)
-            now = observer.deliver("velocity", "difference", speed, step)
-            if step > 0:  # there is no finished interval yet at the first step
-                estimate = 0.5 * estimate + 0.5 * ((now - before) / DT_S - model * u)
-            before = now
-
-            place, hill = (
-                Reading(position, "odometer", step),
-                Reading(estimate, "observed_slope", step),
-            )
-            x = controller.deliver("position", "feedback", place, step)
-            v = controller.deliver("velocity", "feedback", speed, step)
-            lift = controller.deliver("slope", "feedforward", hill, step)
-            u = (goal - x - 2.0 * v - lift) / controller.deliver("gain", "inverse", gauge, step)
-
-            velocity = velocity + (gain * u + slope) * DT_S
-            position = position + velocity * DT_S
-            trace.append(position)
-        missed = np.abs(goal - position)
-        initial = [hashlib.sha256(draw.tobytes()).hexdigest()[:16] for draw in draws]
-        path = np.stack([np.array(trace), *np.zeros((2, STEPS + 1, len(scenes)))], axis=-1)
-        return [
-            Outcome(
-                scene=scene,
-                status=Status.SUCCESS if missed[i] < TOLERANCE_M else Status.TIMEOUT,
-                time_s=STEPS * DT_S,
-                terminal_distance_m=float(missed[i]),
-                min_clearance_m=None,
-                initial_hash=initial[i],
-                disturbance_hash=initial[i],
-                planner_noise_hash="none",
-                trace=path[:, i].astype(np.float32),
-            )
-            for i, scene in enumerate(scenes)
-        ]
 
 
 def create() -> System:

@@ -1,6 +1,6 @@
 """Interfaces as YAML: read with the safe loader only, written so that reading gives the same."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
 
@@ -17,13 +17,20 @@ _LONGEST = 1_000_000
 _TEXT = "the interface text"
 
 
-def read_interface(path_or_text: Path | str) -> Interface:
+def read_interface(
+    path_or_text: Path | str,
+    consumers: Mapping[str, Sequence[str]] | None = None,
+    writers: Mapping[str, str] | None = None,
+) -> Interface:
     """Return the interface in a YAML file, or in YAML text (a `str` that has a line break).
+
+    What the text does not say about who reads and who reconstructs is taken from `consumers`
+    (by channel) and `writers` (module by source), where these are given.
 
     Raises `UserError` with file, line and what to do.
     """
     if isinstance(path_or_text, str) and "\n" in path_or_text:
-        return _parse(path_or_text, _TEXT)
+        return _parse(path_or_text, _TEXT, consumers or {}, writers or {})
     path = Path(path_or_text)
     try:
         text = _read(path).decode("utf-8")
@@ -35,7 +42,7 @@ def read_interface(path_or_text: Path | str) -> Interface:
         raise UserError(f"{path}: is not UTF-8 text; save the interface as UTF-8") from None
     except ValueError:  # a name with NUL or a surrogate in it
         raise UserError(f"{path}: is no name of a file; give the path of one") from None
-    return _parse(text, str(path))
+    return _parse(text, str(path), consumers or {}, writers or {})
 
 
 def interface_yaml(interface: Interface) -> str:
@@ -62,7 +69,9 @@ def _read(path: Path) -> bytes:
         return file.read(_LONGEST + 1)
 
 
-def _parse(text: str, where: str) -> Interface:
+def _parse(
+    text: str, where: str, consumers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
+) -> Interface:
     if len(text) > _LONGEST:
         raise UserError(f"{where}: is too long; an interface has at most {_LONGEST} characters")
     root = _compose(text, where)
@@ -71,7 +80,7 @@ def _parse(text: str, where: str) -> Interface:
     for line, key in _repeated_keys(root):
         raise UserError(f"{where}, line {line}: key '{key}' appears twice; drop one")
     try:
-        return Interface.model_validate(yaml.safe_load(text))
+        return Interface.model_validate(_completed(yaml.safe_load(text), consumers, writers))
     except yaml.YAMLError as error:
         raise _not_yaml(error, where) from None
     except ValidationError as error:
@@ -81,6 +90,33 @@ def _parse(text: str, where: str) -> Interface:
         raise UserError(
             f"{where}: holds a value that is none ({error}); write it plainly"
         ) from None
+
+
+def _completed(
+    data: Any, consumers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
+) -> Any:
+    """Fill in who reads and who reconstructs; what has another shape is left for validation."""
+    for channel in _dicts(data, "channels"):
+        if "consumers" not in channel and channel.get("name") in consumers:
+            channel["consumers"] = list(consumers[channel["name"]])
+    made = {
+        writers[source["name"]]: source["name"]
+        for source in _dicts(data, "sources")
+        if source.get("provenance") == "reconstructed" and source.get("name") in writers
+    }
+    if made:  # so it is a mapping
+        data.setdefault("reconstructs", made)
+    return data
+
+
+def _dicts(data: Any, part: str) -> list[dict[str, Any]]:
+    items = cast("dict[str, Any]", data).get(part) if isinstance(data, dict) else None
+    found = cast("list[Any]", items) if isinstance(items, list) else []
+    return [
+        cast("dict[str, Any]", each)
+        for each in found
+        if isinstance(each, dict) and isinstance(cast("dict[str, Any]", each).get("name"), str)
+    ]
 
 
 def _compose(text: str, where: str) -> Node | None:

@@ -5,6 +5,7 @@ from faultpath.trials.checks import library_of
 from faultpath.trials.declared import Library, SceneRef, Variant
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+from faultpath.trials.looped import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
@@ -18,6 +19,7 @@ __all__ = [
     "Deliveries",
     "FloorPlan",
     "Library",
+    "LoopSystem",
     "Mismatch",
     "Offered",
     "Option",
@@ -39,6 +41,7 @@ __all__ = [
     "TrialRow",
     "Variant",
     "VariantShown",
+    "Wiring",
     "library_of",
     "load_measurer",
     "load_system",

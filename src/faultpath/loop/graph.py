@@ -1,0 +1,112 @@
+"""From parts to an executable graph: who feeds whom, and in which order."""
+
+from collections.abc import Mapping, Sequence
+
+from faultpath.errors import SystemMistake
+from faultpath.interface import Interface
+from faultpath.interface.words import listed
+from faultpath.loop.module import Graph, Module, Part, Plant
+
+
+def graph(
+    interface: Interface,
+    plant: Plant,
+    modules: Sequence[Module],
+    bindings: Mapping[str, str] | None = None,
+) -> Graph:
+    """Return the graph of a plant and modules.
+
+    Args:
+        interface: Declares the channels, their sources and their consumers.
+        plant: What senses and is moved.
+        modules: In any order.
+        bindings: Channel to source, where it is not the channel's first source.
+
+    Raises:
+        SystemMistake: A port or a source is not declared, a source is written twice or by nobody,
+            or modules wait for each other.
+    """
+    bound = {channel.name: channel.sources[0] for channel in interface.channels}
+    bound |= dict(bindings or {})
+    writers = _writers(interface, plant, modules)
+    for part in (*modules, plant):
+        _check_ports(interface, part, bound, writers)
+        missing = sorted(set(part.truths) - set(plant.shows)) if isinstance(part, Module) else []
+        if missing:
+            raise SystemMistake(
+                f"module '{part.name}' declares the truth '{missing[0]}', which the plant does not "
+                f"show: it shows {listed(plant.shows)}"
+            )
+    return Graph(plant, _ordered(modules, bound, writers), bound)
+
+
+def _writers(
+    interface: Interface, plant: Plant, modules: Sequence[Module]
+) -> dict[str, Module | Plant]:
+    writers: dict[str, Module | Plant] = {}
+    for part, names in [(plant, plant.senses), *((module, module.writes) for module in modules)]:
+        for name in names:
+            interface.source(name)
+            if name in writers:
+                raise SystemMistake(
+                    f"source '{name}' is written by '{writers[name].name}' and by '{part.name}': "
+                    "give each source one writer"
+                )
+            writers[name] = part
+    return writers
+
+
+def _check_ports(
+    interface: Interface,
+    part: Part,
+    bound: Mapping[str, str],
+    writers: Mapping[str, object],
+) -> None:
+    twice = part.reads & part.reads_past
+    if twice:
+        port = min(twice)
+        raise SystemMistake(
+            f"module '{part.name}' reads channel '{port.channel}' at '{port.place}' both now and "
+            "one step before: keep one of the two, or give them two places"
+        )
+    for port in sorted(part.ports):
+        consumer = f"{part.name}.{port.place}"
+        declared = interface.channel(port.channel).consumers
+        if consumer not in declared:
+            raise SystemMistake(
+                f"module '{part.name}' reads channel '{port.channel}' at '{port.place}', but the "
+                f"interface does not list {consumer} among its consumers: {listed(declared)}"
+            )
+        if bound[port.channel] not in writers:
+            raise SystemMistake(
+                f"channel '{port.channel}' is bound to source '{bound[port.channel]}', which "
+                "neither the plant nor a module writes here"
+            )
+
+
+def _ordered(
+    modules: Sequence[Module], bound: Mapping[str, str], writers: Mapping[str, Module | Plant]
+) -> tuple[Module, ...]:
+    """Return the modules, each after those whose sources it reads at the same step."""
+    before = {
+        id(module): {
+            id(writer)
+            for port in module.reads
+            if isinstance(writer := writers[bound[port.channel]], Module)
+        }
+        for module in modules
+    }
+    ordered: list[Module] = []
+    waiting = list(modules)
+    while waiting:
+        done = {id(module) for module in ordered}
+        ready = next((module for module in waiting if before[id(module)] <= done), None)
+        if ready is None:
+            names = " -> ".join(dict.fromkeys(module.name for module in waiting))
+            raise SystemMistake(
+                f"modules wait for each other within one step: {names}; let one of them read what "
+                "its channel held one step before, in reads_past"
+            )
+        ordered.append(ready)
+        waiting.remove(ready)
+    return tuple(ordered)

@@ -1,0 +1,150 @@
+"""The one loop: modules in graph order, every edge a tap."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from faultpath.arrays import Array
+from faultpath.errors import SystemMistake
+from faultpath.interface import Interface
+from faultpath.interface.words import listed
+from faultpath.loop.clock import Clock
+from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
+from faultpath.loop.ports import Inputs, Port
+from faultpath.loop.trace import Trace
+from faultpath.taps import Reading, Taps
+
+
+@dataclass(frozen=True)
+class Instant:
+    """A control step before the plant moves on."""
+
+    step: int
+    state: State
+    inputs: Inputs
+    """What reaches the plant."""
+
+
+class Loop:
+    """Executes a graph over batches of scenes.
+
+    Args:
+        interface: Declares rates and latencies of the sources.
+        graph: What is executed; see `faultpath.loop.graph`.
+        trace: Takes down who reads what, if given.
+    """
+
+    def __init__(self, interface: Interface, graph: Graph, trace: Trace | None = None) -> None:
+        self.graph = graph
+        self._interface = interface
+        self._trace = trace
+
+    def execute(self, batch: Batch, taps: Taps) -> Iterator[Instant]:
+        """Yield every control step of a batch, and at the end the one at which nothing runs.
+
+        The last instant's `inputs` are empty: nothing reaches the plant any more.
+        """
+        return _Execution(self._interface, self.graph, self._trace, batch, taps).run()
+
+
+class _Execution:
+    """One execution: what the sources hold, now and one step before."""
+
+    def __init__(
+        self,
+        interface: Interface,
+        graph: Graph,
+        trace: Trace | None,
+        batch: Batch,
+        taps: Taps,
+    ) -> None:
+        self._graph = graph
+        self._trace = trace
+        self._batch = batch
+        self._taps = taps
+        self._read_sources = {
+            graph.bindings[port.channel] for part in graph.parts for port in part.ports
+        }
+        self._clocks = {
+            name: Clock(interface.source(name), batch.dt_s) for name in self._read_sources
+        }
+        self._ports = {id(part): sorted(part.ports) for part in graph.parts}
+        self._now: dict[str, Reading] = {}
+        self._past: dict[str, Reading] = {}
+        self._truths: dict[str, Any] = {}
+
+    def run(self) -> Iterator[Instant]:
+        plant, modules, batch = self._graph.plant, self._graph.modules, self._batch
+        state = plant.start(batch)
+        memories: list[Memory] = [module.begin(batch) for module in modules]
+        for module in modules:
+            self._hold(module, module.before(batch), 0, module.writes, first=True)
+        for step in range(plant.steps):
+            if plant.over(state, step):
+                break
+            running = plant.progress(state).running
+            self._taps.set_active(running)
+            self._past, self._now = self._now, {}
+            sensed = plant.sense(state)
+            self._hold(plant, sensed, step, plant.senses)
+            self._truths = {name: sensed[name] for name in plant.shows}
+            for index, module in enumerate(modules):
+                inputs = self._inputs(module, step, running)
+                outputs, memories[index] = module.step(inputs, memories[index])
+                self._hold(module, outputs, step, module.writes)
+                self._note(module, inputs)
+            inputs = self._inputs(plant, step, running)
+            yield Instant(step, state, inputs)
+            state = plant.advance(state, inputs)
+            self._note(plant, inputs)
+        yield Instant(plant.steps, state, Inputs(plant.name, plant.steps, {}, {}))
+
+    def _hold(
+        self,
+        part: Part,
+        outputs: Outputs,
+        step: int,
+        wanted: tuple[str, ...],
+        first: bool = False,
+    ) -> None:
+        """Take in what a part's sources hold at a step, as far as somebody reads them."""
+        for name in wanted:
+            if name not in self._read_sources:
+                continue
+            if name in outputs:
+                value = outputs[name]
+                arrived = Reading(value, name, 0) if first else self._clocks[name].read(value, step)
+                self._now[name] = arrived
+            elif not first:
+                raise SystemMistake(
+                    f"module '{part.name}' writes source '{name}', but gave none at step {step}: "
+                    f"it gave {listed(outputs)}"
+                )
+
+    def _inputs(self, part: Module | Any, step: int, running: Array) -> Inputs:
+        delivered: dict[Port, Any] = {}
+        for port in self._ports[id(part)]:
+            reading = self._reading(part, port)
+            consumer = f"{part.name}.{port.place}"
+            delivered[port] = self._taps.deliver(port.channel, consumer, reading, step)
+        names = part.truths if isinstance(part, Module) else ()
+        truths: Mapping[str, Any] = {name: self._truths[name] for name in names}
+        return Inputs(part.name, step, delivered, truths, running)
+
+    def _reading(self, part: Part, port: Port) -> Reading:
+        source = self._graph.bindings[port.channel]
+        if port in part.reads:
+            return self._now[source]
+        held = self._past.get(source)
+        if held is None:
+            raise SystemMistake(
+                f"module '{part.name}' reads what channel '{port.channel}' held one step before, "
+                f"but nobody says what source '{source}' held before the first step: return it "
+                "from the writing module's before()"
+            )
+        return held
+
+    def _note(self, part: Part, inputs: Inputs) -> None:
+        if self._trace is not None:
+            valid = {port: self._reading(part, port).step for port in inputs}
+            self._trace.note(self._graph, part, inputs, valid)

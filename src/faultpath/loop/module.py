@@ -1,0 +1,159 @@
+"""The parts of a closed loop: modules that read and write, and the plant under them."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from faultpath.arrays import Array
+from faultpath.loop.ports import Inputs, Port
+
+Memory: TypeAlias = Any
+"""What a module carries from step to step; opaque to everybody else."""
+
+State: TypeAlias = Any
+"""What a plant carries from step to step; opaque to everybody else."""
+
+Outputs: TypeAlias = Mapping[str, Any]
+"""By source: an array `[B, ...]`, or a `faultpath.taps.Query` that is asked within the step."""
+
+
+@dataclass(frozen=True)
+class Batch:
+    """The trials that one execution of a loop runs side by side."""
+
+    scenes: tuple[str, ...]
+    seed: int
+    """Of random numbers and, where models are trained, of their training."""
+    dt_s: float
+    """Length of a control step, s."""
+
+
+class Part(ABC):
+    """What stands in a loop and reads at ports."""
+
+    name: str
+    """Under which the interface lists its consumers, `name.place`. Parts may share it: a fault at
+    that module then strikes them all."""
+    reads: frozenset[Port] = frozenset()
+    """Ports that get what their source holds at this step."""
+    reads_past: frozenset[Port] = frozenset()
+    """Ports that get what their source held one step before: this is what closes a cycle. At the
+    first step that is what the source's module gives as `before`."""
+
+    @property
+    def ports(self) -> frozenset[Port]:
+        """All that it may know."""
+        return self.reads | self.reads_past
+
+
+class Module(Part):
+    """A part of the controller: readings and memory in, sources and memory out.
+
+    It keeps nothing of its own from step to step, does not write into what it reads, and gives
+    each scene a result that does not depend on the other scenes of the batch. Random numbers come
+    from `faultpath.streams`, by scene, seed and step.
+    """
+
+    writes: tuple[str, ...] = ()
+    """Sources of the interface that it produces at every step."""
+    truths: tuple[str, ...] = ()
+    """What it takes of the plant's own state, past all taps. Only a stand-in for an estimator does
+    so, and tracing names it."""
+
+    def begin(self, batch: Batch) -> Memory:
+        """Return the memory before the first step."""
+        del batch
+
+    @abstractmethod
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Return what each of `writes` holds at this step, and the memory for the next one."""
+
+    def before(self, batch: Batch) -> Outputs:
+        """Return what its sources held before the first step, for ports that read the past."""
+        del batch
+        return {}
+
+    def noise_hashes(self, batch: Batch) -> Sequence[str] | None:
+        """Return a hash of what it draws in each scene, `None` for a module that draws nothing.
+
+        Two trials count as a pair only where these agree.
+        """
+        del batch
+        return None
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where each scene's trial stands, `[B]` each; one that runs no longer stays as it ended."""
+
+    running: Array
+    succeeded: Array
+    crashed: Array
+    """A trial that neither succeeded nor crashed has timed out."""
+    time_s: Array
+    """Time at which it ended, or of now."""
+    terminal_distance_m: Array | None = None
+    min_clearance_m: Array | None = None
+
+
+class Plant(Part):
+    """What the loop closes over: it senses, and it is moved by what it reads at its ports."""
+
+    name: str = "plant"
+    steps: int
+    """Control steps after which every trial ends."""
+    senses: tuple[str, ...] = ()
+    """Sources of the interface that `sense` gives."""
+    shows: tuple[str, ...] = ()
+    """Truths that `sense` gives beside: only for modules that declare them."""
+
+    @abstractmethod
+    def start(self, batch: Batch) -> State:
+        """Return the state at the start of a batch's trials."""
+
+    @abstractmethod
+    def sense(self, state: State) -> Outputs:
+        """Return what each of `senses` and `shows` holds now."""
+
+    @abstractmethod
+    def advance(self, state: State, inputs: Inputs) -> State:
+        """Return the state one control step later. The state given is not used again."""
+
+    @abstractmethod
+    def progress(self, state: State) -> Progress:
+        """Return where the trials stand."""
+
+    @abstractmethod
+    def conditions(self, state: State) -> tuple[Sequence[str], Sequence[str]]:
+        """Return hashes of each scene's initial state and of its disturbances, `[B]` each."""
+
+    def over(self, state: State, step: int) -> bool:
+        """Return whether no trial runs any more; where that waits for a device, not every step."""
+        del step
+        return not bool(self.progress(state).running.any())
+
+    def position(self, state: State) -> Array | None:
+        """Return where the scenes' vehicles are, `[B, 3]`, metres; `None`: nothing to draw."""
+        del state
+        return None
+
+
+@dataclass(frozen=True)
+class Graph:
+    """A plant and its modules in the order in which a step executes them."""
+
+    plant: Plant
+    modules: tuple[Module, ...]
+    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Channel to the source that feeds it."""
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """All that read: the modules, and the plant last."""
+        return (*self.modules, self.plant)
+
+
+def consumers(parts: Iterable[Part]) -> frozenset[str]:
+    """Return the names `module.place` under which the interface lists the parts' ports."""
+    return frozenset(f"{part.name}.{port.place}" for part in parts for port in part.ports)

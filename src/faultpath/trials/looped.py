@@ -1,0 +1,148 @@
+"""A system that is nothing but its parts: a plant and modules, executed by the one loop."""
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from faultpath.arrays import Array, HostArray, namespace, to_numpy
+from faultpath.interface import Interface, Provenance
+from faultpath.loop import Batch, Graph, Loop, Module, Plant, Trace, consumers, graph
+from faultpath.taps import Taps
+from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.system import System, Variant
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """What a variant is, beside its modules."""
+
+    description: str
+    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
+    """Channel to source, where it is not the channel's first source."""
+
+
+class LoopSystem(System):
+    """A system built from a plant and modules.
+
+    Consumers and privileged sources of its variants follow from the modules' ports, and `run` is
+    the loop. Its author writes the parts, and says which of them each variant has.
+    """
+
+    @property
+    @abstractmethod
+    def wirings(self) -> Mapping[str, Wiring]:
+        """The variants by name."""
+
+    @abstractmethod
+    def plant(self) -> Plant:
+        """Return what senses and is moved."""
+
+    @abstractmethod
+    def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
+        """Return the modules of a variant, in any order.
+
+        `seed` is that of the arm, for trained modules that of their training; with `None` only
+        their ports will be looked at, so that weights may be blank.
+        """
+
+    @property
+    def variants(self) -> Mapping[str, Variant]:
+        """The wirings, with what their modules read."""
+        return self._variants
+
+    @cached_property
+    def _variants(self) -> Mapping[str, Variant]:
+        return {name: self._variant(name, wiring) for name, wiring in self.wirings.items()}
+
+    def loop(self, variant: str, seed: int | None, trace: Trace | None = None) -> Loop:
+        """Return the executable loop of a variant.
+
+        Raises `SystemMistake` where its parts do not fit together; see `faultpath.loop.graph`.
+        """
+        return Loop(self.interface, self._graph(variant, seed), trace)
+
+    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+        """See `System.run`."""
+        loop = self.loop(variant, seed)
+        plant, batch = loop.graph.plant, Batch(tuple(scenes), seed, self.control_dt_s)
+        path: list[Array] = []
+        state = None
+        for instant in loop.execute(batch, taps):
+            state = instant.state
+            path.append(plant.position(state))
+        return _outcomes(plant, state, batch, path, _noise(loop.graph, batch))
+
+    def _graph(self, variant: str, seed: int | None) -> Graph:
+        bindings = self.wirings[variant].bindings
+        return graph(self.interface, self.plant(), self.modules(variant, seed), bindings)
+
+    def _variant(self, name: str, wiring: Wiring) -> Variant:
+        parts = self._graph(name, None)
+        return Variant(
+            name=name,
+            description=wiring.description,
+            consumers=consumers(parts.parts),
+            bindings=wiring.bindings,
+            privileged=_privileged(self.interface, parts),
+        )
+
+
+def _privileged(interface: Interface, parts: Graph) -> frozenset[str]:
+    """Return the privileged sources that the parts read: a variant says so by reading them."""
+    bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
+    return frozenset(
+        name for name in bound if interface.source(name).provenance is Provenance.PRIVILEGED
+    )
+
+
+def _noise(parts: Graph, batch: Batch) -> Sequence[str]:
+    """Return what the modules draw in each scene, `none` where no module draws."""
+    drawn = [found for each in parts.modules if (found := each.noise_hashes(batch)) is not None]
+    if not drawn:
+        return ["none"] * len(batch.scenes)
+    return ["-".join(hashes) for hashes in zip(*drawn, strict=True)]
+
+
+def _outcomes(
+    plant: Plant, state: object, batch: Batch, path: Sequence[Array], noise: Sequence[str]
+) -> list[Outcome]:
+    """Read the end of the trials off the plant; this waits for its device, once a batch."""
+    end = plant.progress(state)
+    initial, disturbed = plant.conditions(state)
+    succeeded, crashed, times = (
+        to_numpy(part) for part in (end.succeeded, end.crashed, end.time_s)
+    )
+    terminal, nearest = (
+        None if part is None else to_numpy(part)
+        for part in (end.terminal_distance_m, end.min_clearance_m)
+    )
+    traces = _traces(path)
+    outcomes: list[Outcome] = []
+    for i, scene in enumerate(batch.scenes):
+        time_s = float(times[i])
+        status = Status.SUCCESS if succeeded[i] else Status.TIMEOUT
+        instants = int(np.ceil(time_s / batch.dt_s - 1e-6)) + 1
+        outcomes.append(
+            Outcome(
+                scene=scene,
+                status=Status.CRASH if crashed[i] else status,
+                time_s=time_s,
+                terminal_distance_m=None if terminal is None else float(terminal[i]),
+                min_clearance_m=None if nearest is None else float(nearest[i]),
+                initial_hash=initial[i],
+                disturbance_hash=disturbed[i],
+                planner_noise_hash=noise[i],
+                trace=None if traces is None else traces[:instants, i].astype(np.float32),
+            )
+        )
+    return outcomes
+
+
+def _traces(path: Sequence[Array]) -> HostArray | None:
+    """Return the positions `[T, B, 3]`, at the start and after each control step."""
+    if path[0] is None:
+        return None
+    return to_numpy(namespace(path[0]).stack(list(path)))

@@ -1,0 +1,227 @@
+"""One loop: order, the past, time, queries, and what ran."""
+
+import numpy as np
+import pytest
+from loop_toys import SCENES, Guess, Line, Planner, execute, interface_of, wired
+
+from faultpath.errors import SystemMistake
+from faultpath.faults import parse_fault
+from faultpath.loop import Batch, Loop, Module, Port, Trace, consumers, graph
+from faultpath.loop import interface_of as derived
+from faultpath.taps import IllegalRead, MalformedReading, Taps
+
+
+def fault(text):
+    return parse_fault(text, interface_of((Guess(), Planner(), Line())), {}, 0.1)
+
+
+def test_modules_run_in_the_order_of_what_they_read() -> None:
+    modules = (Planner(), Guess())
+    _, parts = wired(modules)
+    assert [module.name for module in parts.modules] == ["observer", "planner"]
+
+
+def test_the_plant_moves_by_what_came_through_the_tap() -> None:
+    instants, _ = execute((Guess(), Planner()), [fault("action:scale=2")])
+    moved = np.diff([instant.state.x for instant in instants], axis=0)
+    assert moved[:, 0].tolist() == [0.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0]
+    assert len(instants) == Line.steps + 1
+    assert not instants[-1].inputs
+
+
+def test_a_port_of_the_past_gets_the_step_before_and_first_what_was_before() -> None:
+    observer = Guess()
+    execute((observer, Planner()))
+    assert [each[0] for each in observer.executed] == [-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
+
+
+def test_a_past_that_nobody_gives_is_named() -> None:
+    class Silent(Planner):
+        def before(self, batch):
+            return {}
+
+    with pytest.raises(SystemMistake, match=r"'observer' reads what channel 'action'.*before\(\)"):
+        execute((Guess(), Silent()))
+
+
+@pytest.mark.parametrize(
+    ("place", "seen"),
+    [
+        (", latency_s: 0.2", [1, 1, 1, 1, 2, 4, 7, 11]),
+        (", latency_s: 0.15", [1, 1, 1, 1, 2, 4, 7, 11]),
+        (", rate_hz: 5", [1, 1, 2, 2, 7, 7, 16, 16]),
+        (", rate_hz: 5, latency_s: 0.1", [1, 1, 1, 2, 2, 7, 7, 16]),
+        (", rate_hz: 10", [1, 1, 2, 4, 7, 11, 16, 22]),
+        (", rate_hz: 4", [1, 1, 1, 4, 4, 11, 11, 11]),
+    ],
+)
+def test_rate_and_latency_of_a_source_are_executed(place, seen) -> None:
+    observer = Guess()
+    execute((observer, Planner()), place=place)
+    assert [each[0] for each in observer.seen] == seen
+
+
+def test_every_answer_of_a_query_passes_the_tap() -> None:
+    planner = Planner(asks=3)
+    _, taps = execute((Guess(), planner), [fault("clearance:offset=10")])
+    receipt = taps.receipts().at("clearance", "planner.cost")
+    assert (receipt.deliveries, receipt.asks) == (8, 24)
+    assert receipt.steps_struck.tolist() == receipt.steps_altered.tolist() == [8, 8]
+    assert all(answer[0, 0] == 9.0 for answer in planner.answers[0])
+
+
+def test_asks_of_a_step_draw_apart_and_the_first_as_a_signal_does() -> None:
+    once, thrice, again = Planner(), Planner(asks=3), Planner(asks=3)
+    for planner in (once, thrice, again):
+        execute((Guess(), planner), [fault("clearance:noise=1")])
+    for step in range(Line.steps):
+        np.testing.assert_array_equal(once.answers[step][0], thrice.answers[step][0])
+        np.testing.assert_array_equal(again.answers[step], thrice.answers[step])
+        assert len({float(answer[0, 0]) for answer in thrice.answers[step]}) == 3
+
+
+def test_the_nth_ask_is_delayed_to_the_nth_ask_of_before() -> None:
+    class Probing(Planner):
+        def step(self, inputs, memory):
+            ask = inputs["clearance", "cost"]
+            self.answers.append([float(ask(np.full((2, 2), 100.0 * n))[0, 0]) for n in (1, 2)])
+            return {"order": np.ones(2)}, memory
+
+    planner = Probing()
+    execute((Guess(), planner), [fault("clearance:delay=2")])
+    assert planner.answers[:4] == [[99, 199], [99, 199], [99, 199], [98, 198]]
+
+
+def test_a_query_of_a_step_gone_by_is_refused() -> None:
+    class Late(Planner):
+        def step(self, inputs, memory):
+            if memory is not None:
+                memory(np.zeros((2, 2)))
+            return {"order": np.ones(2)}, inputs["clearance", "cost"]
+
+    with pytest.raises(MalformedReading, match="the query of step 0 was asked in step 1"):
+        execute((Guess(), Late()))
+
+
+def test_an_answer_cannot_be_written_to() -> None:
+    class Writing(Planner):
+        def step(self, inputs, memory):
+            answer = inputs["clearance", "cost"](np.zeros((2, 2)))
+            with pytest.raises(ValueError, match="read-only"):
+                answer += 1
+            return {"order": np.ones(2)}, memory
+
+    execute((Guess(), Writing()))
+
+
+def test_what_is_not_declared_cannot_be_read() -> None:
+    class Peeking(Guess):
+        def step(self, inputs, memory):
+            inputs["clearance", "cost"]
+
+    with pytest.raises(SystemMistake, match=r"'observer' looked for channel 'clearance' at 'cost'"):
+        execute((Peeking(), Planner()))
+
+
+def test_truth_is_for_those_who_declare_it() -> None:
+    class Peeking(Guess):
+        def step(self, inputs, memory):
+            return {"guess": inputs.truth("true_place")}, memory
+
+    with pytest.raises(SystemMistake, match="add it to its truths"):
+        execute((Peeking(), Planner()))
+    honest = Peeking()
+    honest.truths = ("true_place",)
+    trace = Trace(steps=1)
+    execute((honest, Planner()), trace=trace)
+    assert trace.truths == {("observer", "true_place")}
+    honest.truths = ("mass",)
+    with pytest.raises(SystemMistake, match=r"'mass', which the plant does not show"):
+        wired((honest, Planner()))
+
+
+def test_a_privileged_source_is_not_read_unasked() -> None:
+    interface, parts = wired((Guess(), Planner()))
+    with pytest.raises(IllegalRead, match="privileged"):
+        list(Loop(interface, parts).execute(_batch(), Taps(interface, scenes=SCENES, dt_s=0.1)))
+
+
+def test_modules_that_wait_for_each_other_are_named() -> None:
+    class Ring(Guess):
+        reads = frozenset({Port("position", "seen"), Port("action", "now")})
+        reads_past = frozenset()
+
+    with pytest.raises(SystemMistake, match=r"observer -> planner; .*reads_past"):
+        wired((Ring(), Planner()))
+
+
+def test_a_source_has_one_writer_and_each_port_one() -> None:
+    with pytest.raises(SystemMistake, match="source 'guess' is written by 'observer' and by"):
+        wired((Guess(), Guess(), Planner()))
+    interface = interface_of((Guess(), Planner(), Line()))
+    with pytest.raises(SystemMistake, match=r"source 'guess', which neither the plant nor"):
+        graph(interface, Line(), (Planner(),))
+
+
+def test_a_module_that_forgets_its_source_is_named() -> None:
+    class Mute(Guess):
+        def step(self, inputs, memory):
+            return {}, memory
+
+    with pytest.raises(SystemMistake, match="'observer' writes source 'guess', but gave none"):
+        execute((Mute(), Planner()))
+
+
+def test_the_trace_says_who_read_what_and_who_did_not_look() -> None:
+    class Blind(Guess):
+        def step(self, inputs, memory):
+            return {"guess": inputs["position", "seen"]}, memory
+
+    trace = Trace(steps=2)
+    execute((Blind(), Planner()), trace=trace, place=", latency_s: 0.1")
+    read = {(each.step, each.module, each.port.channel): each for each in trace.reads}
+    assert len(trace.reads) == 2 * 5
+    assert read[1, "observer", "position"].valid_step == 0
+    assert read[1, "observer", "position"].source == "place"
+    assert read[1, "line", "action"].valid_step == 1
+    assert list(trace.unused()) == [("observer", Port("action", "executed"))]
+
+
+def test_the_interface_follows_from_the_ports() -> None:
+    parts = (Guess(), Planner(), Line())
+    interface = interface_of(parts)
+    assert interface.channel("action").consumers == ("observer.executed", "line.motor")
+    assert interface.reconstructs == {"observer": "guess"}
+    every = {name for channel in interface.channels for name in channel.consumers}
+    assert every == set(consumers(parts))
+    with pytest.raises(SystemMistake, match=r"does not list observer\.other"):
+        _undeclared()
+
+
+def _undeclared():
+    class Other(Guess):
+        reads = frozenset({Port("position", "other")})
+
+    graph(interface_of((Guess(), Planner(), Line())), Line(), (Other(), Planner()))
+
+
+def test_facts_that_list_readers_keep_their_list() -> None:
+    facts = "name: x\nsources: [{name: s, unit: m, provenance: measured}]\n"
+    facts += "channels: [{name: position, sources: [s], consumers: [a.b]}]\n"
+    assert derived(facts, (Guess(),)).channel("position").consumers == ("a.b",)
+
+
+class _Module(Module):
+    name = "m"
+
+    def step(self, inputs, memory):
+        return {}, memory
+
+
+def test_a_module_draws_nothing_and_remembers_nothing_unless_it_says_so() -> None:
+    assert _Module().begin(_batch()) is None
+    assert _Module().noise_hashes(_batch()) is None
+
+
+def _batch() -> Batch:
+    return Batch(SCENES, 0, 0.1)
