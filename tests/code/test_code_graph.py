@@ -19,7 +19,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Files:
     def write(**sources: str) -> Path:
         for name, text in sources.items():
             path = tmp_path / f"{name.replace('__in__', '/')}.py"
-            path.parent.mkdir(exist_ok=True)
+            path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
         return tmp_path
 
@@ -51,6 +51,26 @@ def test_local_modules_are_followed_and_others_are_not(files):
         "zz_pack/other.py",
     }
     assert set(found.packages) == {"numpy"}
+
+
+def test_folders_without_an_init_file_are_packages_too(files):
+    root = files(
+        zz_start="from zz_pack.plain import one\nimport zz_bare.deep.two",
+        zz_pack__in____init__="",
+        zz_pack__in__plain__in__one="import zz_pack.plain.deeper.three",
+        zz_pack__in__plain__in__deeper__in__three="",
+        zz_bare__in__deep__in__two="",
+        zz_bare__in__unused="",
+    )
+    assert {
+        path.name for path in read_code([Root("zz_main", root / "zz_start.py")]).sources.values()
+    } == {
+        "zz_start.py",
+        "__init__.py",
+        "one.py",
+        "two.py",
+        "three.py",
+    }
 
 
 def test_imports_in_a_circle_end(files):

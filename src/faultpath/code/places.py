@@ -3,6 +3,7 @@
 import os
 import sys
 import sysconfig
+from collections.abc import Iterable
 from enum import Enum
 from functools import cache
 from hashlib import sha256
@@ -34,9 +35,24 @@ def locate(name: str) -> ModuleSpec | None:
             spec = finder.find_spec(name, path)
         except (ImportError, AttributeError, ValueError):
             continue
+        except KeyError:  # a folder without `__init__.py` whose parent is not imported
+            spec = _plain_folder(name, path or ())
         if spec is not None:
             return spec
     return None
+
+
+def _plain_folder(name: str, path: Iterable[str]) -> ModuleSpec | None:
+    """Return a namespace package below a package that is not imported.
+
+    Python's own finder looks the parent up among the imported modules to follow its path.
+    """
+    found = [str(place) for each in path if (place := Path(each, name.rpartition(".")[2])).is_dir()]
+    if not found:
+        return None
+    spec = ModuleSpec(name, None, is_package=True)
+    spec.submodule_search_locations = found
+    return spec
 
 
 def file_of(spec: ModuleSpec) -> Path | None:
