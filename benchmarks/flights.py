@@ -1,19 +1,21 @@
 """A real block in flight: how much of a closed-loop replan is not the rollout."""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import torch
-from torch import Tensor
 
 from benchmarks.side import Side
-from faultpath.quadrotor import clearance as sources
-from faultpath.quadrotor import navigator
-from faultpath.quadrotor.perception import DepthRenderer
+from faultpath.loop import Batch, Instant
+from faultpath.quadrotor.modules.clearance import Perception
+from faultpath.quadrotor.modules.wind import WindReconstruction
+from faultpath.quadrotor.native.rollout import HorizonLoop
+from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.planner import MPPI, AutoregressiveSampler
 from faultpath.quadrotor.predictors import AnchoredPredictor
+from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
@@ -25,14 +27,18 @@ VARIANT = "gru"
 
 PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
     "rendering": ((DepthRenderer, "render"),),
-    "encoding": ((sources.SeenClearance, "look"),),
+    "encoding": ((Perception, "step"),),
     "noise": ((AutoregressiveSampler, "noise"),),
-    "candidates and rollout": ((MPPI, "propose"),),
-    "clearance queries": ((sources.SeenClearance, "query"), (sources.TrueClearance, "query")),
-    "costs and update": ((MPPI, "decide"),),
+    "candidates and rollout": (
+        (MPPI, "propose"),
+        (HorizonLoop, "__call__"),
+        (AnchoredPredictor, "step"),
+    ),
+    "clearance queries": ((DepthClearance, "query"), (DistanceField, "query")),
+    "costs and update": ((MPPI, "update"),),
     "plant and contact": ((World, "advance"),),
     "history code": ((AnchoredPredictor, "encode"),),
-    "wind reconstruction": ((navigator.WindReconstruction, "observe"),),
+    "wind reconstruction": ((WindReconstruction, "step"),),
 }
 """The methods in which the parts of a control step are; the rest is taps and bookkeeping."""
 
@@ -49,8 +55,7 @@ class ClosedLoop(Side):
         assert isinstance(system, Quadrotor)
         self._system = system
         self._scenes = [scene.id for scene in system.library("selection").scenes[:SCENES]]
-        self._commands: Iterator[Tensor] = iter(())
-        self._running: Callable[[], int] = int
+        self._steps: Iterator[Instant] = iter(())
         self.amount = 0
 
     @torch.inference_mode()
@@ -67,18 +72,17 @@ class ClosedLoop(Side):
             consumers=parts.consumers,
             privileged=parts.privileged,
         )
-        flight = system.flight(VARIANT, self._scenes, taps, 0)
-        self._running = lambda: int(flight.world.progress.running[:SCENES].sum())
-        self._commands = flight.commands()
-        next(self._commands)
+        batch = Batch(tuple(self._scenes), 0, system.control_dt_s)
+        self._steps = system.loop(VARIANT, 0).execute(batch, taps)
+        next(self._steps)
 
     @torch.inference_mode()
     def work(self) -> None:
         """See `Side.work`."""
         replans = 0
         for _ in range(STEPS):
-            next(self._commands)
-            replans += self._running()
+            world: World = next(self._steps).state.world
+            replans += int(world.progress.running[:SCENES].sum())
         self.amount = replans
 
     def answer(self) -> Sequence[float]:

@@ -3,11 +3,12 @@
 import torch
 
 from benchmarks import problem
+from benchmarks.replanning import replan
 from benchmarks.side import Side
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
-from faultpath.quadrotor.planner import shift
+from faultpath.quadrotor.rollout import rolling
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 
@@ -22,7 +23,8 @@ class Latency(Side):
     def __init__(self, clearance: str = "field") -> None:
         torch.set_num_threads(1)
         scene = load_library("selection").scenes[0]
-        self._planner = QuadrotorOptions().build_planner(problem.model())
+        self._planner = QuadrotorOptions().build_planner()
+        self._roll = rolling(problem.model())
         self._inputs = problem.inputs(1)
         self._goal = torch.tensor(scene.goal_m)[:, None]
         self._plan = problem.commands()[..., 0].clone()
@@ -38,12 +40,14 @@ class Latency(Side):
     @torch.inference_mode()
     def work(self) -> None:
         """See `Side.work`."""
-        noise = self._planner.sampler.noise(["scene/0"], 0, self._step)
-        proposal = self._planner.propose(self._inputs, self._plan, noise)
-        points = proposal.rollout.positions
-        clearance = self._clearance(points.flatten(2)).view(points.shape[1:])
-        self._plan = shift(self._planner.decide(proposal, clearance, self._goal))
+        self._plan = replan(
+            *(self._planner, self._roll, self._inputs, self._plan, self._goal),
+            *(["scene/0"], self._step, self._along),
+        )
         self._step += 1
+
+    def _along(self, positions: torch.Tensor) -> torch.Tensor:
+        return self._clearance(positions.flatten(2)).view(positions.shape[1:])
 
     def _clearance(self, points: torch.Tensor) -> torch.Tensor:
         if self._field is not None:

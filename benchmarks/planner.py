@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import torch
 
 from benchmarks import problem
+from benchmarks.replanning import replan
 from benchmarks.side import Side
 from faultpath.quadrotor import rollout as horizon
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import SamplerSettings, shift
+from faultpath.quadrotor.planner import SamplerSettings
 
 
 class Rollout(Side):
@@ -47,7 +48,8 @@ class Replan(Side):
     def __init__(self, scenes: int = 1) -> None:
         torch.set_num_threads(1)
         self.amount = scenes
-        self._planner = QuadrotorOptions().build_planner(problem.model())
+        self._planner = QuadrotorOptions().build_planner()
+        self._roll = horizon.rolling(problem.model())
         settings: SamplerSettings = self._planner.sampler.settings
         self._inputs = problem.inputs(scenes)
         self._scenes = [f"scene/{i}" for i in range(scenes)]
@@ -59,9 +61,10 @@ class Replan(Side):
     @torch.inference_mode()
     def work(self) -> None:
         """See `Side.work`."""
-        noise = self._planner.sampler.noise(self._scenes, 0, self._step)
-        proposal = self._planner.propose(self._inputs, self._plan, noise)
-        self._plan = shift(self._planner.decide(proposal, self._clearance, self._goal))
+        self._plan = replan(
+            *(self._planner, self._roll, self._inputs, self._plan, self._goal),
+            *(self._scenes, self._step, lambda positions: self._clearance),
+        )
         self._step += 1
 
     def answer(self) -> Sequence[float]:

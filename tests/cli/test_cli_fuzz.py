@@ -89,11 +89,11 @@ def test_interface_texts(fuzz_seed: int) -> None:
 
     sys.path.append(str(ROOT / "examples"))
     try:
-        from toy import INTERFACE
+        from toy import Toy
     finally:
         sys.path.remove(str(ROOT / "examples"))
     read = 0
-    for text in texts(rng, interface_yaml(INTERFACE), 300):
+    for text in texts(rng, interface_yaml(Toy.interface), 300):
         try:
             interface = read_interface(text + "\n")
         except UserError as refused:

@@ -20,7 +20,8 @@ sys.path.insert(0, {str(ROOT / "examples")!r})
 import numpy as np
 from faultpath.taps import Reading
 from faultpath.trials import Library, SceneRef, System, Variant
-from toy import INTERFACE, Toy
+from toy import Toy
+INTERFACE = Toy.interface
 """
 
 BROKEN = {
@@ -55,7 +56,7 @@ DECLARED = {
     "no block": ("block_size = 0", "`block_size` is 0"),
     "interface of text": ("interface = 'toy.yaml'", "`interface` is 'toy.yaml'"),
     "no variants": ("variants = {}", "`variants` is {}"),
-    "variant under another name": ("variants = {'b': Toy.variants['blind']}", "under 'b'"),
+    "variant under another name": ("variants = {'b': Toy().variants['blind']}", "under 'b'"),
     "unknown consumer": (
         "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
         "unknown consumer 'nobody.there'",

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from loop_toys import SCENES, Guess, Line, Planner, execute, interface_of, wired
+from loop_toys import FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
 
-from faultpath.errors import SystemMistake
+from faultpath.errors import SystemMistake, UserError
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Loop, Module, Port, Trace, consumers, graph
 from faultpath.loop import interface_of as derived
@@ -209,6 +209,34 @@ def test_facts_that_list_readers_keep_their_list() -> None:
     facts = "name: x\nsources: [{name: s, unit: m, provenance: measured}]\n"
     facts += "channels: [{name: position, sources: [s], consumers: [a.b]}]\n"
     assert derived(facts, (Guess(),)).channel("position").consumers == ("a.b",)
+
+
+def test_a_module_reconstructs_one_source():
+    class Both(Guess):
+        writes = ("guess", "spare")
+
+    facts = FACTS.replace(
+        "channels:", "- {name: spare, unit: m, provenance: reconstructed}\nchannels:"
+    )
+    with pytest.raises(UserError, match="'observer' writes the reconstructed sources 'guess' and"):
+        derived(facts % "", (Both(), Planner(), Line()))
+
+
+def test_a_loop_is_executed_as_often_as_wanted_and_ends_where_nothing_runs():
+    class Short(Line):
+        def over(self, state, step):
+            return step == 3
+
+    modules = (Guess(), Planner())
+    interface = interface_of((*modules, Short()))
+    loop = Loop(interface, graph(interface, Short(), modules))
+
+    def execution():
+        taps = Taps(interface, scenes=SCENES, dt_s=0.1, privileged=("field",))
+        return loop.execute(_batch(), taps)
+
+    together = [(one.step, two.step) for one, two in zip(execution(), execution(), strict=True)]
+    assert together == [(0, 0), (1, 1), (2, 2), (3, 3)]
 
 
 class _Module(Module):

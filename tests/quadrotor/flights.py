@@ -1,7 +1,9 @@
 """Short flights: what the tests of the system share."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +13,7 @@ from faultpath.quadrotor.scenes.library import Library, as_text
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Scene, Topology
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.vehicle import VehicleParameters
-from faultpath.taps import Reading, Taps
+from faultpath.taps import Query, Reading, Taps
 from faultpath.trials import Outcome, SystemSpec, load_system
 
 STEPS = 12
@@ -19,17 +21,37 @@ HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
 
 
 class LoggingTaps(Taps):
-    """Taps that keep each reading and what was delivered of it."""
+    """Taps that keep each reading and what was delivered of it; of a query, every answer."""
 
     def __init__(self, *args, **kwargs) -> None:
         super().__init__(*args, **kwargs)
         self.log: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
-        value = super().deliver(channel, consumer, reading, step)
-        pair = (reading.value.numpy().copy(), value.numpy().copy())
+        query = reading.value
+        if not isinstance(query, Query):
+            value = super().deliver(channel, consumer, reading, step)
+            self._keep(channel, consumer, query, value)
+            return value
+        made: list[Any] = []
+
+        def noting(request: Any) -> Any:
+            made.append(query.answer(request))
+            return made[-1]
+
+        watched = replace(reading, value=replace(query, answer=noting))
+        ask = super().deliver(channel, consumer, watched, step)
+
+        def asking(request: Any) -> Any:
+            answer = ask(request)
+            self._keep(channel, consumer, query.value(made[-1]), query.value(answer))
+            return answer
+
+        return asking
+
+    def _keep(self, channel: str, consumer: str, made: Array, delivered: Array) -> None:
+        pair = (made.numpy().copy(), delivered.numpy().copy())
         self.log.setdefault((channel, consumer), []).append(pair)
-        return value
 
     def delivered(self, channel: str, consumer: str) -> np.ndarray:
         """Return `[steps, scenes, ...]`."""

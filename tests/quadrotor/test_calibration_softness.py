@@ -8,12 +8,13 @@ hidden.
 
 import pytest
 import torch
+from planning_toys import replan
 
 from faultpath.quadrotor.choices import PlannerName
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planner import shift
 from faultpath.quadrotor.plant import TorchPlant
-from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
+from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
 from faultpath.quadrotor.vehicle_batch import Vehicle
@@ -24,8 +25,7 @@ SECONDS = 4.0
 
 def hover_heights(planner_name):
     """Mean height offset over the second half of a hover, m, for each of `ERRORS`."""
-    predictor = KinematicIntegrator(drag=True)
-    planner = QuadrotorOptions(planner=planner_name).build_planner(predictor)
+    planner = QuadrotorOptions(planner=planner_name).build_planner()
     lanes = 32
     plant = TorchPlant(Vehicle.nominal(lanes))
     rest = torch.zeros(3, lanes, dtype=torch.float64)
@@ -40,9 +40,7 @@ def hover_heights(planner_name):
         state = now.state.take(torch.arange(4)).to(torch.float32)
         column = State(*(part[..., None] for part in vars(state).values()))
         inputs = PredictorInputs(column, supplied, supplied, supplied.mass_kg, torch.zeros(3, 4, 1))
-        noise = planner.sampler.noise([f"hover/{i}" for i in range(4)], 0, step)
-        proposal = planner.propose(inputs, plan, noise)
-        plan = planner.decide(proposal, torch.ones(4, 20, 512), torch.zeros(3, 4))
+        plan = replan(planner, inputs, plan, [f"hover/{i}" for i in range(4)], step)
         command = plan[0].double()[:, torch.arange(lanes).clamp(max=3)]
         now = plant.advance(now, command, calm)
         plan = shift(plan)

@@ -5,6 +5,7 @@ through the program brings is flown on the CPU; a machine that has one flies bot
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from typing import Any
 
 import pytest
 import torch
@@ -16,8 +17,10 @@ from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicO
 from faultpath import arrays
 from faultpath.arrays import Array
 from faultpath.errors import UserError
+from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
 from faultpath.quadrotor import models, native, so3, system
+from faultpath.quadrotor.modules.vehicle import ACTION
 from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import SamplerSettings
@@ -25,7 +28,7 @@ from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Reading, Taps
+from faultpath.taps import Query, Reading, Taps
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}
@@ -41,9 +44,17 @@ class PlacedTaps(Taps):
     """Taps that look where every reading is, and where what they deliver is."""
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
-        value = super().deliver(channel, consumer, reading, step)
-        assert reading.value.device == value.device == GPU, f"{channel} -> {consumer}"
-        return value
+        value, query = super().deliver(channel, consumer, reading, step), reading.value
+        if not isinstance(query, Query):
+            assert query.device == value.device == GPU, f"{channel} -> {consumer}"
+            return value
+
+        def asking(request: Any) -> Any:
+            answer = value(request)
+            assert query.value(answer).device == GPU, f"{channel} -> {consumer}"
+            return answer
+
+        return asking
 
 
 @pytest.fixture
@@ -94,12 +105,12 @@ def _wired(
 def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts, gpu):
     built, scenes = _system(options), HELD_OUT[:3]
     taps = _wired(built, variant, texts, scenes, PlacedTaps)
-    flight = built.flight(variant, scenes, taps, seed=0)
+    steps = built.loop(variant, seed=0).execute(Batch(scenes, 0, built.control_dt_s), taps)
     gpu.watching = True
-    commands = flight.commands()
-    assert next(commands).device == GPU
-    assert next(commands).device == GPU
-    world = flight.world
+    assert next(steps).inputs[ACTION].device == GPU
+    second = next(steps)
+    assert second.inputs[ACTION].device == GPU
+    world = second.state.world
     for part in (*vars(world.state).values(), *vars(world.progress).values(), world.wind_mps):
         assert part.device == GPU
     assert gpu.operations > 1000
@@ -133,8 +144,8 @@ def test_the_simulation_notices(sin, error, gpu):
 @pytest.fixture
 def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
     """Return what sends the program the way of an accelerator while tensors are on the CPU."""
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
-    monkeypatch.setattr("faultpath.quadrotor.flight.LOOK_EVERY", 5)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.LOOK_EVERY", 5)
 
     def take() -> None:
         monkeypatch.setattr(devices, "AT_HAND", frozenset())
@@ -234,15 +245,15 @@ def test_cuda_without_a_gpu_is_a_mistake_of_the_user():
 @pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
 def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts, monkeypatch):
     """To 1 mm after a second of flight; torch itself raises where a step waits."""
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 20)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 20)
     here, there = quadrotor(**options), quadrotor(**options, device="cuda")
     with torch.no_grad():
         taps = _wired(there, variant, texts, HELD_OUT)
-        commands = there.flight(variant, HELD_OUT, taps, seed=0).commands()
-        next(commands)  # libraries are loaded
+        steps = there.loop(variant, seed=0).execute(Batch(HELD_OUT, 0, there.control_dt_s), taps)
+        next(steps)  # libraries are loaded
         torch.cuda.set_sync_debug_mode("error")
         try:
-            next(commands)
+            next(steps)
         finally:
             torch.cuda.set_sync_debug_mode("default")
     ends = [

@@ -21,10 +21,7 @@ from faultpath.quadrotor.native.recurrent import recur
 from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.planner import (
-    MPPI,
-    AutoregressiveSampler,
     NavigationCost,
-    SamplerSettings,
     ScaledTemperature,
     Scored,
     TerminalGoal,
@@ -58,22 +55,9 @@ def _nothing_said_yet() -> Iterator[None]:
     tell_portable.cache_clear()
 
 
-def planner(of: Predictor) -> MPPI:
-    return MPPI(
-        of,
-        AutoregressiveSampler(SamplerSettings(candidates=32)),
-        NavigationCost(TerminalGoal()),
-        ScaledTemperature(0.08),
-        rolling(of),
-    )
-
-
-def proposed(of: Predictor) -> Rollout:
-    """Return where the planner believes its candidates lead."""
-    given, mine = inputs_of(), planner(of)
-    plan = mine.initial_plan(torch.full((3,), 9.8))
-    noise = mine.sampler.noise(["a", "b", "c"], 0, 0)
-    return mine.propose(given, plan, noise).rollout
+def believed(of: Predictor) -> Rollout:
+    """Return where a flight believes that candidates lead."""
+    return rolling(of)(inputs_of(), commands_of())
 
 
 class Anchored(AnchoredPredictor):
@@ -128,9 +112,9 @@ OWN: dict[str, Callable[[], Predictor]] = {
 def test_a_step_of_ones_own_is_what_flies(make: Callable[[], Predictor]) -> None:
     own = make()
     with pytest.warns(PortableNotice, match=r"runs on the portable path.* there is a kernel|were"):
-        seen = proposed(own)
+        seen = believed(own)
     with native.using(native.PORTABLE):
-        wanted = proposed(own)
+        wanted = believed(own)
     assert float(seen.positions[..., -1, :].min()) > SHIFT_M
     torch.testing.assert_close(seen.positions, wanted.positions, rtol=1e-4, atol=1e-4)
 
@@ -147,7 +131,7 @@ def test_an_unanchored_step_of_ones_own_is_what_flies() -> None:
             return State(far, ahead.velocity, ahead.rotation, ahead.rate), memory
 
     with pytest.warns(PortableNotice, match="not of Own"):
-        seen = proposed(Own(network))
+        seen = believed(Own(network))
     assert float(seen.positions[..., -1, :].min()) > SHIFT_M / 2
 
 
@@ -196,7 +180,7 @@ def test_a_network_of_4096_hidden_units_flies_on_the_portable_path() -> None:
     random_weights(network)
     large = anchored_on(network)
     with pytest.warns(PortableNotice, match="128 hidden units, not 4096"):
-        seen = proposed(large)
+        seen = believed(large)
     assert seen.positions.isfinite().all()
 
 
@@ -217,14 +201,14 @@ def test_it_is_said_once() -> None:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         for _ in range(3):
-            planner(Kinematic())
+            rolling(Kinematic())
     assert [each.category for each in said] == [PortableNotice]
 
 
 def test_shipped_predictors_say_nothing() -> None:
     for name in ("dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"):
-        planner(predictor(name))
-    planner(TrueParameter())
+        rolling(predictor(name))
+    rolling(TrueParameter())
 
 
 # Other parts

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import torch
+from planning_toys import replan
 from scipy import stats
 
 from faultpath.quadrotor.options import QuadrotorOptions
@@ -17,7 +18,7 @@ from faultpath.quadrotor.planner import (
     shift,
 )
 from faultpath.quadrotor.planner.sampler import standard_normals
-from faultpath.quadrotor.predictors import Calibration, KinematicIntegrator, PredictorInputs
+from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.rollout import Rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
@@ -74,7 +75,7 @@ def test_candidates_are_bounded_evenly_around_hover():
 
 def test_trim_follows_the_supplied_calibration():
     """The hover centre moves with m~ and T~; nothing else of the sampler does."""
-    planner = QuadrotorOptions().build_planner(KinematicIntegrator(drag=True))
+    planner = QuadrotorOptions().build_planner()
     wrong = planner_inputs(mass=1.1)
     plan = planner.initial_plan(wrong.trim.hover_thrust(GRAVITY_MPS2)[:, 0])
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
@@ -109,20 +110,17 @@ def test_temperatures():
 
 
 def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
-    planner = QuadrotorOptions().build_planner(KinematicIntegrator(drag=True))
+    planner = QuadrotorOptions().build_planner()
     given = planner_inputs()
     plan = planner.initial_plan(torch.full((4,), GRAVITY_MPS2))
     goal = torch.zeros(3, 4)
     goal[2] = torch.tensor([3.0, -3.0, 3.0, -3.0])
-    proposal = planner.propose(given, plan, planner.sampler.noise(SCENES, 0, 0))
-    clear = torch.ones(4, 20, 512)
-    better = planner.decide(proposal, clear, goal)
+    better = replan(planner, given, plan, SCENES, goal=goal)
     change = better[:, 0].mean(0) - GRAVITY_MPS2
     assert (change[[0, 2]] > 0.1).all()
     assert (change[[1, 3]] < -0.1).all()
     # A ceiling just above: the same goal no longer pulls the plan up.
-    ceiling = 0.3 - proposal.rollout.positions[2]
-    kept = planner.decide(proposal, ceiling, goal)
+    kept = replan(planner, given, plan, SCENES, goal=goal, clearance=lambda at: 0.3 - at[2])
     assert (kept[:, 0].mean(0)[[0, 2]] < better[:, 0].mean(0)[[0, 2]]).all()
 
 

@@ -18,7 +18,7 @@ TABLE = Box(centre_m=(0.0, 0.0, 0.5), half_extents_m=(0.5, 0.5, 0.5))
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
 
 
 def _end(tmp_path: Path, text: str | None, *args, **options: str) -> Outcome:

@@ -24,13 +24,13 @@ ALTERED_BY_CALIBRATION = {
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
 
 
 @pytest.fixture(scope="module")
 def plain() -> Outcome:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+        patch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
         return fly(quadrotor(wind="L2"))[0][0]
 
 

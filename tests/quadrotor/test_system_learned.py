@@ -7,11 +7,11 @@ import pytest
 import torch
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
-from faultpath.quadrotor.history import STEPS as HISTORY
 from faultpath.quadrotor.models import predictor, reconstruction
+from faultpath.quadrotor.modules.history import STEPS as HISTORY
 from faultpath.quadrotor.predictors import History
 from faultpath.quadrotor.presets import STATE_NOISE_STD
-from faultpath.quadrotor.variants import wirings
+from faultpath.quadrotor.variants import choices
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -20,7 +20,7 @@ VARIANTS = ("zero-wind", "gru", "gru+dcc", "dob", "wm-a", "wm-u", "dki-drag/gru"
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -33,12 +33,12 @@ def test_every_variant_reads_what_it_declares_and_needs_no_privilege(name):
 
 
 def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():
-    found = {wiring.name: wiring for wiring in wirings(quadrotor(**LEARNED).options)}
+    found = {choice.name: choice for choice in choices(quadrotor(**LEARNED).options)}
     assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
     assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)
     assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2)
     assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2)
-    other = {w.name: w for w in wirings(quadrotor(**LEARNED, predictor_seed="1").options)}
+    other = {c.name: c for c in choices(quadrotor(**LEARNED, predictor_seed="1").options)}
     assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1)
 
 
@@ -115,7 +115,7 @@ def test_without_noise_a_noisy_state_is_only_late():
 @torch.inference_mode()
 def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
     """After 12 intervals the code is that of the last 12 states and commands, oldest first."""
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", HISTORY + 2)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", HISTORY + 2)
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "wm-a")
     now = HISTORY + 1

@@ -1,47 +1,37 @@
 """What each variant may know, and what arms of a contrast share."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import torch
 from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
 
-from faultpath.quadrotor.sensors import Sensors
-from faultpath.taps import IllegalRead, Reading
+from faultpath.quadrotor.modules.vehicle import VehiclePlant
+from faultpath.taps import IllegalRead
 
 VARIANTS = ("zero-wind", "dob", "true-wind")
 
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
 
 
-class _NoWind:
-    """Sensors whose true wind is a storm; who reads it shows."""
+def _mistake(monkeypatch, source, wrong):
+    """Let the plant say something else of a source; who reads it shows."""
+    sense = VehiclePlant.sense
 
-    @classmethod
-    def read(cls, world, depth=None):
-        sensors = Sensors.read(world)
-        storm = torch.full_like(sensors.true_wind.value, 99.0)
-        return replace(sensors, true_wind=Reading(storm, "true_wind", sensors.true_wind.step))
+    def sensed(self, state):
+        found = sense(self, state)
+        return {**found, source: wrong(found[source])}
 
-
-class _NoPhysics:
-    @classmethod
-    def read(cls, world, depth=None):
-        sensors = Sensors.read(world)
-        old = sensors.readings["physics"]
-        wrong = Reading(3.0 * old.value, old.source, old.step)
-        return replace(sensors, readings=sensors.readings | {"physics": wrong})
+    monkeypatch.setattr(VehiclePlant, "sense", sensed)
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
 def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch):
     system = quadrotor(wind="L3")
     (plain,), _ = fly(system, variant)
-    monkeypatch.setattr("faultpath.quadrotor.flight.Sensors", _NoWind)
+    _mistake(monkeypatch, "true_wind", lambda wind: torch.full_like(wind, 99.0))
     (blind,), taps = fly(system, variant)
     assert (bits(blind) == bits(plain)) == (variant != "true-wind")
     source = taps.receipts().at("wind", "predictor.wind_map").source
@@ -54,7 +44,7 @@ def test_only_the_variant_that_says_so_reads_the_true_wind(variant, monkeypatch)
 def test_only_the_true_parameter_predictor_reads_the_physics(predictor, monkeypatch):
     system = quadrotor(predictor=predictor)
     (plain,), _ = fly(system)
-    monkeypatch.setattr("faultpath.quadrotor.flight.Sensors", _NoPhysics)
+    _mistake(monkeypatch, "true_physics", lambda physics: 3.0 * physics)
     (blind,), _ = fly(system)
     assert (bits(blind) == bits(plain)) == (predictor != "true-parameter")
 
@@ -120,7 +110,7 @@ def test_levels_of_wind_differ_in_the_disturbance():
 
 
 def test_the_observer_sees_most_of_a_steady_wind(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 30)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 30)
     system = quadrotor(wind="L2")
     _, truth = fly(system, "true-wind", HELD_OUT)
     _, seen = fly(system, "dob", HELD_OUT)
@@ -140,7 +130,7 @@ CHOICES = [
 
 
 def test_every_option_flies_its_own_way(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.flight.CONTROL_STEPS", 4)
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 4)
     flights = {}
     for choice in CHOICES:
         system = quadrotor(**choice)

@@ -99,11 +99,18 @@ def _completed(
     for channel in _dicts(data, "channels"):
         if "consumers" not in channel and channel.get("name") in consumers:
             channel["consumers"] = list(consumers[channel["name"]])
-    made = {
-        writers[source["name"]]: source["name"]
-        for source in _dicts(data, "sources")
-        if source.get("provenance") == "reconstructed" and source.get("name") in writers
-    }
+    made: dict[str, str] = {}
+    for source in _dicts(data, "sources"):
+        name: str = source["name"]
+        if source.get("provenance") != "reconstructed" or name not in writers:
+            continue
+        if writers[name] in made:
+            raise UserError(
+                f"module '{writers[name]}' writes the reconstructed sources "
+                f"'{made[writers[name]]}' and '{name}', and an interface holds one a module: "
+                "make it two modules"
+            )
+        made[writers[name]] = name
     if made:  # so it is a mapping
         data.setdefault("reconstructs", made)
     return data

@@ -40,7 +40,7 @@ class Loop:
         self._trace = trace
 
     def execute(self, batch: Batch, taps: Taps) -> Iterator[Instant]:
-        """Yield every control step of a batch, and at the end the one at which nothing runs.
+        """Start a batch, and yield each of its control steps and the one at which nothing runs.
 
         The last instant's `inputs` are empty: nothing reaches the plant any more.
         """
@@ -60,7 +60,6 @@ class _Execution:
     ) -> None:
         self._graph = graph
         self._trace = trace
-        self._batch = batch
         self._taps = taps
         self._read_sources = {
             graph.bindings[port.channel] for part in graph.parts for port in part.ports
@@ -72,16 +71,16 @@ class _Execution:
         self._now: dict[str, Reading] = {}
         self._past: dict[str, Reading] = {}
         self._truths: dict[str, Any] = {}
+        self._state: State = graph.plant.start(batch)
+        self._memories: list[Memory] = [module.begin(batch) for module in graph.modules]
+        for module in graph.modules:
+            self._hold(module, module.before(batch), 0, module.writes, first=True)
 
     def run(self) -> Iterator[Instant]:
-        plant, modules, batch = self._graph.plant, self._graph.modules, self._batch
-        state = plant.start(batch)
-        memories: list[Memory] = [module.begin(batch) for module in modules]
-        for module in modules:
-            self._hold(module, module.before(batch), 0, module.writes, first=True)
-        for step in range(plant.steps):
-            if plant.over(state, step):
-                break
+        plant, modules = self._graph.plant, self._graph.modules
+        state, memories = self._state, self._memories
+        step = 0
+        while step < plant.steps and not plant.over(state, step):
             running = plant.progress(state).running
             self._taps.set_active(running)
             self._past, self._now = self._now, {}
@@ -97,7 +96,8 @@ class _Execution:
             yield Instant(step, state, inputs)
             state = plant.advance(state, inputs)
             self._note(plant, inputs)
-        yield Instant(plant.steps, state, Inputs(plant.name, plant.steps, {}, {}))
+            step += 1
+        yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
     def _hold(
         self,

@@ -20,6 +20,7 @@ from faultpath.quadrotor.planner import (
     CostWeights,
     GoalCost,
     NavigationCost,
+    Planner,
     RunningGoal,
     Sampler,
     SamplerSettings,
@@ -28,8 +29,6 @@ from faultpath.quadrotor.planner import (
     TerminalGoal,
     WithinBundle,
 )
-from faultpath.quadrotor.predictors import Predictor
-from faultpath.quadrotor.rollout import rolling
 from faultpath.trials.options import call
 
 
@@ -80,8 +79,8 @@ class QuadrotorOptions(QuadrotorChoices):
         """Where tensors are made."""
         return device_of(self.device)
 
-    def build_planner(self, predictor: Predictor) -> MPPI:
-        """Return the planner that the options name, around a predictor."""
+    def build_planner(self) -> Planner:
+        """Return the planner that the options name."""
         goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
             PlannerName.TERMINAL: (TerminalGoal(), self.settings.terminal),
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
@@ -92,5 +91,4 @@ class QuadrotorOptions(QuadrotorChoices):
         temperature: Temperature = ScaledTemperature(self.settings.temperature)
         if self.sampler is SamplerName.MODE_PRESERVING:
             sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
-        cost, roll = NavigationCost(goal, weights), rolling(predictor, self.place)
-        return MPPI(predictor, sampler, cost, temperature, roll)
+        return MPPI(sampler, NavigationCost(goal, weights), temperature)

@@ -1,27 +1,30 @@
 """The quadrotor as a system that can be audited."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 from typing import Self
 
 import torch
-from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
+from faultpath.loop import Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.choices import ClearanceName, DeviceName
-from faultpath.quadrotor.clearance import ClearanceSource, SeenClearance, TrueClearance
-from faultpath.quadrotor.device import CPU, arithmetic, describe
-from faultpath.quadrotor.flight import Flight
+from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.navigator import Navigator, WindReconstruction
+from faultpath.quadrotor.modules.clearance import Perception
+from faultpath.quadrotor.modules.estimator import ExactEstimator
+from faultpath.quadrotor.modules.history import HistoryEncoder
+from faultpath.quadrotor.modules.planning import Planning
+from faultpath.quadrotor.modules.prediction import Prediction
+from faultpath.quadrotor.modules.vehicle import VehiclePlant
+from faultpath.quadrotor.modules.wind import WindReconstruction
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.presets import calibration, noisy_state
@@ -29,14 +32,14 @@ from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.variants import variant, wirings
+from faultpath.quadrotor.variants import choices
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
-from faultpath.trials import FloorPlan, Library, Outcome, SceneRef, Status, System, Variant
+from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 
 
-class Quadrotor(System):
+class Quadrotor(LoopSystem):
     """Flies a block of scenes with the modules under test behind taps."""
 
     name = "quadrotor"
@@ -48,11 +51,7 @@ class Quadrotor(System):
         self.parallel = options.device is DeviceName.CPU
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
-        self._wirings = {wiring.name: wiring for wiring in wirings(options)}
-        self._variants = {
-            name: variant(wiring, quadrotor_interface(), options)
-            for name, wiring in self._wirings.items()
-        }
+        self.choices = {choice.name: choice for choice in choices(options)}
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -62,15 +61,11 @@ class Quadrotor(System):
     @property
     def interface(self) -> Interface:
         """See `System.interface`; the clearance is asked for along the planner's candidates."""
-        shape = (self.options.settings.sampler.horizon, self.options.candidates)
+        horizon, candidates = self.options.settings.sampler.horizon, self.options.candidates
+        clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         return quadrotor_interface().shaped(
-            dict.fromkeys(("estimated_clearance", "true_clearance"), shape)
+            {**clearance, "predicted_motion": (6, horizon, candidates)}
         )
-
-    @property
-    def variants(self) -> Mapping[str, Variant]:
-        """See `System.variants` and `faultpath.quadrotor.variants`."""
-        return self._variants
 
     @property
     def fault_presets(self) -> Mapping[str, FaultPreset]:
@@ -104,52 +99,54 @@ class Quadrotor(System):
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
         return (*_weights(), Path("interface.yaml"), Path("native/source"))
 
+    @property
+    def wirings(self) -> Mapping[str, Wiring]:
+        """See `LoopSystem.wirings` and `faultpath.quadrotor.variants`."""
+        return {name: choice.wiring(self.options) for name, choice in self.choices.items()}
+
+    def plant(self) -> Plant:
+        """See `LoopSystem.plant`."""
+        options, free, place = self.options, self.options.free_space, self.options.place
+
+        def world(scenes: Sequence[str]) -> World:
+            return World(self._records(scenes), options.wind, free, place)
+
+        def camera(scenes: Sequence[str]) -> DepthRenderer:
+            return _renderer(self._records(scenes), free, place)
+
+        def field(scenes: Sequence[str]) -> DistanceField:
+            return _field(self._records(scenes), free, place)
+
+        if options.clearance is ClearanceName.TRUE:
+            return VehiclePlant(world, camera=None, field=field)
+        return VehiclePlant(world, camera=camera, field=None)
+
+    def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
+        """See `LoopSystem.modules`."""
+        choice, place = self.choices[variant], self.options.place
+        predictor = choice.load_predictor(seed, place)
+        reconstruction = choice.load_reconstruction(seed, place)
+        found: list[Module] = [
+            ExactEstimator(),
+            Prediction(predictor, place),
+            Planning(self.options.build_planner(), place),
+        ]
+        if reconstruction is not None:
+            found.append(WindReconstruction(reconstruction, place))
+        if "history" in predictor.reads:
+            found.append(HistoryEncoder(predictor, place))
+        if self.options.clearance is not ClearanceName.TRUE:
+            found.append(Perception(lambda: DepthClearance(clearance_model(place), place)))
+        return found
+
     @arithmetic()
     @torch.inference_mode()
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        """See `System.run`."""
-        flight = self.flight(variant, scenes, taps, seed)
-        world = flight.world
-        trace = [world.state.position for _ in flight.commands()]
-        trace.append(world.state.position)
-        return _outcomes(scenes, world, torch.stack(trace), flight.navigator.noise_hashes())
+        """See `LoopSystem.run`."""
+        return super().run(variant, scenes, taps, seed)
 
-    def flight(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Flight:
-        """Return a flight over some scenes, ready to start."""
-        records = [self.scene(scene) for scene in scenes]
-        options = self.options
-        world = World(records, options.wind, options.free_space, options.place)
-        navigator = self._navigator(variant, records, taps, seed, world)
-        return Flight(world, navigator, self._camera(records), taps)
-
-    def _camera(self, scenes: list[Scene]) -> DepthRenderer | None:
-        if self.options.clearance is ClearanceName.TRUE:
-            return None
-        return _renderer(tuple(scenes), self.options.free_space, self.options.place)
-
-    def _navigator(
-        self, variant: str, scenes: list[Scene], taps: Taps, seed: int, world: World
-    ) -> Navigator:
-        wiring = self._wirings[variant]
-        place = self.options.place
-        module = wiring.load_reconstruction(seed, place)
-        return Navigator(
-            planner=self.options.build_planner(wiring.load_predictor(seed, place)),
-            reconstruction=module
-            and WindReconstruction(module, taps.for_module("reconstruction"), world.lanes),
-            clearance=self._clearance(scenes, taps),
-            taps=taps,
-            scenes=[scene.id for scene in scenes],
-            seed=seed,
-            lanes=world.lanes,
-        )
-
-    def _clearance(self, scenes: list[Scene], taps: Taps) -> ClearanceSource:
-        place = self.options.place
-        if self.options.clearance is ClearanceName.TRUE:
-            return TrueClearance(_field(tuple(scenes), self.options.free_space, place))
-        model = DepthClearance(clearance_model(place), place)
-        return SeenClearance(model, taps.for_module("perception"))
+    def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
+        return tuple(self.scene(scene) for scene in scenes)
 
     def scene(self, scene: str) -> Scene:
         """Return a scene of a library that was asked for before, or of a frozen one."""
@@ -158,35 +155,6 @@ class Quadrotor(System):
         if scene not in self._scenes:
             raise UserError(f"there is no scene '{scene}': `faultpath scenes list` shows them.")
         return self._scenes[scene]
-
-
-def _outcomes(
-    scenes: Sequence[str], world: World, positions: Tensor, noise: Sequence[str]
-) -> list[Outcome]:
-    """`positions` is `[T, 3, L]`, at the start and after each control step.
-
-    This waits for the device, once a block.
-    """
-    end, positions = world.progress.to(CPU), positions.to(CPU)
-    outcomes: list[Outcome] = []
-    for i, scene in enumerate(scenes):
-        time_s = float(end.time_s[i])
-        steps = math.ceil(time_s / CONTROL_DT_S - 1e-6)
-        status = Status.SUCCESS if end.succeeded[i] else Status.TIMEOUT
-        outcomes.append(
-            Outcome(
-                scene=scene,
-                status=Status.CRASH if end.crashed[i] else status,
-                time_s=time_s,
-                terminal_distance_m=float(end.terminal_distance_m[i]),
-                min_clearance_m=float(end.min_clearance_m[i]),
-                initial_hash=world.initial_hashes[i],
-                disturbance_hash=world.wind_hashes[i],
-                planner_noise_hash=noise[i],
-                trace=positions[: steps + 1, :, i].float().numpy(),
-            )
-        )
-    return outcomes
 
 
 @cache

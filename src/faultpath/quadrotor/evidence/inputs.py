@@ -18,7 +18,7 @@ from faultpath.quadrotor.training.quality_predictors import BATCH
 from faultpath.quadrotor.training.quality_reconstructions import estimate
 from faultpath.quadrotor.training.replay import Supplied, history
 from faultpath.quadrotor.training.windows import HISTORY, Windows
-from faultpath.quadrotor.variants import wirings
+from faultpath.quadrotor.variants import choices
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Variant
 
@@ -53,7 +53,7 @@ class Subject:
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
         """Load a variant; `UserError` for an unknown one, or where a checkpoint is missing."""
-        found = {wiring.name: wiring for wiring in wirings(system.options)}
+        found = {choice.name: choice for choice in choices(system.options)}
         if name not in found:
             raise UserError(
                 f"the quadrotor has no variant {name!r} to measure: choose from {', '.join(found)}"

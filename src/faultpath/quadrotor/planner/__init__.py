@@ -1,4 +1,4 @@
-"""The planner: MPPI with its samplers and costs as objects."""
+"""The planners, with their samplers and costs as objects."""
 
 from faultpath.quadrotor.planner.costs import (
     CostWeights,
@@ -12,12 +12,11 @@ from faultpath.quadrotor.planner.modes import BundledSampler, WithinBundle
 from faultpath.quadrotor.planner.mppi import (
     MPPI,
     FixedTemperature,
-    Proposal,
     ScaledTemperature,
     Temperature,
-    shift,
     weighted_mean,
 )
+from faultpath.quadrotor.planner.protocol import Planner, Search, shift
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, SamplerSettings
 
 __all__ = [
@@ -28,12 +27,13 @@ __all__ = [
     "FixedTemperature",
     "GoalCost",
     "NavigationCost",
-    "Proposal",
+    "Planner",
     "RunningGoal",
     "Sampler",
     "SamplerSettings",
     "ScaledTemperature",
     "Scored",
+    "Search",
     "Temperature",
     "TerminalGoal",
     "WithinBundle",

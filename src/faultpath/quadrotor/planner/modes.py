@@ -31,9 +31,9 @@ class BundledSampler(Sampler):
         self.settings = sampler.settings
         self._sampler = sampler
 
-    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
+    def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
         """See `Sampler.noise`."""
-        noise = self._sampler.noise(scenes, seed, step)
+        noise = self._sampler.noise(scenes, seed, step, iteration)
         bundled = noise.unflatten(-1, (BUNDLES, -1))
         bundled[..., 1:].mul_(math.sqrt(1 - SHARED)).add_(bundled[..., :1], alpha=math.sqrt(SHARED))
         return noise

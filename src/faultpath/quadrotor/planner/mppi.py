@@ -1,7 +1,7 @@
 """Model predictive path integral control, batched over scenes and candidates."""
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import torch
@@ -11,10 +11,8 @@ from faultpath.quadrotor import native
 from faultpath.quadrotor.native import costs
 from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.planner.costs import NavigationCost, Scored
+from faultpath.quadrotor.planner.protocol import Planner, Search
 from faultpath.quadrotor.planner.sampler import Sampler
-from faultpath.quadrotor.predictors import Predictor, PredictorInputs
-from faultpath.quadrotor.rollout import Roll, Rollout
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 
 class Temperature(ABC):
@@ -65,17 +63,6 @@ class ScaledTemperature(Temperature):
         return costs.weights(built, cost, self.fraction, self.least)
 
 
-@dataclass(frozen=True)
-class Proposal:
-    """Candidates and where the predictor says they lead."""
-
-    commands: Tensor
-    """`[H, 4, S, K]`."""
-    rollout: Rollout
-    hover: Tensor
-    """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
-
-
 def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
     """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
     built = native.kernels_for(commands, weight)
@@ -84,49 +71,24 @@ def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
     return costs.mean(built, commands, weight)
 
 
-class MPPI:
-    """Proposes candidates, then turns their costs into the next plan.
-
-    It knows no model: it sees a predictor that rolls commands out. The two halves of a replan are
-    apart because the clearance along the rollout comes through a tap in between.
-    """
+class MPPI(Planner):
+    """Model predictive path integral control: the plan is the mean of the weighted candidates."""
 
     def __init__(
         self,
-        predictor: Predictor,
         sampler: Sampler,
         cost: NavigationCost,
         temperature: Temperature,
-        roll: Roll,
     ) -> None:
-        self.predictor = predictor
-        self.sampler = sampler
+        super().__init__(sampler)
         self._cost = cost
         self._temperature = temperature
-        self._roll = roll
 
-    def initial_plan(self, hover: Tensor) -> Tensor:
-        """Return the plan `[H, 4, S]` that hovers, for hover thrust `[S]`."""
-        plan = hover.new_zeros(self.sampler.settings.horizon, 4, hover.shape[0])
-        plan[:, 0] = hover
-        return plan
+    def propose(self, search: Search, noise: Tensor) -> Tensor:
+        """See `Planner.propose`."""
+        return self.sampler.candidates(search.plan, search.hover, noise)
 
-    def propose(self, inputs: PredictorInputs, plan: Tensor, noise: Tensor) -> Proposal:
-        """Roll candidates around `plan` `[H, 4, S]` out; `noise` `[H, 4, S, K]` is overwritten."""
-        hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
-        commands = self.sampler.candidates(plan, hover, noise)
-        return Proposal(commands, self._roll(inputs, commands), hover)
-
-    def decide(self, proposal: Proposal, clearance: Tensor, goal: Tensor) -> Tensor:
-        """Return the improved plan `[H, 4, S]`; its first row is the command to execute.
-
-        `clearance` is `[S, H, K]` along the proposal's positions, `goal` `[3, S]`.
-        """
-        commands = proposal.commands
-        cost = self._cost(Scored(proposal.rollout, commands, clearance, goal, proposal.hover))
-        return weighted_mean(commands, self._temperature.weights(cost))
-
-
-def shift(plan: Tensor) -> Tensor:
-    """Move a plan `[H, 4, S]` one interval on, repeating its last row: the next warm start."""
-    return torch.cat([plan[1:], plan[-1:]])
+    def update(self, search: Search, scored: Scored) -> Search:
+        """See `Planner.update`."""
+        weights = self._temperature.weights(self._cost(scored))
+        return replace(search, plan=weighted_mean(scored.commands, weights))

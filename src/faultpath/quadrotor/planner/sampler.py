@@ -34,8 +34,8 @@ class Sampler(ABC):
     settings: SamplerSettings
 
     @abstractmethod
-    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
-        """Return standardised noise `[H, 4, S, K]`, keyed by scene, seed and step."""
+    def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
+        """Return standardised noise `[H, 4, S, K]`, keyed by scene, seed, step and iteration."""
 
     def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
         """Return commands `[H, 4, S, K]` around `plan` `[H, 4, S]`; `noise` is overwritten.
@@ -66,19 +66,20 @@ class AutoregressiveSampler(Sampler):
     def __init__(self, settings: SamplerSettings | None = None) -> None:
         self.settings = settings or SamplerSettings()
 
-    def noise(self, scenes: Sequence[str], seed: int, step: int) -> Tensor:
+    def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
         """See `Sampler.noise`. The host draws, whatever device plans."""
         shape = (self.settings.horizon, 4, self.settings.candidates)
+        purpose = f"planner/{iteration}" if iteration else "planner"
         rho = self.settings.correlation
         built = native.kernels()
         if built is not None and native.whole_vectors(shape[2]):
-            drawn = [words(key("planner", scene, seed)) for scene in scenes]
+            drawn = [words(key(purpose, scene, seed)) for scene in scenes]
             keys = torch.from_numpy(np.array(drawn, dtype=np.uint64).reshape(-1, 2))
             kept = (rho, math.sqrt(1 - rho**2))
             return sampling.noise(built, keys, step, (shape[0], shape[2]), kept)
         noise = torch.empty(shape[0], 4, len(scenes), shape[2])
         for i, scene in enumerate(scenes):
-            draws = generator("planner", scene, seed, step)
+            draws = generator(purpose, scene, seed, step)
             noise[:, :, i] = standard_normals(draws, math.prod(shape)).view(shape)
         noise[1:] *= (1 - rho**2) ** 0.5
         for h in range(1, shape[0]):

@@ -6,7 +6,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.loop import Batch
 from faultpath.quadrotor.device import CPU
+from faultpath.quadrotor.modules.vehicle import Flying, commanded
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.flight import COMPONENTS, Flights
 from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
@@ -31,11 +33,15 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
         consumers=wired.consumers,
         privileged=wired.privileged,
     )
-    flight = system.flight(variant, scenes, taps, seed)
-    world = flight.world
-    rows = [_row(world, command) for command in flight.commands()]
-    none = world.state.position.new_full((4, len(world.lanes)), torch.nan)
-    rows.append(_row(world, none))
+    batch = Batch(tuple(scenes), seed, system.control_dt_s)
+    rows: list[Tensor] = []
+    world: World | None = None
+    for instant in system.loop(variant, seed).execute(batch, taps):
+        flying: Flying = instant.state
+        world = flying.world
+        none = world.state.position.new_full((4, len(world.lanes)), torch.nan)
+        rows.append(_row(world, commanded(instant.inputs, world.lanes) if instant.inputs else none))
+    assert world is not None
     return _flights(torch.stack(rows, 1).to(CPU), world, system, scenes)
 
 

@@ -1,0 +1,52 @@
+"""The predictor as a module of the loop: a query from commands to motion."""
+
+import torch
+from torch import Tensor
+
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.quadrotor.modules.candidates import Candidates, Predicted
+from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of, scenes_first
+from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.predictors.places import ports, told
+from faultpath.quadrotor.rollout import rolling
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.taps import Query
+
+
+class Prediction(Module):
+    """Says where commands lead, and which thrust it believes to hold the vehicle."""
+
+    name, writes = "predictor", ("predicted_motion", "hover_thrust")
+
+    def __init__(self, predictor: Predictor, device: torch.device) -> None:
+        self._predictor = predictor
+        self._device = device
+        self.reads = ports(predictor.reads - {"history"})
+
+    def begin(self, batch: Batch) -> Memory:
+        """Return the lanes, and how the predictor is rolled out there."""
+        return (
+            lanes_of(batch, self._device),
+            len(batch.scenes),
+            rolling(self._predictor, self._device),
+        )
+
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Take in what the predictor is told; its answers follow from that."""
+        lanes, count, roll = memory
+
+        def take(channel: str, place: str) -> Tensor:
+            return lanes_last(inputs[Port(channel, place)], lanes).float()
+
+        known = told(self._predictor.reads, take)
+        hover = known.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+
+        def predict(asked: Candidates) -> Predicted:
+            rollouts = (
+                roll(known.take(part.index), commands)
+                for part, commands in zip(asked.parts, asked.commands, strict=True)
+            )
+            return Predicted(asked.count, asked.parts, tuple(rollouts))
+
+        motion = Query(predict, Predicted.motion, Predicted.moved)
+        return {"predicted_motion": motion, "hover_thrust": scenes_first(hover, count)}, memory

@@ -1,0 +1,151 @@
+"""The simulated vehicles in their scenes, as the plant of the loop."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+
+from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
+from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.modules.clearance import geometric_clearance
+from faultpath.quadrotor.modules.lanes import lanes_last, scenes_first
+from faultpath.quadrotor.perception import DepthRenderer, mounted
+from faultpath.quadrotor.scenes.field import DistanceField
+from faultpath.quadrotor.vehicle_batch import Vehicle
+from faultpath.quadrotor.world import CONTROL_STEPS, World
+from faultpath.taps import Query
+
+LOOK_EVERY = 10
+"""Control steps between two looks at whether any trial still runs, where a look waits for the
+device: half a second of flight is the most that is computed in vain."""
+
+ACTION = Port("action", "actuators")
+
+
+@dataclass(frozen=True)
+class Flying:
+    """A batch in flight. `World` moves itself, so it is the state and what acts on it in one."""
+
+    world: World
+    camera: DepthRenderer | None
+    clearance: Query | None
+    """Of the geometry itself."""
+
+
+class VehiclePlant(Plant):
+    """Vehicles, wind and geometry, with a camera or with the clearance of the geometry itself.
+
+    Args:
+        world: Makes the world of some scenes, by id.
+        camera: Makes their camera; `None`: nothing reads depth.
+        field: Makes their distance field; `None`: nothing reads the true clearance.
+    """
+
+    name = "vehicle"
+    reads = frozenset({ACTION})
+    shows = ("vehicle",)
+
+    def __init__(
+        self,
+        world: Callable[[Sequence[str]], World],
+        camera: Callable[[Sequence[str]], DepthRenderer] | None,
+        field: Callable[[Sequence[str]], DistanceField] | None,
+    ) -> None:
+        self.steps = CONTROL_STEPS
+        self._world = world
+        self._camera = camera
+        self._field = field
+        self.senses = (
+            *("mission_goal", "true_physics", "true_wind", "zero_wind"),
+            *(("depth_image",) if camera else ()),
+            *(("true_clearance",) if field else ()),
+        )
+
+    def start(self, batch: Batch) -> Flying:
+        """Return the batch at the start."""
+        return Flying(
+            world=self._world(batch.scenes),
+            camera=self._camera(batch.scenes) if self._camera else None,
+            clearance=geometric_clearance(self._field(batch.scenes)) if self._field else None,
+        )
+
+    def sense(self, state: Flying) -> Outputs:
+        """Return the readings of all scenes, without the lanes that only fill the batch up."""
+        world, count = state.world, state.world.count
+        wind = scenes_first(world.wind_mps, count)
+        sensed: dict[str, object] = {
+            "mission_goal": scenes_first(world.goal, count),
+            "true_physics": scenes_first(_physics(world.vehicle, world.plant_state.thrusts), count),
+            "true_wind": wind,
+            "zero_wind": torch.zeros_like(wind),
+            "vehicle": _truth(world),
+        }
+        if state.camera is not None:
+            here = replace(world.state, rotation=mounted(world.state.rotation))
+            sensed["depth_image"] = state.camera.render(here)
+        if state.clearance is not None:
+            sensed["true_clearance"] = state.clearance
+        return sensed
+
+    def advance(self, state: Flying, inputs: Inputs) -> Flying:
+        """Fly one control interval under the command that reaches the actuators."""
+        state.world.advance(commanded(inputs, state.world.lanes))
+        return state
+
+    def progress(self, state: Flying) -> Progress:
+        """See `Plant.progress`."""
+        now, count = state.world.progress, state.world.count
+        return Progress(
+            running=now.running[:count],
+            succeeded=now.succeeded[:count],
+            crashed=now.crashed[:count],
+            time_s=now.time_s[:count],
+            terminal_distance_m=now.terminal_distance_m[:count],
+            min_clearance_m=now.min_clearance_m[:count],
+        )
+
+    def over(self, state: Flying, step: int) -> bool:
+        """See `Plant.over`: only the device knows which trials run there."""
+        running = state.world.progress.running
+        if not at_hand(running.device) and (step + 1) % LOOK_EVERY:
+            return False
+        return not bool(running[: state.world.count].any())
+
+    def conditions(self, state: Flying) -> tuple[Sequence[str], Sequence[str]]:
+        """See `Plant.conditions`."""
+        return state.world.initial_hashes, state.world.wind_hashes
+
+    def position(self, state: Flying) -> Tensor:
+        """See `Plant.position`."""
+        return scenes_first(state.world.state.position, state.world.count)
+
+
+def commanded(inputs: Inputs, lanes: Tensor) -> Tensor:
+    """Return the command `[4, L]` that reaches the actuators: N and rad/s."""
+    return lanes_last(inputs[ACTION], lanes)
+
+
+def _truth(world: World) -> dict[str, Tensor]:
+    state = world.state
+    values = {
+        "mass": world.vehicle.mass_kg,
+        "thrust_scale": world.vehicle.thrust_scale,
+        "position": state.position,
+        "velocity": state.velocity,
+        "attitude": state.rotation,
+        "body_rate": state.rate,
+    }
+    return {name: scenes_first(value, world.count) for name, value in values.items()}
+
+
+def _physics(vehicle: Vehicle, motors: Tensor) -> Tensor:
+    return torch.cat(
+        [
+            vehicle.inertia_kgm2,
+            vehicle.torque_scale[None],
+            vehicle.motor_time_constant_s[None],
+            vehicle.drag_kgps,
+            motors.sum(0, keepdim=True),
+        ]
+    )

@@ -1,0 +1,37 @@
+"""One replan outside the loop: what tests of planners share."""
+
+from collections.abc import Callable, Sequence
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor.planner import Planner, Scored
+from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
+from faultpath.quadrotor.rollout import rolling
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+
+
+def replan(
+    planner: Planner,
+    inputs: PredictorInputs,
+    plan: Tensor,
+    scenes: Sequence[str],
+    step: int = 0,
+    goal: Tensor | None = None,
+    clearance: Callable[[Tensor], Tensor] = lambda positions: torch.ones_like(positions[0]),
+) -> Tensor:
+    """Return the plan that one step makes of `plan`, `[H, 4, S]`.
+
+    `clearance` gives `[S, H, K]` at positions `[3, S, H, K]`, a metre where it is not given; the
+    goal `[3, S]` is the origin where it is not.
+    """
+    hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    roll = rolling(KinematicIntegrator(drag=True))
+    search = planner.init(plan, hover)
+    for iteration in range(planner.iterations):
+        commands = planner.propose(search, planner.noise(scenes, 0, step, iteration))
+        rollout = roll(inputs, commands)
+        near = clearance(rollout.positions)
+        goals = torch.zeros(3, len(scenes)) if goal is None else goal
+        search = planner.update(search, Scored(rollout, commands, near, goals, hover))
+    return search.plan

@@ -1,0 +1,179 @@
+"""The parts of the quadrotor: their ports are the interface, and what flies reads them all."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from flights import HELD_OUT, STEPS, fault, fly, quadrotor, wire
+
+from faultpath.interface import Provenance
+from faultpath.loop import Batch, Graph, Trace, consumers
+from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
+from faultpath.quadrotor.modules.estimator import ExactEstimator
+from faultpath.quadrotor.system import Quadrotor
+from faultpath.taps import Query, Reading, Taps
+
+LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
+FLOWN = [
+    (LEARNED, "gru"),
+    (LEARNED, "wm-u"),
+    (LEARNED, "dki-drag/gru+dcc"),
+    ({}, "dob"),
+    ({"predictor": "true-parameter"}, "true-wind"),
+]
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+
+
+@pytest.fixture(scope="module")
+def systems() -> tuple[Quadrotor, ...]:
+    return quadrotor(clearance="true"), quadrotor(clearance="depth")
+
+
+def graphs(systems: tuple[Quadrotor, ...]) -> list[Graph]:
+    """Return what every variant executes, with either clearance."""
+    return [system.loop(name, None).graph for system in systems for name in system.variants]
+
+
+def test_variants_are_all_predictors_with_all_winds(systems):
+    """Otherwise the tests below would speak of some of them only."""
+    for system in systems:
+        flown = {(choice.predictor, choice.wind) for choice in system.choices.values()}
+        assert {predictor for predictor, _ in flown} == set(PREDICTORS)
+        winds = {wind for predictor, wind in flown if predictor == "wm-a-wind"}
+        assert winds == {"zero-wind", "true-wind", *RECONSTRUCTIONS}
+
+
+def test_the_declared_consumers_are_the_ports(systems):
+    found: dict[str, set[str]] = {}
+    for graph in graphs(systems):
+        for part in graph.parts:
+            for port in part.ports:
+                found.setdefault(port.channel, set()).add(f"{part.name}.{port.place}")
+    declared = quadrotor_interface()
+    assert {each.name: set(each.consumers) for each in declared.channels} == found
+
+
+def test_the_declared_reconstructions_are_what_modules_write(systems):
+    declared = quadrotor_interface()
+    made = {
+        (module.name, source)
+        for graph in graphs(systems)
+        for module in graph.modules
+        for source in module.writes
+        if declared.source(source).provenance is Provenance.RECONSTRUCTED
+    }
+    assert set(declared.reconstructs.items()) == made
+
+
+def test_a_variants_consumers_follow_from_its_ports(systems):
+    for system in systems:
+        for name, variant in system.variants.items():
+            assert variant.consumers == consumers(system.loop(name, None).graph.parts)
+
+
+def test_truth_has_one_door(systems):
+    for graph in graphs(systems):
+        assert [type(each) for each in graph.modules if each.truths] == [ExactEstimator]
+
+
+@pytest.mark.parametrize(("options", "variant"), FLOWN, ids=[name for _, name in FLOWN])
+def test_what_flies_looks_at_every_port_and_takes_truth_at_the_door_only(options, variant):
+    system, trace = quadrotor(**options), Trace(steps=3)
+    taps, batch = wire(system, variant, HELD_OUT[:2]), Batch(HELD_OUT[:2], 0, system.control_dt_s)
+    with torch.inference_mode():
+        instants = list(system.loop(variant, 0, trace).execute(batch, taps))
+    assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
+    assert list(trace.unused()) == []
+    assert trace.truths == {("estimator", "vehicle")}
+    assert {f"{each.module}.{each.port.place}" for each in trace.reads} == set(
+        system.variants[variant].consumers
+    )
+    taught = {each.module for each in trace.reads if each.port.channel == "action"} - {"vehicle"}
+    late = {(each.module, each.port.channel) for each in trace.reads if each.valid_step < each.step}
+    assert late == {(module, "action") for module in taught}
+
+
+class _Watching(Taps):
+    """Taps that note whether an answer of a query is what the source gave."""
+
+    untouched: list[bool]
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+        query = reading.value
+        if not isinstance(query, Query):
+            return super().deliver(channel, consumer, reading, step)
+        made: list[Any] = []
+
+        def noting(request: Any) -> Any:
+            made.append(query.answer(request))
+            return made[-1]
+
+        watched = replace(reading, value=replace(query, answer=noting))
+        ask = super().deliver(channel, consumer, watched, step)
+
+        def asking(request: Any) -> Any:
+            answer = ask(request)
+            self.untouched.append(answer is made[-1])
+            return answer
+
+        return asking
+
+
+@pytest.mark.parametrize(("text", "touched"), [(None, 0), ("rollout:offset=0.1", STEPS)])
+def test_an_answer_without_a_fault_is_handed_on_as_it_is(text, touched):
+    system = quadrotor()
+    parts = system.variants["dob"]
+    taps = _Watching(
+        system.interface,
+        [] if text is None else [fault(text, system)],
+        scenes=HELD_OUT[:1],
+        dt_s=system.control_dt_s,
+        bindings=parts.bindings,
+        consumers=parts.consumers,
+        privileged=parts.privileged,
+    )
+    taps.untouched = []
+    system.run("dob", HELD_OUT[:1], taps, 0)
+    assert len(taps.untouched) == 2 * STEPS  # rollout and clearance
+    assert taps.untouched.count(False) == touched
+
+
+@pytest.mark.parametrize(
+    ("text", "tap"),
+    [
+        ("rollout:offset=0.5", ("rollout", "planner.candidates")),
+        ("rollout:noise=0.2", ("rollout", "planner.candidates")),
+        ("hover:scale=1.2", ("hover", "planner.reference")),
+    ],
+)
+def test_a_fault_between_predictor_and_planner_changes_the_command(text, tap):
+    system = quadrotor()
+    _, plain = fly(system)
+    _, struck = fly(system, faults=[fault(text, system)])
+    commands = [taps.delivered("action", "vehicle.actuators")[0] for taps in (plain, struck)]
+    assert not np.array_equal(*commands)
+    receipt = struck.receipts().at(*tap)
+    assert receipt.steps_altered.tolist() == [STEPS]
+    assert receipt.asks == (STEPS if tap[0] == "rollout" else 0)
+    altered = {
+        (each.channel, each.consumer) for each in struck.receipts().taps if each.steps_altered.any()
+    }
+    assert altered == {tap}
+
+
+def test_a_moved_rollout_moves_what_the_clearance_is_asked_for():
+    system = quadrotor()
+    _, plain = fly(system)
+    _, struck = fly(system, faults=[fault("rollout:offset=0.5", system)])
+    made = [taps.log["rollout", "planner.candidates"][0] for taps in (plain, struck)]
+    np.testing.assert_array_equal(made[0][0], made[1][0])
+    np.testing.assert_allclose(made[1][1], made[1][0] + np.float32(0.5))
+    near = [taps.delivered("clearance", "planner.risk_cost")[0] for taps in (plain, struck)]
+    assert not np.array_equal(*near)
