@@ -13,10 +13,8 @@ from faultpath.statistics import (
     SCENES_AND_SEEDS,
     Estimate,
     Resamples,
-    against_each_seed,
     difference_of_effects,
     mean_effect,
-    mean_value,
     median_effect,
     percentile_interval,
     success_effect,
@@ -186,7 +184,6 @@ def test_per_seed_values_and_counts():
 def test_one_arm():
     outcomes = np.arange(N) < 13
     assert success_rate(outcomes, RESAMPLES).estimate().value == 65.0
-    assert mean_value(outcomes * 2.0, RESAMPLES, "m").value == pytest.approx(1.3)
     with pytest.raises(ValueError, match="only 0 and 1"):
         success_rate(outcomes * 2.0, RESAMPLES)
 
@@ -233,14 +230,6 @@ def test_wrong_input_is_refused():
         Resamples.draw("none", 5, n_resamples=0)
     with pytest.raises(ValueError, match="level of an interval"):
         percentile_interval(np.zeros(3), 95)
-
-
-def test_a_fixed_arm_is_repeated_beside_each_seed():
-    fixed = np.arange(N) % 2
-    assert (against_each_seed(fixed, 3) == fixed[:, None]).all()
-    assert against_each_seed(fixed, 3).shape == (N, 3)
-    with pytest.raises(ValueError, match="only one column"):
-        against_each_seed(np.ones((N, 2)), 3)
 
 
 @fewer

@@ -13,9 +13,9 @@ from faultpath.studies.cells import Cell
 from faultpath.studies.claims import STATEMENTS, evaluate, ledger
 from faultpath.studies.claims.rules import Detected
 from faultpath.studies.claims.statement import verdict
-from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.pages import table_1, table_4
 from faultpath.studies.published import published_claims
+from faultpath.studies.quantities.found import MIN_SCENES
 from faultpath.studies.results import Results
 from faultpath.trials import OutcomeTable, Status
 

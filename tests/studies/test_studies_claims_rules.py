@@ -13,7 +13,6 @@ from faultpath.statistics import (
     success_effect,
     weighted_sum,
 )
-from faultpath.studies.claims.found import MULTIPLE, POINT_SCENES, Found, of_effect
 from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
 from faultpath.studies.claims.reversals import Turn, TurnsDown
 from faultpath.studies.claims.rules import (
@@ -30,6 +29,7 @@ from faultpath.studies.claims.rules import (
     less_than,
     more_than,
 )
+from faultpath.studies.quantities.found import MULTIPLE, POINT_SCENES, Found, of_effect
 
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 

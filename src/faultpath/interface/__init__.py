@@ -8,7 +8,6 @@ from faultpath.interface.graph import (
     module_of,
     modules,
     rank,
-    reads_of,
     transitive_consumers,
 )
 from faultpath.interface.interface import Interface
@@ -23,7 +22,6 @@ from faultpath.interface.yaml_io import (
     interface_yaml,
     json_schema,
     read_interface,
-    write_interface,
 )
 
 __all__ = [
@@ -43,7 +41,5 @@ __all__ = [
     "modules",
     "rank",
     "read_interface",
-    "reads_of",
     "transitive_consumers",
-    "write_interface",
 ]

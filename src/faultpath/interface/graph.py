@@ -21,16 +21,6 @@ def modules(interface: Declared) -> tuple[str, ...]:
     return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.consumers))
 
 
-def reads_of(interface: Declared, module: str) -> tuple[tuple[str, str], ...]:
-    """Return `(channel, consumer)` for every read of `module`, in the order of declaration."""
-    return tuple(
-        (channel.name, consumer)
-        for channel in interface.channels
-        for consumer in channel.consumers
-        if module_of(consumer) == module
-    )
-
-
 def feeds(
     interface: Declared, module: str, bindings: Mapping[str, str] | None = None
 ) -> tuple[str, ...]:

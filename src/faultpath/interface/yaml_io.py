@@ -51,11 +51,6 @@ def interface_yaml(interface: Interface) -> str:
     return yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=100)
 
 
-def write_interface(interface: Interface, path: Path | str) -> None:
-    """Write the interface to a YAML file, in UTF-8."""
-    Path(path).write_text(interface_yaml(interface), encoding="utf-8")
-
-
 def json_schema() -> dict[str, Any]:
     """Return the JSON Schema of an interface file, for editors and other tools."""
     return Interface.model_json_schema()

@@ -1,13 +1,10 @@
 """Outcome arrays in, estimates and intervals out; no plots and no files."""
 
-from faultpath.statistics.bootstrap import mean_effect, mean_value, success_effect, success_rate
+from faultpath.statistics.bootstrap import mean_effect, success_effect, success_rate
 from faultpath.statistics.breakeven import break_even, break_even_point, mixture_curve
 from faultpath.statistics.clustered import (
     WindowQuantiles,
-    quantile_difference,
-    quantile_estimate,
     quantile_log_ratio,
-    quantile_ratio,
 )
 from faultpath.statistics.correlation import spearman
 from faultpath.statistics.decisions import (
@@ -37,7 +34,6 @@ from faultpath.statistics.estimate import (
     SeedCounts,
     TestResult,
 )
-from faultpath.statistics.inputs import against_each_seed
 from faultpath.statistics.medians import median_effect
 from faultpath.statistics.paired import (
     discordant,
@@ -68,7 +64,6 @@ __all__ = [
     "SeedCounts",
     "TestResult",
     "WindowQuantiles",
-    "against_each_seed",
     "break_even",
     "break_even_point",
     "compare",
@@ -82,14 +77,10 @@ __all__ = [
     "mcnemar_exact",
     "mcnemar_mid_p",
     "mean_effect",
-    "mean_value",
     "median_effect",
     "mixture_curve",
     "percentile_interval",
-    "quantile_difference",
-    "quantile_estimate",
     "quantile_log_ratio",
-    "quantile_ratio",
     "rule_power",
     "sign_counts",
     "sign_test",

@@ -47,14 +47,6 @@ def success_rate(
     return _effect(values, none, resamples, "percent", 100.0, resample_seeds, None, scenes)
 
 
-def mean_value(
-    values: Numbers, resamples: Resamples, unit: str, *, resample_seeds: bool = False
-) -> Effect:
-    """Return one arm's mean of [scenes, seeds] in ``unit``."""
-    array = by_scene_and_seed(values)
-    return _effect(array, np.zeros_like(array), resamples, unit, 1.0, resample_seeds)
-
-
 def _effect(
     first: Floats,
     second: Floats,

@@ -116,37 +116,6 @@ class WindowQuantiles:
         )
 
 
-def quantile_estimate(
-    values: Numbers,
-    scenes: Sequence[str],
-    q: float = 0.5,
-    *,
-    unit: str = "",
-    level: float = 0.95,
-    seed: int = 0,
-    n_resamples: int = N_RESAMPLES,
-) -> Estimate:
-    """Return a quantile over windows, mean over seeds, with its interval."""
-    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
-    return drawn.value(values, q, unit).estimate(level)
-
-
-def quantile_difference(
-    first: Numbers,
-    second: Numbers,
-    scenes: Sequence[str],
-    q: float = 0.5,
-    *,
-    unit: str = "",
-    level: float = 0.95,
-    seed: int = 0,
-    n_resamples: int = N_RESAMPLES,
-) -> Estimate:
-    """Return the difference of two quantiles over the same windows, first minus second."""
-    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
-    return drawn.difference(first, second, q, unit).estimate(level)
-
-
 def quantile_log_ratio(
     first: Numbers,
     second: Numbers,
@@ -160,38 +129,6 @@ def quantile_log_ratio(
     """Return the logarithm of first over second; 0 is no difference."""
     drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
     return drawn.log_ratio(first, second, q).estimate(level)
-
-
-def quantile_ratio(
-    first: Numbers,
-    second: Numbers,
-    scenes: Sequence[str],
-    q: float = 0.5,
-    *,
-    level: float = 0.95,
-    seed: int = 0,
-    n_resamples: int = N_RESAMPLES,
-) -> Estimate:
-    """Return first over second, geometric mean over seeds; 1 is no difference.
-
-    Its ``detected_sign`` means nothing: ask ``quantile_log_ratio``, of which this is the
-    exponential.
-    """
-    log = quantile_log_ratio(
-        first, second, scenes, q, level=level, seed=seed, n_resamples=n_resamples
-    )
-    assert log.low is not None
-    assert log.high is not None
-    return log.model_copy(
-        update={
-            "value": float(np.exp(log.value)),
-            "low": float(np.exp(log.low)),
-            "high": float(np.exp(log.high)),
-            "per_seed": tuple(float(np.exp(value)) for value in log.per_seed or ()),
-            "unit": "1",
-            "method": log.method.removeprefix("log "),
-        }
-    )
 
 
 def _quantile(ordered: Floats, reached: Floats, q: float) -> Floats:

@@ -43,11 +43,6 @@ class Discordant(FrozenResult):
             raise ValueError("the net difference needs n_pairs, the number of all pairs")
         return 100.0 * (self.first_only - self.second_only) / self.n_pairs
 
-    @property
-    def odds_ratio(self) -> float | None:
-        """Return the conditional odds ratio first:second, or None when second_only is 0."""
-        return self.first_only / self.second_only if self.second_only else None
-
     def swapped(self) -> Self:
         """Return the counts with the arms exchanged."""
         return self.model_copy(

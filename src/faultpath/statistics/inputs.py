@@ -43,14 +43,3 @@ def paired_binary(first: Numbers, second: Numbers) -> tuple[Floats, Floats]:
     """Return both binary arms as float64 [scenes, seeds] of zeros and ones."""
     one, two = paired(first, second)
     return binary(one, "first"), binary(two, "second")
-
-
-def against_each_seed(fixed: Numbers, n_seeds: int) -> Floats:
-    """Repeat an arm without seeds ([scenes] or [scenes, 1]) beside each seed of the other arm.
-
-    The paper pairs the disturbance observer, which is not trained, with each learned seed.
-    """
-    array = by_scene_and_seed(fixed, "fixed")
-    if array.shape[1] != 1 or n_seeds < 1:
-        raise ValueError(f"only one column can be repeated, got {array.shape} for {n_seeds} seeds")
-    return np.repeat(array, n_seeds, axis=1)

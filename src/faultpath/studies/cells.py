@@ -1,7 +1,7 @@
 """What the paper's studies fly, as data: settings, cells, and the profiles that size them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from faultpath.trials import Side
 
@@ -57,6 +57,11 @@ class Cell:
 
     def __str__(self) -> str:
         return f"{self.variant} ({self.path})"
+
+
+def of_seed(cell: Cell, seed: int = 0) -> Cell:
+    """Return a cell with one of its seeds alone."""
+    return replace(cell, seeds=(seed,))
 
 
 @dataclass(frozen=True)

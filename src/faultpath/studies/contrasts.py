@@ -112,15 +112,6 @@ def comparison(
     )
 
 
-def joint(results: Results, *pairs: tuple[Cell, Cell]) -> tuple[Contrast, ...]:
-    """Return contrasts over the scenes that all of them have, so that they resample together."""
-    found = [results.contrast(first, second) for first, second in pairs]
-    kept = set(found[0].pairs.scene_indices)
-    for contrast in found:
-        kept &= set(contrast.pairs.scene_indices)
-    return tuple(results.contrast(*pair, scenes=sorted(kept)) for pair in pairs)
-
-
 def _entries(contrast: Contrast) -> tuple[Entry, ...]:
     least = contrast.detectable.value
     return (

@@ -1,25 +1,21 @@
 """Entries of tables: our figure as text beside the paper's, and a dash where the run has none."""
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
-from dataclasses import replace
 from functools import wraps
 from typing import Concatenate, ParamSpec
 
-import numpy as np
-
 from faultpath.evidence import Measurement
 from faultpath.report import wording
-from faultpath.statistics import Estimate, fewest_scenes
+from faultpath.statistics import Estimate
 from faultpath.studies.cells import Cell
+from faultpath.studies.quantities.found import Quantity, Undecidable
+from faultpath.studies.quantities.windows import quantile
 from faultpath.studies.results import NotRun, Results
 from faultpath.tables import MISSING, Entry
 from faultpath.trials import Status
 
 P = ParamSpec("P")
 
-MIN_SCENES = fewest_scenes(1)
-"""With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
 BLANK = Entry(text="")
 """Where a column has nothing to say of a line."""
 
@@ -47,11 +43,6 @@ def bracket(ends: Sequence[float], digits: int = 1) -> str:
     """Return an interval of the paper as ours are written."""
     low, high = ends
     return f"[{wording.plain(low, digits)}, {wording.plain(high, digits)}]"
-
-
-def of_seed(cell: Cell, seed: int = 0) -> Cell:
-    """Return a cell with one of its seeds alone."""
-    return replace(cell, seeds=(seed,))
 
 
 @guarded
@@ -92,41 +83,38 @@ def time(results: Results, cell: Cell) -> Entry:
     return Entry(text=wording.plain(results.median_time(cell), 2))
 
 
-@guarded
-def time_difference(results: Results, first: Cell, second: Cell) -> Entry:
-    """Median difference in time over jointly successful scenes, s, with their number."""
-    found = results.contrast(first, second).time()
-    return Entry(text=f"{wording.with_interval(found, 2)} (n = {found.n_scenes})")
+def of_quantity(
+    results: Results,
+    quantity: Quantity,
+    published: tuple[str, str] = ("", ""),
+    digits: int = 1,
+    *,
+    times: float = 1.0,
+) -> tuple[Entry, Entry]:
+    """Return a difference that claims may be decided by, in `times` its unit, and its interval.
 
-
-def difference(estimate: Estimate, digits: int = 1) -> Entry:
-    """Return a secondary difference: it has no test, and nothing is decided from it."""
-    return Entry(text=wording.signed(estimate.value, digits))
+    Bold is a detected difference in success: all others are secondary.
+    """
+    try:
+        found = quantity(results)
+    except (NotRun, Undecidable):
+        one, two = (Entry(text=MISSING, published=paper) for paper in published)
+        return one, two
+    value, ends = MISSING, MISSING
+    if found.value is not None:
+        value = wording.signed(times * found.value, digits)
+    if found.interval is not None:
+        ends = bracket([times * end for end in found.interval], digits)
+    bold = found.unit == "pp" and bool(found.detected)
+    return (
+        Entry(text=value, published=published[0], detected=bold),
+        Entry(text=ends, published=published[1]),
+    )
 
 
 def interval(estimate: Estimate, digits: int = 1) -> Entry:
     """Return the interval of an estimate."""
     return Entry(text=wording.interval(estimate, digits) or MISSING)
-
-
-def quantile(results: Results, measurement: Measurement, q: float = 0.5) -> float:
-    """Return a quantile over windows; `NotRun` without any."""
-    values = results.measured(measurement).values
-    if not len(values):
-        raise NotRun(f"a window for {measurement.subject}")
-    # As `statistics.clustered` takes it, so that tables and claims agree to the bit.
-    return float(np.quantile(values, q, method="averaged_inverted_cdf"))
-
-
-def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
-    """Return the mean over seeds of their window medians, over the seeds that were measured."""
-    medians: list[float] = []
-    for measurement in by_seed:
-        with suppress(NotRun):
-            medians.append(quantile(results, measurement))
-    if not medians:
-        raise NotRun("a measurement of any seed")
-    return float(np.mean(medians))
 
 
 @guarded

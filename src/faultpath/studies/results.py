@@ -19,7 +19,6 @@ from faultpath.statistics import (
     detectable,
     discordant_by_seed,
     mean_effect,
-    median_effect,
     success_effect,
     success_rate,
 )
@@ -81,24 +80,6 @@ class Contrast:
         return mean_effect(
             first.terminal_distance_m, second.terminal_distance_m, self.resamples, "m"
         )
-
-    def crashes(self) -> Effect:
-        """Difference in crashes, percentage points."""
-        return success_effect(self.pairs.first.crash, self.pairs.second.crash, self.resamples)
-
-    def timeouts(self) -> Effect:
-        """Difference in timeouts, percentage points."""
-        first, second = self.pairs.first, self.pairs.second
-        late = [~(side.success | side.crash) for side in (first, second)]
-        return success_effect(late[0], late[1], self.resamples)
-
-    def time(self) -> Estimate:
-        """Median difference in time over jointly successful scenes, s; `NotRun` without one."""
-        first, second = self.pairs.first, self.pairs.second
-        joint = first.success & second.success
-        if not joint.any():
-            raise NotRun("a jointly successful scene")
-        return median_effect(first.time_s, second.time_s, joint, self.resamples).estimate()
 
 
 @dataclass(frozen=True)

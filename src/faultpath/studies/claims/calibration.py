@@ -1,8 +1,6 @@
 """C05 to C15: calibration errors and training on them (paper, Table II, Figure 3 and text)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.differences import combined, success
-from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     ABOVE,
     BELOW,
@@ -13,10 +11,12 @@ from faultpath.studies.claims.rules import (
     more_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.claims.summaries import at_lower_success
 from faultpath.studies.claims.sweep import above_worst, range_gained, worst_difference
-from faultpath.studies.claims.windows import ratio
 from faultpath.studies.pages import figure_3, in_text, table_2
+from faultpath.studies.quantities.differences import combined, success
+from faultpath.studies.quantities.found import Found
+from faultpath.studies.quantities.summaries import at_lower_success
+from faultpath.studies.quantities.windows import ratio
 
 FAULTS = (0.1, -0.1)
 WM_A, WM_U = table_2.PAIRS

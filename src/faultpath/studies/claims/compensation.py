@@ -1,10 +1,5 @@
 """C30, C31, C34, C35: how a biased reconstruction makes up for a wrong model (paper, Table VI)."""
 
-from collections.abc import Callable
-from typing import TypeAlias
-
-from faultpath.evidence import Measurement
-from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     BELOW,
     NO_LOSS,
@@ -15,27 +10,21 @@ from faultpath.studies.claims.rules import (
     less_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.claims.summaries import rank_correlation
-from faultpath.studies.claims.windows import (
+from faultpath.studies.pages import table_4, table_6, text_mechanism
+from faultpath.studies.quantities.found import Found
+from faultpath.studies.quantities.windows import (
     Subject,
     difference_of_changes,
-    difference_of_quantiles,
     ratio,
 )
-from faultpath.studies.pages import table_4, table_6
 
 NOMINAL, ISOLATED, PREDICTOR, SHARED = table_6.INTERFACES
 GRU, DCC, DOB = table_4.METHODS
 WITHIN_15_PERCENT = Within(0.85, 1.15)
-Measure: TypeAlias = Callable[[str, str, int], Measurement]
-
-
-def _of(measure: Measure, method: str, interface: str) -> Subject:
-    return tuple(measure(method, interface, seed) for seed in table_6.seeds(method))
 
 
 def _acceleration(method: str, interface: str) -> Subject:
-    return _of(table_6.acceleration_error, method, interface)
+    return table_6.by_seed(table_6.acceleration_error, method, interface)
 
 
 def _over_nominal(method: str, interface: str, rule: Rule[Found]) -> Statement[Found]:
@@ -57,19 +46,6 @@ def _repair_moves_less(
         f"{what} in acceleration error, GRU+DCC minus {other.upper()},",
         difference_of_changes(repair, rival, size=size),
         BELOW,
-    )
-
-
-def _correlation(what: str, measure: Measure) -> Statement[Found]:
-    cells = [
-        (table_4.cell(method, path), _of(measure, method, path))
-        for method in table_4.METHODS
-        for path in table_4.PATHS
-    ]
-    return Statement(
-        f"rank correlation of success with {what} over {len(cells)} cells",
-        rank_correlation(cells),
-        ByPoint(-1, -0.5, strict=False),
     )
 
 
@@ -98,8 +74,8 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "wind-term error of GRU, shared over reconstruction-only,",
             ratio(
-                _of(table_6.wind_term_error, GRU, SHARED),
-                _of(table_6.wind_term_error, GRU, ISOLATED),
+                table_6.by_seed(table_6.wind_term_error, GRU, SHARED),
+                table_6.by_seed(table_6.wind_term_error, GRU, ISOLATED),
             ),
             WITHIN_15_PERCENT,
         ),
@@ -109,17 +85,20 @@ CLAIMS: dict[str, Statements] = {
             less_than(0.7),
         ),
     ),
-    "C34": (
-        _correlation("acceleration error", table_6.acceleration_error),
-        _correlation("20-step position error", table_6.position_error),
+    "C34": tuple(
+        Statement(
+            f"rank correlation of success with {error} over {len(text_mechanism.NINE)} cells",
+            quantity,
+            ByPoint(-1, -0.5, strict=False),
+        )
+        for error, quantity in zip(
+            ("acceleration error", "20-step position error"), text_mechanism.RANKED, strict=True
+        )
     ),
     "C35": (
         Statement(
             "median position error with GRU, shared minus reconstruction-only,",
-            difference_of_quantiles(
-                _of(table_6.position_error, GRU, SHARED),
-                _of(table_6.position_error, GRU, ISOLATED),
-            ),
+            text_mechanism.RISE,
             NO_LOSS,
         ),
     ),

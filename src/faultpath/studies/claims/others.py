@@ -1,10 +1,10 @@
 """C36 to C39: withheld calibration, frozen histories, planning and perception (paper, text)."""
 
-from faultpath.studies.claims.differences import Pair, combined, success
 from faultpath.studies.claims.rules import BELOW, NO_GAIN, NO_LOSS, at_least, more_than
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.claims.summaries import in_all, in_none, share
 from faultpath.studies.pages import in_text, table_4
+from faultpath.studies.quantities.differences import Pair, combined, success
+from faultpath.studies.quantities.summaries import in_all, in_none, share
 
 SAME_ORDER = 3
 """Two costs are of the same order when neither is so many times the other: about root ten."""

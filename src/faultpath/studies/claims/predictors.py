@@ -2,12 +2,12 @@
 
 from itertools import combinations
 
-from faultpath.studies.cells import Cell
-from faultpath.studies.claims.differences import crashes, seed_zero, success, time, timeouts
+from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, NotDetected, at_least
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.claims.windows import Subject, difference_of_quantiles, ratio
 from faultpath.studies.pages import table_1
+from faultpath.studies.quantities.differences import crashes, success, time, timeouts
+from faultpath.studies.quantities.windows import Subject, difference_of_quantiles, ratio
 
 NAMES = {
     table_1.DKI: "DKI",
@@ -52,7 +52,7 @@ CLAIMS: dict[str, Statements] = {
     "C02": tuple(
         Statement(
             f"success of {NAMES[first]} minus {NAMES[second]}",
-            success(seed_zero(first), seed_zero(second)),
+            success(of_seed(first), of_seed(second)),
             NotDetected(),
         )
         for first, second in combinations(table_1.PREDICTORS, 2)

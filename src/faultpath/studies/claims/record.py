@@ -4,8 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from faultpath.statistics import BreakEven, break_even
-from faultpath.studies.claims.differences import together
-from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.rules import (
     CONFIRMED,
     FEW_FOR_POINTS,
@@ -17,8 +15,9 @@ from faultpath.studies.claims.rules import (
     more_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.pages import table_5
+from faultpath.studies.quantities.differences import together
+from faultpath.studies.quantities.found import MIN_SCENES, Found
 from faultpath.studies.results import Results
 
 

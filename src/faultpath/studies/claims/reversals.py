@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from faultpath.statistics import compare, decide_family, difference_of_effects
-from faultpath.studies.claims.differences import Pair, together
-from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
+from faultpath.studies.quantities.differences import Pair, together
+from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.results import Results
 
 ALL_SEEDS = 3

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol, TypeVar
 
 from faultpath.record import Answer
-from faultpath.studies.claims.found import POINT_SCENES, Found
+from faultpath.studies.quantities.found import POINT_SCENES, Found
 
 
 class Judged(NamedTuple):

@@ -1,13 +1,13 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.differences import combined, success
-from faultpath.studies.claims.found import Found
 from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turn
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.pages.table_4 import cell
+from faultpath.studies.pages.table_4 import cell, change
 from faultpath.studies.pages.table_6 import negative
+from faultpath.studies.quantities.differences import success
+from faultpath.studies.quantities.found import Found
 from faultpath.studies.results import Contrast
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
@@ -60,9 +60,7 @@ CLAIMS: dict[str, Statements] = {
     "C27": (
         Statement(
             "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
-            combined(
-                (1, _repair(SHARED)), (-1, _repair(ISOLATED)), effect=Contrast.terminal_distance
-            ),
+            change(DCC, GRU, Contrast.terminal_distance),
             ABOVE,
         ),
     ),

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Any, Generic, TypeAlias, TypeVar
 
 from faultpath.record import Answer, ClaimVerdict, Part
-from faultpath.studies.claims.found import Found, Undecidable
 from faultpath.studies.claims.rules import Judged, Rule
 from faultpath.studies.published import PublishedClaim
+from faultpath.studies.quantities.found import Found, Undecidable
 from faultpath.studies.results import NotRun, Results
 
 F = TypeVar("F", bound=Found)

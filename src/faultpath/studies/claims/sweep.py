@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import percentile_interval, success_rate
-from faultpath.studies.claims.differences import together
-from faultpath.studies.claims.found import Found, Quantity
-from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.pages import figure_3
+from faultpath.studies.quantities.differences import together
+from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity
 from faultpath.studies.results import NotRun, Results
 
 Floats = NDArray[np.float64]

@@ -1,9 +1,8 @@
 """C16 to C22: wind that no sensor measures (paper, Table III and text)."""
 
-from faultpath.studies.claims.differences import seed_zero, success
+from faultpath.studies.cells import of_seed
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NotDetected
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.claims.windows import difference_of_quantiles
 from faultpath.studies.pages import in_text
 from faultpath.studies.pages.table_3 import (
     ENVIRONMENTS,
@@ -15,6 +14,8 @@ from faultpath.studies.pages.table_3 import (
     ZERO_OF_EVERY_SEED,
     cell,
 )
+from faultpath.studies.quantities.differences import success
+from faultpath.studies.quantities.windows import difference_of_quantiles
 
 L3 = "L3"
 OBSTACLES = "obstacles"
@@ -39,7 +40,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             f"success of zero wind minus the wind-withheld model at {level}",
             success(
-                seed_zero(cell(ZERO, OBSTACLES, level)), seed_zero(cell(WITHHELD, OBSTACLES, level))
+                of_seed(cell(ZERO, OBSTACLES, level)), of_seed(cell(WITHHELD, OBSTACLES, level))
             ),
             NO_GAIN,
         )

@@ -8,14 +8,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
 
-from faultpath.studies.cells import Cell
+from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.contrasts import (
     COLUMNS,
     UNPUBLISHED,
     PublishedContrast,
     contrast_entries,
 )
-from faultpath.studies.entries import of_seed
 from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import in_text, table_1, table_2, table_3, table_4, table_6

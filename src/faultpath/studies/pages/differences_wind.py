@@ -7,10 +7,11 @@ from faultpath.evidence import Measurement
 from faultpath.report import wording
 from faultpath.studies.cells import SELECTION, Cell, Setting, calibration
 from faultpath.studies.contrasts import COMPARED, comparison
-from faultpath.studies.entries import centimetres, guarded, quantile, success
+from faultpath.studies.entries import centimetres, guarded, success
 from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import recording
+from faultpath.studies.quantities.windows import quantile
 from faultpath.studies.results import Results
 from faultpath.tables import Entry, Line, Table
 

@@ -2,21 +2,21 @@
 
 from faultpath.evidence import Measurement, Recording
 from faultpath.report import wording
-from faultpath.studies.cells import SEEDS, Cell, Setting
+from faultpath.studies.cells import SEEDS, Cell, Setting, of_seed
 from faultpath.studies.entries import (
     centimetres,
     ended,
     guarded,
-    of_seed,
+    of_quantity,
     printed,
-    quantile,
     seed_range,
     time,
-    time_difference,
 )
 from faultpath.studies.notes import INTERVALS, WINDOWS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
+from faultpath.studies.quantities.differences import time as time_difference
+from faultpath.studies.quantities.windows import quantile
 from faultpath.studies.results import Results
 from faultpath.tables import MISSING, Entry, Line, Table
 from faultpath.trials import Status
@@ -132,13 +132,21 @@ def _below(results: Results) -> tuple[Line, ...]:
     for key in ("DKI", "true-parameter"):
         paper = published(_PUBLISHED, "paired_time_minus_WM-A_s", key)
         text = f"{wording.signed(paper['median'], 2)} (n = {paper['n']})"
-        found = time_difference(text, results, _ROWS[key], WM_A)
+        found = _time(text, results, _ROWS[key])
         lines.append(Line(label=f"Time, {key} minus WM-A (s)", entries=(found,)))
     for key in ("WM-A", "WM-U"):
         low, high = published(_PUBLISHED, "success_range_over_seeds", key)
         found = seed_range(f"{low}–{high}", results, _ROWS[key])
         lines.append(Line(label=f"Success of {key} over seeds (%)", entries=(found,)))
     return tuple(lines)
+
+
+@guarded
+def _time(results: Results, cell: Cell) -> Entry:
+    """Median difference in time over jointly successful scenes, s, with their number."""
+    found = time_difference(cell, WM_A)(results)
+    value, ends = of_quantity(results, lambda _: found, digits=2)
+    return Entry(text=f"{value.text} {ends.text} (n = {found.n_scenes})")
 
 
 @guarded

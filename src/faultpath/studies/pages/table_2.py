@@ -3,9 +3,9 @@
 from collections.abc import Iterable
 
 from faultpath.evidence import Measurement
-from faultpath.studies.cells import SEEDS, Cell, calibration
+from faultpath.studies.cells import SEEDS, Cell, calibration, of_seed
 from faultpath.studies.contrasts import PublishedContrast, contrast_lines, published_contrasts
-from faultpath.studies.entries import centimetres, of_seed, printed, success
+from faultpath.studies.entries import centimetres, printed, success
 from faultpath.studies.notes import INTERVALS, WINDOWS, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import COMMON, STILL

@@ -1,22 +1,22 @@
 """Table IV: reconstructions of the wind under an isolated and under a shared calibration error."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from faultpath.report import wording
-from faultpath.statistics import Estimate, compare, difference_of_effects
+from faultpath.statistics import Effect
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
 from faultpath.studies.contrasts import (
     PublishedContrast,
-    attempt,
     contrast_lines,
-    joint,
     published_contrasts,
 )
-from faultpath.studies.entries import BLANK, bracket, difference, interval, printed, success
+from faultpath.studies.entries import BLANK, bracket, of_quantity, printed, success
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.published import published
-from faultpath.studies.results import Results
+from faultpath.studies.quantities.differences import combined, success_draws
+from faultpath.studies.quantities.found import Quantity
+from faultpath.studies.results import Contrast, Results
 from faultpath.tables import Entry, Line, Table
 
 WINDY = Setting(wind="L3")
@@ -107,55 +107,40 @@ def _contrast(results: Results, first: str, second: str) -> tuple[Line, ...]:
     )
 
 
+def change(first: str, second: str, effect: Callable[[Contrast], Effect]) -> Quantity:
+    """Return how much more an effect is under the shared error than under the isolated one."""
+    shared, alone = (_cells(first, second, path) for path in ("shared", "reconstruction-only"))
+    return combined((1, shared), (-1, alone), effect=effect)
+
+
 def _interaction(results: Results) -> tuple[Line, ...]:
     """Return how DOB minus GRU changes from reconstruction-only to shared error."""
     paper = published(_PUBLISHED, "DOB_GRU_interaction_pp")
-
-    def change() -> tuple[Entry, ...]:
-        alone, shared = joint(
-            results, *(_cells("dob", "gru", path) for path in ("reconstruction-only", "shared"))
-        )
-        found = compare(difference_of_effects(alone.draws, shared.draws))
-        value = Entry(text=wording.signed(found.estimate.value), detected=bool(found.side))
-        return value, interval(found.estimate)
-
-    found = attempt(change, (wording.signed(paper["mean"]), bracket(paper["ci95"])))
+    texts = wording.signed(paper["mean"]), bracket(paper["ci95"])
+    found = of_quantity(results, change("dob", "gru", success_draws), texts)
     return _last_column("DOB minus GRU, shared minus reconstruction-only (pp)", found)
 
 
 def _terminal_distance(results: Results) -> tuple[Line, ...]:
     """Return GRU+DCC minus GRU in terminal goal distance, and its change to the shared error."""
     paper = published(_PUBLISHED, "terminal_distance_GRU+DCC_minus_GRU_m")
-    rise = paper["shared_minus_isolated"]
+    rise, effect = paper["shared_minus_isolated"], Contrast.terminal_distance
 
-    def at(path: str) -> tuple[Entry, ...]:
-        contrast = results.contrast(*_cells("gru+dcc", "gru", path))
-        return _shown(contrast.terminal_distance().estimate(), 2)
-
-    def change() -> tuple[Entry, ...]:
-        alone, shared = joint(
-            results,
-            *(_cells("gru+dcc", "gru", path) for path in ("reconstruction-only", "shared")),
-        )
-        effect = difference_of_effects(alone.terminal_distance(), shared.terminal_distance())
-        return _shown(effect.estimate(), 2)
+    def shown(quantity: Quantity, mean: float, ends: Sequence[float]) -> tuple[Entry, Entry]:
+        return of_quantity(results, quantity, (wording.signed(mean, 2), bracket(ends, 2)), 2)
 
     columns = [
-        attempt(lambda path=path: at(path), (wording.signed(mean, 2), bracket(ends, 2)))
+        shown(combined((1, _cells("gru+dcc", "gru", path)), effect=effect), mean, ends)
         for path, mean, ends in zip(PATHS, paper["mean"], paper["ci95"], strict=True)
     ]
     values, intervals = zip(*columns, strict=True)
-    found = attempt(change, (wording.signed(rise["mean"], 2), bracket(rise["ci95"], 2)))
+    found = shown(change("gru+dcc", "gru", effect), rise["mean"], rise["ci95"])
     return (
         Line(label="Terminal distance, secondary, GRU+DCC minus GRU (m)"),
         Line(label="Mean difference", entries=values),
         Line(label="95 % interval", entries=intervals),
         *_last_column("Shared minus reconstruction-only (m)", found),
     )
-
-
-def _shown(estimate: Estimate, digits: int) -> tuple[Entry, ...]:
-    return difference(estimate, digits), interval(estimate, digits)
 
 
 def _last_column(label: str, entries: Sequence[Entry]) -> tuple[Line, ...]:

@@ -5,11 +5,12 @@ from typing import Any
 from faultpath.report import wording
 from faultpath.statistics import BreakEven, break_even
 from faultpath.studies.cells import Cell
-from faultpath.studies.contrasts import attempt, joint
+from faultpath.studies.contrasts import attempt
 from faultpath.studies.notes import INTERVALS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
+from faultpath.studies.quantities.differences import together
 from faultpath.studies.results import Contrast, Results
 from faultpath.tables import Entry, Line, Table
 
@@ -71,7 +72,7 @@ def _line(results: Results, key: str, cells: tuple[Cell, ...]) -> Line:
 
     def entries() -> tuple[Entry, ...]:
         repair, baseline, faulty_repair, faulty_baseline = cells
-        correct, faulty = joint(results, (repair, baseline), (faulty_repair, faulty_baseline))
+        correct, faulty = together(results, (repair, baseline), (faulty_repair, faulty_baseline))
         result = break_even(correct.draws, faulty.draws)
         return _difference(correct), _difference(faulty), Entry(text=_frequency(result))
 

@@ -6,12 +6,13 @@ from faultpath.evidence import Measurement
 from faultpath.report import wording
 from faultpath.studies.cells import Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, contrast_entries
-from faultpath.studies.entries import BLANK, guarded, mean_of_medians, printed, success
+from faultpath.studies.entries import BLANK, guarded, printed, success
 from faultpath.studies.notes import flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
 from faultpath.studies.published import published
+from faultpath.studies.quantities.windows import mean_of_medians
 from faultpath.studies.results import Results
 from faultpath.tables import Entry, Line, Table
 

@@ -1,27 +1,16 @@
 """In the text on the mechanism: what errors say of success, and errors of the full prediction."""
 
-from collections.abc import Callable, Iterable
-from contextlib import suppress
-
-import numpy as np
-
-from faultpath.evidence import Measured, Measurement
 from faultpath.report import wording
-from faultpath.statistics import quantile_difference, spearman
-from faultpath.studies.contrasts import attempt
-from faultpath.studies.entries import (
-    BLANK,
-    difference,
-    guarded,
-    interval,
-    mean_of_medians,
-)
+from faultpath.studies.entries import BLANK, guarded, of_quantity
 from faultpath.studies.notes import flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages import table_4
 from faultpath.studies.pages.table_6 import acceleration_error, by_seed, position_error
 from faultpath.studies.published import published
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.quantities.found import Quantity, Undecidable
+from faultpath.studies.quantities.summaries import rank_correlation
+from faultpath.studies.quantities.windows import difference_of_quantiles, mean_of_medians
+from faultpath.studies.results import Results
 from faultpath.tables import MISSING, Entry, Line, Table
 
 TITLE = "What errors say of success, and errors of the full prediction"
@@ -36,6 +25,20 @@ MEASUREMENTS = tuple(
 )
 
 
+RANKED = tuple(
+    rank_correlation(
+        [(table_4.cell(method, path), by_seed(measure, method, path)) for method, path in NINE]
+    )
+    for measure in (acceleration_error, position_error)
+)
+"""Success against each of the two errors."""
+RISE = difference_of_quantiles(
+    by_seed(position_error, "gru", "shared"),
+    by_seed(position_error, "gru", "reconstruction-only"),
+)
+"""GRU's full prediction, from the isolated to the shared error."""
+
+
 def build(results: Results) -> Built:
     """Return the tables of this page."""
     return _correlations(results), _errors(results)
@@ -44,16 +47,16 @@ def build(results: Results) -> Built:
 def _correlations(results: Results) -> Table:
     paper = published("in_text", "spearman_success")
     rows = (
-        ("Analytic acceleration error", "analytic_acceleration_error", acceleration_error),
-        ("20-step position error", "position_error_20_step", position_error),
+        ("Analytic acceleration error", "analytic_acceleration_error", RANKED[0]),
+        ("20-step position error", "position_error_20_step", RANKED[1]),
     )
     return Table(
         name="text-correlations",
         title="Rank correlation of errors with success (paper, Section VI)",
         columns=(f"Spearman, n = {paper['n']}",),
         lines=tuple(
-            Line(label=label, entries=(_spearman(wording.plain(paper[key], 2), results, measure),))
-            for label, key, measure in rows
+            Line(label=label, entries=(_spearman(wording.plain(paper[key], 2), results, quantity),))
+            for label, key, quantity in rows
         ),
         notes=(
             flown(results, CELLS),
@@ -64,15 +67,15 @@ def _correlations(results: Results) -> Table:
 
 
 @guarded
-def _spearman(results: Results, measure: Callable[[str, str, int], Measurement]) -> Entry:
-    success = [results.rate(table_4.cell(method, path)).value for method, path in NINE]
-    errors = [mean_of_medians(results, by_seed(measure, method, path)) for method, path in NINE]
-    value = spearman(np.array(errors), np.array(success)).value
-    return Entry(text=MISSING if value is None else wording.plain(value, 2))
+def _spearman(results: Results, quantity: Quantity) -> Entry:
+    try:
+        return Entry(text=wording.plain(quantity(results).value or 0.0, 2))
+    except Undecidable:
+        return Entry(text=MISSING)
 
 
 def _errors(results: Results) -> Table:
-    rise = attempt(lambda: _rise(results), ("", ""))
+    rise = of_quantity(results, RISE, times=100)
     labels = ("GRU, shared minus reconstruction-only", "95 % interval")
     return Table(
         name="text-position-errors",
@@ -106,31 +109,6 @@ def _errors(results: Results) -> Table:
 def _error(results: Results, method: str, path: str) -> Entry:
     error = mean_of_medians(results, by_seed(position_error, method, path))
     return Entry(text=wording.plain(100 * error))
-
-
-def _rise(results: Results) -> tuple[Entry, Entry]:
-    """Return the change of GRU's error from the isolated to the shared error, over its seeds."""
-    shared, alone = (
-        _measured(results, by_seed(position_error, "gru", path))
-        for path in ("shared", "reconstruction-only")
-    )
-    seeds = sorted(set(shared) & set(alone))
-    if not seeds:
-        raise NotRun("a seed with both errors of the reconstruction")
-    one, two = (
-        np.stack([100 * found[seed].values for seed in seeds], axis=1) for found in (shared, alone)
-    )
-    estimate = quantile_difference(one, two, shared[seeds[0]].scenes, unit="cm")
-    return difference(estimate), interval(estimate)
-
-
-def _measured(results: Results, measurements: Iterable[Measurement]) -> dict[int, Measured]:
-    """Return what was measured, by seed."""
-    found: dict[int, Measured] = {}
-    for measurement in measurements:
-        with suppress(NotRun):
-            found[measurement.seed] = results.measured(measurement)
-    return found
 
 
 PAGE = Page("text-mechanism", TITLE, CELLS, MEASUREMENTS, build)

@@ -1,17 +1,18 @@
 """In the text on planning and perception: scenes that no model decides, and other planners."""
 
-import numpy as np
+from collections.abc import Callable
 
 from faultpath.report import wording
-from faultpath.statistics import Estimate, success_rate
+from faultpath.studies.cells import of_seed
 from faultpath.studies.contrasts import COMPARED, attempt, comparison
-from faultpath.studies.entries import interval, of_seed
+from faultpath.studies.entries import bracket
 from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.in_text import CEILING, OTHER_PLANNERS, REFERENCE_PLANNER
 from faultpath.studies.published import published
-from faultpath.studies.results import NotRun, Results
-from faultpath.tables import Entry, Line, Table
+from faultpath.studies.quantities.summaries import Bools, in_all, in_none, share
+from faultpath.studies.results import Results
+from faultpath.tables import MISSING, Entry, Line, Table
 
 TITLE = "What planning and perception decide"
 CELLS = (*map(of_seed, CEILING), REFERENCE_PLANNER, *OTHER_PLANNERS.values())
@@ -25,8 +26,8 @@ def build(results: Results) -> Built:
 def _ceiling(results: Results) -> Table:
     paper = published("in_text", "ceiling_eight_configurations")
     rows = (
-        ("Succeed in all (%)", paper["succeed_in_all"], True),
-        ("Fail in all (%)", paper["fail_in_all"], False),
+        ("Succeed in all (%)", paper["succeed_in_all"], in_all),
+        ("Fail in all (%)", paper["fail_in_all"], in_none),
     )
     return Table(
         name="text-ceiling",
@@ -35,9 +36,9 @@ def _ceiling(results: Results) -> Table:
         lines=tuple(
             Line(
                 label=label,
-                entries=attempt(lambda all_won=won: _alike(results, all_won), (str(share), "")),
+                entries=attempt(lambda of=alike: _alike(results, of), (str(part), "")),
             )
-            for label, share, won in rows
+            for label, part, alike in rows
         ),
         notes=(
             flown(results, map(of_seed, CEILING)),
@@ -48,26 +49,11 @@ def _ceiling(results: Results) -> Table:
     )
 
 
-def _alike(results: Results, won: bool) -> tuple[Entry, Entry]:
+def _alike(results: Results, of: Callable[[Bools], Bools]) -> tuple[Entry, Entry]:
     """Return the share of scenes in which every configuration succeeds, or in which none does."""
-    share = shared_by_all(results, won)
-    return Entry(text=wording.plain(share.value, 0)), interval(share)
-
-
-def shared_by_all(results: Results, won: bool) -> Estimate:
-    """Return the percentage of scenes that all configurations win, or that all lose.
-
-    A scene in which any trial failed does not count.
-    """
-    ends: list[dict[str, bool]] = []
-    for cell in map(of_seed, CEILING):
-        pairs = results.contrast(cell, cell).pairs
-        ends.append(dict(zip(pairs.scenes, pairs.first.success[:, 0].tolist(), strict=True)))
-    scenes = [scene for scene in ends[0] if all(scene in others for others in ends)]
-    if not scenes:
-        raise NotRun("a scene of all eight configurations")
-    alike = np.array([all(end[scene] is won for end in ends) for scene in scenes])
-    return success_rate(alike, results.resamples(len(scenes))).estimate()
+    found = share(CEILING, of)(results)
+    ends = MISSING if found.interval is None else bracket(found.interval)
+    return Entry(text=wording.plain(found.value or 0.0, 0)), Entry(text=ends)
 
 
 def _planners(results: Results) -> Table:

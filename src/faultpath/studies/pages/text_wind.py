@@ -1,7 +1,8 @@
 """In the text on wind: prediction errors in wind, reconstruction controls, and freezing."""
 
+from faultpath.studies.cells import of_seed
 from faultpath.studies.contrasts import COMPARED, comparison
-from faultpath.studies.entries import centimetres, of_seed, printed
+from faultpath.studies.entries import centimetres, printed
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, LEAST, WINDOWS, WINS, flown, recorded
 from faultpath.studies.page import Built, Page
 from faultpath.studies.pages.in_text import (

@@ -1,5 +1,7 @@
 """Quantities of recorded windows: quantiles of errors and responses, compared on common windows."""
 
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
 from typing import TypeAlias
@@ -9,7 +11,7 @@ from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath.statistics import Effect, WindowQuantiles, weighted_sum
-from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.results import NotRun, Results
 
 Subject: TypeAlias = tuple[Measurement, ...]
@@ -81,10 +83,24 @@ def quantiles(results: Results, q: float, *subjects: Subject) -> list[Effect]:
     return [_mean(results.evidence, subject, q) for subject in kept]
 
 
-def median(results: Results, subject: Subject) -> float:
-    """Return the mean of the medians of the seeds that were run."""
-    run = _run(results, subject)
-    return float(np.mean([np.median(results.measured(each).values) for each in run]))
+def quantile(results: Results, measurement: Measurement, q: float = 0.5) -> float:
+    """Return a quantile over windows; `NotRun` without any."""
+    values = results.measured(measurement).values
+    if not len(values):
+        raise NotRun(f"a window for {measurement.subject}")
+    # As `statistics.clustered` takes it, so that tables and claims agree to the bit.
+    return float(np.quantile(values, q, method="averaged_inverted_cdf"))
+
+
+def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
+    """Return the mean over seeds of their window medians, over the seeds that were measured."""
+    medians: list[float] = []
+    for measurement in by_seed:
+        with suppress(NotRun):
+            medians.append(quantile(results, measurement))
+    if not medians:
+        raise NotRun("a measurement of any seed")
+    return float(np.mean(medians))
 
 
 def _run(results: Results, subject: Subject) -> Subject:

@@ -18,9 +18,7 @@ from faultpath.statistics import (
     weighted_sum,
 )
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.found import Found, Quantity, of_effect
-from faultpath.studies.contrasts import joint
-from faultpath.studies.entries import MIN_SCENES
+from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity, of_effect
 from faultpath.studies.results import Contrast, NotRun, Results
 from faultpath.trials.pairing import Trials
 
@@ -29,11 +27,6 @@ Bools: TypeAlias = NDArray[np.bool_]
 
 TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
-
-
-def seed_zero(cell: Cell) -> Cell:
-    """Return a cell cut to its first seed."""
-    return replace(cell, seeds=(0,))
 
 
 def success(first: Cell, second: Cell, *, other_noise: bool = False) -> Quantity:
@@ -93,7 +86,16 @@ def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
     seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
     if not seeds:
         raise NotRun(f"a seed that {results.named(pairs[0][0])} and all it is compared with share")
-    return joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
+    return _joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
+
+
+def _joint(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
+    """Return contrasts over the scenes that all of them have, so that they resample together."""
+    found = [results.contrast(first, second) for first, second in pairs]
+    kept = set(found[0].pairs.scene_indices)
+    for contrast in found:
+        kept &= set(contrast.pairs.scene_indices)
+    return tuple(results.contrast(*pair, scenes=sorted(kept)) for pair in pairs)
 
 
 def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import spearman, success_rate
-from faultpath.studies.cells import Cell
-from faultpath.studies.claims.differences import seed_zero, together
-from faultpath.studies.claims.found import Found, Quantity, Undecidable, of_effect
-from faultpath.studies.claims.windows import Subject, difference_of_quantiles, median
+from faultpath.studies.cells import Cell, of_seed
+from faultpath.studies.quantities.differences import together
+from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
 from faultpath.studies.results import Results
 
 Bools = NDArray[np.bool_]
@@ -26,7 +26,7 @@ def at_lower_success(
 
     def found(results: Results) -> Found:
         (one, error_one), (two, error_two) = first, second
-        difference = results.contrast(seed_zero(one), seed_zero(two)).success.value
+        difference = results.contrast(of_seed(one), of_seed(two)).success.value
         if difference == 0:
             raise Undecidable("both conditions succeed equally often")
         ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
@@ -39,7 +39,7 @@ def share(cells: Sequence[Cell], of: Callable[[Bools], Bools]) -> Quantity:
     """Return the share of scenes that `of` finds in `[cells, scenes]` successes of seed 0."""
 
     def found(results: Results) -> Found:
-        own = [seed_zero(cell) for cell in cells]
+        own = [of_seed(cell) for cell in cells]
         contrasts = together(results, *((cell, cell) for cell in own))
         success = np.stack([each.pairs.first.success[:, 0] for each in contrasts])
         return replace(of_effect(success_rate(of(success), contrasts[0].resamples)), mde=None)
@@ -62,7 +62,7 @@ def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
 
     def found(results: Results) -> Found:
         rates = [results.rate(cell) for cell, _ in cells]
-        measured = np.array([median(results, subject) for _, subject in cells])
+        measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
         value = spearman(np.array([rate.value for rate in rates]), measured).value
         if value is None:
             raise Undecidable("one side is the same in all cells")

@@ -3,11 +3,12 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import Effect, TestResult
+from faultpath.statistics import Effect, TestResult, fewest_scenes
 from faultpath.statistics.distributions import normal_quantile
-from faultpath.studies.entries import MIN_SCENES
 from faultpath.studies.results import Results
 
+MIN_SCENES = fewest_scenes(1)
+"""With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
 HALF_WIDTH = normal_quantile(0.975)
