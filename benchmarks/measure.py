@@ -12,8 +12,8 @@ from types import TracebackType
 from typing import IO, Any, Literal, Self
 
 from benchmarks.results import ROOT
-from faultpath.execution.crew import KEEP_MEMORY
 from faultpath.quadrotor.native import library
+from faultpath.work.processes import KEEP_MEMORY
 
 ROUNDS = 9
 ROUND_S = 0.25

@@ -12,7 +12,7 @@ import argparse
 import itertools
 import json
 import os
-from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 from statistics import median
 
@@ -23,6 +23,7 @@ from faultpath.faults import parse_fault
 from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.trials import Arm
+from faultpath.work import local, run_all
 
 # name: (variant, options, fault). All are baselines: no wind is reconstructed, nothing is repaired.
 _ANALYTIC = {"predictor": "dki-drag", "clearance": "true"}
@@ -124,8 +125,11 @@ def main() -> None:
         json.dumps([d[k] for k in ("models", "point", "planner", "cell", "scenes")]) for d in done
     }
     jobs = [job for job in jobs if json.dumps(list(job)) not in known]
-    with ProcessPoolExecutor(os.cpu_count()) as pool:
-        for number, result in enumerate(pool.map(fly, jobs), 1):
+    import platform_search  # a worker finds functions of a module, not those of a script
+
+    calls = [partial(platform_search.fly, job) for job in jobs]
+    with local(os.cpu_count() or 1) as executor:
+        for number, (_, result) in enumerate(run_all(executor, calls), 1):
             done.append(result)
             args.out.write_text(json.dumps(done, indent=1) + "\n")
             print(f"{number}/{len(jobs)}", json.dumps(result), flush=True)

@@ -283,7 +283,7 @@ def test_workers_change_nothing(toy_run, tmp_path, monkeypatch):
 
 
 def test_zero_workers_run_in_this_process(tmp_path, monkeypatch):
-    monkeypatch.setattr("faultpath.execution.runner.Crew", None)
+    monkeypatch.setattr("faultpath.work.processes.Processes", None)
     assert audit(workers=0, out=tmp_path / "run").status == 0
 
 

@@ -5,7 +5,6 @@ import json
 from cli_runs import audit, faultpath
 
 from faultpath.cli.records import read_record
-from faultpath.execution.worker import Hello
 from faultpath.quadrotor import native
 from faultpath.quadrotor.scenes.library import write_library
 from faultpath.trials import SystemSpec, load_system
@@ -66,5 +65,4 @@ def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
     write_library("mine.json", seed=5, count=1, name="mine")
     system = load_system(SystemSpec(name="quadrotor"))
     library = system.library("mine.json")
-    hello = Hello(SystemSpec(name="quadrotor"), library.name)
-    assert load_system(hello.system).library(hello.library) == library
+    assert load_system(SystemSpec(name="quadrotor")).library(library.name) == library

@@ -15,11 +15,11 @@ from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, sta
 from faultpath.quadrotor.training.collection import EPISODES
 from faultpath.quadrotor.training.fitting import Moment, fit
 from faultpath.quadrotor.training.job_pools import missing_pools
-from faultpath.quadrotor.training.jobs import Interrupted, Report, run_jobs
+from faultpath.quadrotor.training.jobs import Interrupted, Places, Report, run_jobs
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.quadrotor.training.pace import Overview, Pace
 from faultpath.quadrotor.training.provenance import Provenance
-from faultpath.quadrotor.training.worker import Places
+from faultpath.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent
 
@@ -225,17 +225,17 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
 ) -> None:
     journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
     processes: list[subprocess.Popen[bytes]] = []
-    original = jobs._Process.__init__
+    original = processes_of_work._Process.__init__
 
-    def note(self, order) -> None:
-        original(self, order)
+    def note(self) -> None:
+        original(self)
         processes.append(self._process)
 
     def stop(now: Overview) -> None:
         if journal.exists() and now.running:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(jobs._Process, "__init__", note)
+    monkeypatch.setattr(processes_of_work._Process, "__init__", note)
     places = Places(tmp_path / "data", tmp_path / "out")
     with pytest.raises(Interrupted) as caught:
         run_jobs([Job(entry("slow"), 0)], places, 1, stop, lambda _: None)
@@ -250,8 +250,7 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from fitting_toys import entry
 from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.jobs import run_jobs
-from faultpath.quadrotor.training.worker import Places
+from faultpath.quadrotor.training.jobs import Places, run_jobs
 place = Path(sys.argv[2])
 places = Places(place / "data", place / "out")
 run_jobs([Job(entry("slow"), 0)], places, 1, lambda _: None, print)

@@ -133,8 +133,7 @@ def _collect(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> None:
 
 
 def _fit(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> Report:
-    from faultpath.quadrotor.training.jobs import Interrupted, run_jobs
-    from faultpath.quadrotor.training.worker import Places
+    from faultpath.quadrotor.training.jobs import Interrupted, Places, run_jobs
 
     with _progress(console) as bar:
         board = _Board(bar)

@@ -1,11 +1,9 @@
 """One attempt at running an arm over some scenes, and what can come of it."""
 
 import math
-import sys
 import time
 import traceback
-from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
@@ -18,6 +16,7 @@ from faultpath.taps import TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
+from faultpath.work.threads import one_thread
 
 
 class WrongOutcomes(SystemMistake):
@@ -66,7 +65,7 @@ def attempt(
     """Run an arm over some scenes; an error comes back as a value. `guard` is that of `Taps`."""
     started = time.perf_counter()
     try:
-        with _one_thread():
+        with one_thread():
             outcomes, taps = _run(system, arm, scenes, guard)
     except UserError as error:
         return Wrong(located(error))
@@ -88,25 +87,6 @@ def _said(error: BaseException) -> str:
     if isinstance(error, ValueError) and "read-only" in text:
         text += " (what a tap delivers cannot be written to: copy it first)"
     return text
-
-
-@contextmanager
-def _one_thread() -> Generator[None]:
-    """Keep torch, where a system has loaded it, to one thread, and put back what it had.
-
-    Workers share the processors among themselves, and a sum over several threads may differ in
-    its last bits. The process may be the user's own.
-    """
-    torch = sys.modules.get("torch")
-    if torch is None:
-        yield
-        return
-    before: int = torch.get_num_threads()
-    torch.set_num_threads(1)
-    try:
-        yield
-    finally:
-        torch.set_num_threads(before)
 
 
 def _run(

@@ -4,20 +4,21 @@ import logging
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import faultpath
-from faultpath.code import Code, Watch
+from faultpath.code import Code
 from faultpath.errors import UserError
-from faultpath.execution.attempt import attempt
-from faultpath.execution.changes import kept_trials, unnamed, watched
-from faultpath.execution.crew import Crew
+from faultpath.execution.attempt import Reply
+from faultpath.execution.changes import kept_trials, unnamed
+from faultpath.execution.flying import Flying
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.rechecks import Rechecks
-from faultpath.execution.schedule import Recheck, Schedule, Task
+from faultpath.execution.schedule import Schedule, Task
 from faultpath.execution.units import Unit, plan
-from faultpath.execution.worker import Hello, Ready
+from faultpath.execution.worker import Brief, fly, fly_here
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
@@ -29,8 +30,8 @@ from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
+from faultpath.work import Executor, local
 
-_TICK_S = 0.5
 _log = logging.getLogger("faultpath")
 
 
@@ -90,7 +91,7 @@ def run_study(
     notice: Callable[[str], None] = _log.warning,
     system: System | None = None,
     shared: bool = False,
-    crew: Crew | None = None,
+    executor: Executor | None = None,
     time_limit_s: float | None = None,
     recheck: bool = True,
 ) -> RunResult:
@@ -100,17 +101,16 @@ def run_study(
     each block and about twice a second; `notice` with what a user should read, such as a damaged
     file or another process in the folder. `system` saves building it here when the caller has.
     `shared` lets studies with other arms use the folder one after the other: an arm that one of
-    them ran is there for the next; the folder's tables are those of the last. `crew` keeps the
-    worker processes for the next study; without one they end with this. `time_limit_s` is how long
-    a worker may take over one block (or one scene, when a block failed) before it is stopped, in
-    seconds; by default many times as long as the slowest block so far took. `recheck` flies a
-    few scenes of one block again and tells what differs; see `RunResult.findings`.
+    them ran is there for the next; the folder's tables are those of the last. `executor` flies in
+    place of `workers` processes and keeps its own for the next study. `time_limit_s` is how long a
+    worker may take over one block (or one scene, when a block failed) before it is stopped, in
+    seconds; by default many times as long as the slowest block so far took. `recheck` flies a few
+    scenes of one block again and tells what differs; see `RunResult.findings`.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
     """
-    if workers < 0:
-        raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    hands = local(workers) if executor is None else nullcontext(executor)
     if workers == 0 and time_limit_s is not None:
         raise UserError("a time limit needs worker processes: this one cannot stop itself")
     limit = TimeLimit(time_limit_s)
@@ -135,20 +135,16 @@ def run_study(
             schedule = _keep_finished(ledger, run, notice)
             report(ledger.progress())
             again = Rechecks(units, run)
-            if workers == 0:
-                _run_here(system, code.unread(), schedule, ledger, report)
+            brief = Brief(study.system, study.library, code.state, library.content_hash)
+            with hands as held:
+                there, here = partial(fly, brief), partial(fly_here, system, code.unread())
+                call = here if held.in_process else there
+                flying = Flying(held, call, limit, study.system.name)
+                _run(flying, schedule, ledger, report)
                 if recheck:
-                    _recheck_here(system, again, ledger)
-            elif schedule or (recheck and again.tasks(ledger.outcomes)):
-                hello = Hello(study.system, study.library)
-                expected = Ready(code.state, library.content_hash)
-                with Crew() if crew is None else nullcontext(crew) as hands:
-                    hands.begin(hello, expected, min(workers, max(1, len(schedule))))
-                    _run_with(hands, schedule, ledger, report)
-                    if recheck:
-                        _recheck_with(hands, again, ledger)
-                    if hands.undeclared:
-                        notice(unnamed(sorted(hands.undeclared)))
+                    _recheck(flying, again, ledger)
+            if flying.undeclared:
+                notice(unnamed(sorted(flying.undeclared)))
             table = assemble(study, library, ledger.outcomes)
             deliveries = Deliveries.of(study, ledger.taps, table, again.findings())
             for finding in deliveries.findings:
@@ -195,46 +191,24 @@ def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
     return schedule
 
 
-def _run_here(
-    system: System, unread: Watch, schedule: Schedule, ledger: Ledger, report: ProgressCallback
-) -> None:
-    while task := schedule.take(0):
-        ledger.start(task)
-        reply = watched(unread, attempt(system, task.unit.arm, task.scenes))
+def _run(flying: Flying, schedule: Schedule, ledger: Ledger, report: ProgressCallback) -> None:
+    def take(worker: int) -> Task | None:
+        if task := schedule.take(worker):
+            ledger.start(task)
+        return task
+
+    def settle(task: Task, reply: Reply) -> None:
         schedule.put(ledger.settle(task, reply))
-        report(ledger.progress())
+
+    flying.run(take, settle, lambda: report(ledger.progress()))
 
 
-def _run_with(crew: Crew, schedule: Schedule, ledger: Ledger, report: ProgressCallback) -> None:
-    while ledger.done < len(ledger.units):
-        for worker in crew.idle():
-            if task := schedule.take(worker.number):
-                ledger.start(task)
-                worker.send(task)
-        for task, reply in crew.replies(_TICK_S, ledger.limit):
-            schedule.put(ledger.settle(task, reply))
-        report(ledger.progress())
+def _recheck(flying: Flying, again: Rechecks, ledger: Ledger) -> None:
+    def settle(task: Task, reply: Reply) -> None:
+        again.settle(task, reply, ledger.outcomes)
 
-
-def _recheck_here(system: System, again: Rechecks, ledger: Ledger) -> None:
-    while tasks := again.tasks(ledger.outcomes):
-        for task in tasks:
-            guard = task.recheck is Recheck.GUARDED
-            reply = attempt(system, task.unit.arm, task.scenes, guard)
-            again.settle(task, reply, ledger.outcomes)
-
-
-def _recheck_with(crew: Crew, again: Rechecks, ledger: Ledger) -> None:
-    while waiting := list(again.tasks(ledger.outcomes)):
-        flying = 0
-        while waiting or flying:
-            for worker in crew.idle():
-                if waiting:
-                    worker.send(waiting.pop(0))
-                    flying += 1
-            for task, reply in crew.replies(_TICK_S, ledger.limit):
-                again.settle(task, reply, ledger.outcomes)
-                flying -= 1
+    while tasks := list(again.tasks(ledger.outcomes)):
+        flying.run(lambda _: tasks.pop(0) if tasks else None, settle, lambda: None)
 
 
 def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:

@@ -1,37 +1,32 @@
-"""A worker process: builds the system that it is told, then runs what the parent sends."""
+"""What a worker does for a study: builds the system that it is told, then flies what it is sent."""
 
-import faulthandler
-import os
-import signal
-import threading
-import traceback
-from contextlib import suppress
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
-from pickle import PicklingError
-from typing import Any
+from functools import cache
 
-from faultpath.blame import described, explained
-from faultpath.code import Code, CodeState, Reads, Watch
-from faultpath.execution.attempt import Raised, Wrong, attempt
+from faultpath.blame import explained
+from faultpath.code import Code, CodeState, Reads, Watch, named
+from faultpath.execution.attempt import Reply, Wrong, attempt
 from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
 from faultpath.trials.system import System
+from faultpath.work import WorkerLost, tell
 
 
 @dataclass(frozen=True)
-class Hello:
-    """What to build: a system, and the library whose scenes it will run."""
+class Brief:
+    """What to build: a system, the library whose scenes it flies, and what both have to be."""
 
     system: SystemSpec
     library: str
+    state: CodeState
+    library_hash: str
 
 
 @dataclass(frozen=True)
 class Order:
-    """An arm over some scenes."""
+    """An arm over some scenes. `guard` is that of `Taps`."""
 
     arm: Arm
     scenes: tuple[str, ...]
@@ -39,11 +34,8 @@ class Order:
 
 
 @dataclass(frozen=True)
-class Ready:
-    """The system is built: the state of its code, and the hash of its library."""
-
-    state: CodeState
-    library_hash: str
+class Started:
+    """The system is built, and the task begins."""
 
 
 @dataclass(frozen=True)
@@ -55,65 +47,68 @@ class Undeclared:
 
 @dataclass(frozen=True)
 class _Built:
+    brief: Brief
     system: System
     code: Code
     unread: Watch
 
 
-def main(channel: int, lifeline: int) -> None:
-    """Serve the parent over the socket `channel` until it is closed.
+_built: list[_Built] = []
+"""What this worker process has built last."""
 
-    Nothing is ever written to the pipe `lifeline`. It ends when the parent is gone, however it
-    went, and this process then ends as well, in the middle of its work.
+
+def fly(brief: Brief, order: Order) -> Reply:
+    """Fly in a process of its own, which keeps what it has built for the next order.
+
+    It tells `Started`, and `Undeclared` files. Raises what makes the audit itself wrong, and where
+    the system cannot be built or is another one here.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    faulthandler.enable()
-    threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
-    with Connection(channel) as parent, suppress(EOFError, ConnectionError):
-        _serve(parent)
+    if not _built or _built[0].brief != brief:
+        _built.clear()
+        try:
+            _built.append(_build(brief))
+        except (Exception, SystemExit) as error:
+            if mistake := explained(error):
+                raise mistake from error
+            raise
+    built = _built[0]
+    tell(Started())
+    reply = fly_here(built.system, built.unread, order)
+    if undeclared := _reads().undeclared(built.code):
+        tell(Undeclared(undeclared))
+    return reply
 
 
-def _serve(parent: "Connection[Any, Any]") -> None:
-    built: _Built | None = None
+def fly_here(system: System, unread: Watch, order: Order) -> Reply:
+    """Fly with a system that is built; raises what makes the audit itself wrong."""
+    reply = watched(unread, attempt(system, order.arm, order.scenes, order.guard))
+    if isinstance(reply, Wrong):
+        raise reply.error
+    return reply
+
+
+def _build(brief: Brief) -> _Built:
+    reads = _reads()
+    before = source_state(brief.system)
+    reads.forget()
+    system = load_system(brief.system)
+    opened = reads.opened()
+    library = system.library(brief.library)
+    code = system_code(system, brief.system)
+    reads.forget(opened)  # scenes have a hash of their own
+    check_same(before, code.state)
+    if (code.state, library.content_hash) != (brief.state, brief.library_hash):
+        check_same(brief.state, code.state)
+        differ = brief.state.changed(code.state) or ("the library",)
+        raise WorkerLost(
+            f"system {brief.system.name!r} is another one in a worker process than here "
+            f"({named(differ)}): nothing of it may depend on the process that builds it"
+        )
+    return _Built(brief, system, code, code.unread())
+
+
+@cache
+def _reads() -> Reads:
     reads = Reads()
     reads.start()
-    while True:
-        message: Hello | Order = parent.recv()
-        if isinstance(message, Hello):
-            built, reply = _build(message, reads)
-        else:
-            assert built is not None  # whoever built none has said so and is sent nothing
-            reply = watched(
-                built.unread, attempt(built.system, message.arm, message.scenes, message.guard)
-            )
-            if undeclared := reads.undeclared(built.code):
-                parent.send(Undeclared(undeclared))
-        if isinstance(reply, Wrong):  # its traceback cannot be sent otherwise
-            reply.error.add_note("".join(traceback.format_exception(reply.error)))
-        try:
-            parent.send(reply)
-        except (PicklingError, TypeError, AttributeError) as error:
-            parent.send(Raised(f"{type(error).__name__}: {error}", traceback.format_exc()))
-
-
-def _build(hello: Hello, reads: Reads) -> tuple[_Built | None, Ready | Wrong | Raised]:
-    try:
-        before = source_state(hello.system)
-        reads.forget()
-        system = load_system(hello.system)
-        built = reads.opened()
-        library = system.library(hello.library)
-        code = system_code(system, hello.system)
-        reads.forget(built)  # scenes have a hash of their own
-        check_same(before, code.state)
-        return _Built(system, code, code.unread()), Ready(code.state, library.content_hash)
-    except (Exception, SystemExit) as error:
-        if mistake := explained(error):
-            return None, Wrong(mistake)
-        return None, Raised(described(error), traceback.format_exc())
-
-
-def _end_with(lifeline: int) -> None:
-    os.read(lifeline, 1)
-    os._exit(1)
+    return reads

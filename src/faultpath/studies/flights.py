@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from faultpath.execution import Crew, Progress, RunResult, run_study
+from faultpath.execution import Progress, RunResult, run_study
 from faultpath.faults import parse_fault
 from faultpath.studies.cells import Cell, Profile, Setting
 from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
+from faultpath.work import local
 
 SYSTEM = "quadrotor"
 FLIGHTS = "flights"
@@ -106,7 +107,7 @@ def fly(
     """
     clock = _Clock(sum(leg.trials for leg in legs), progress)
     results: list[RunResult] = []
-    with Crew() as crew:
+    with local(workers) as executor:
         for leg in legs:
             clock.begin(leg.title)
             place, system = folder / FLIGHTS / leg.folder, leg.system
@@ -119,7 +120,7 @@ def fly(
                     notice,
                     system,
                     shared=True,
-                    crew=crew,
+                    executor=executor,
                     time_limit_s=time_limit_s,
                     recheck=False,
                 )

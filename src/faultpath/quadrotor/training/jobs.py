@@ -1,44 +1,40 @@
 """Fit many models on several worker processes, each with one thread.
 
-Models are independent, so that the weights do not depend on the number of workers. A process fits
-one model and ends; what it finished of it, epoch by epoch, is in the folder.
+Models are independent, so that the weights do not depend on the number of workers. What is finished
+of one, epoch by epoch, is in the folder.
 """
 
-import multiprocessing.connection as connections
-import os
-import signal
-import socket
-import subprocess
-import sys
+import time
+import traceback
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 from faultpath.errors import UserError
+from faultpath.quadrotor import native
 from faultpath.quadrotor.card import ModelCard, read_card
 from faultpath.quadrotor.checkpoint import ship
 from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.fitting import Moment, forget
+from faultpath.quadrotor.training.fitting import Moment, fit, forget
 from faultpath.quadrotor.training.job_pools import check_pools
 from faultpath.quadrotor.training.pace import Overview, Pace
 from faultpath.quadrotor.training.scalars import require_tensorboard
-from faultpath.quadrotor.training.worker import (
-    Failed,
-    Finished,
-    Message,
-    Order,
-    Places,
-    Told,
-    attempt,
-)
 from faultpath.store.atomic import sweep
 from faultpath.store.lock import locked
+from faultpath.work import End, Executor, Lost, Returned, local, tell
 
 _TICK_S = 0.5
-_ONE_THREAD = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
-_BOOT = "import sys; from faultpath.quadrotor.training.worker import main; main(int(sys.argv[1]))"
+_TELL_EVERY_S = 0.2
+
+
+@dataclass(frozen=True)
+class Places:
+    """Folders that a fit reads and writes."""
+
+    data: Path
+    out: Path
+    tensorboard: Path | None = None
 
 
 class Interrupted(Exception):
@@ -78,15 +74,14 @@ def run_jobs(
 ) -> Report:
     """Fit models, the longest first, from wherever an earlier call left them.
 
-    `workers` is the number of processes; 0 fits in this one. `progress` is called about twice a
-    second, `notice` with sentences for the user. `shipped` copies each finished model into the
+    `workers` is the number of processes; 0 fits in this one. `progress` is called a few times
+    a second, `notice` with sentences for the user. `shipped` copies each finished model into the
     package; `force` removes what the folder holds of the models first.
 
     A model that fails does not stop the others. Raises `Interrupted` on Ctrl-C and `UserError`
     when nothing can be fitted at all.
     """
-    if workers < 0:
-        raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    executor = local(workers)
     check_pools(jobs, places.data)
     if places.tensorboard is not None:
         require_tensorboard()
@@ -102,10 +97,8 @@ def run_jobs(
             sweep(places.out)
             for job in jobs if force else ():
                 forget(job.entry.name, job.seed, places.out)
-            if workers == 0:
-                _run_here(ledger)
-            else:
-                _run_with(ledger, workers)
+            with executor:
+                _run(ledger, executor)
     except KeyboardInterrupt:
         raise Interrupted(len(ledger.cards), len(jobs)) from None
     return ledger.report()
@@ -125,7 +118,7 @@ class _Ledger:
     ) -> None:
         self._jobs = tuple(jobs)
         self._waiting = sorted(jobs, key=lambda job: -job.entry.cost)
-        self._places = places
+        self.places = places
         self._progress = progress
         self._notice = notice
         self._shipped = shipped
@@ -133,42 +126,40 @@ class _Ledger:
         self._pace = Pace(jobs, workers)
         self.cards: dict[str, ModelCard] = {}
 
-    @property
-    def settled(self) -> bool:
-        """Whether every job has ended."""
-        return len(self.cards) + len(self._failures) == len(self._jobs)
-
-    def take(self) -> Order | None:
+    def take(self) -> Job | None:
         """Return the longest job that waits, or None when none is left."""
         if not self._waiting:
             return None
         job = self._waiting.pop(0)
         self._pace.start(job)
-        return Order(job, self._places)
+        return job
 
-    def tell(self, job: Job, message: Message) -> None:
-        """Take in what a fit says."""
-        if isinstance(message, Moment):
-            self._pace.advance(job, message)
-        elif isinstance(message, Told):
-            self._notice(message.text)
+    def tell(self, job: Job, message: Moment | str) -> None:
+        """Take in what a fit says: how far it is, or a sentence for the user."""
+        if isinstance(message, str):
+            self._notice(message)
         else:
-            self.settle(job, message)
+            self._pace.advance(job, message)
+        self.show()
 
-    def settle(self, job: Job, message: Finished | Failed) -> None:
+    def settle(self, job: Job, end: End) -> None:
         """Note how a job ended."""
         self._pace.end(job)
-        details = self._places.out / f"{job.stem}.error.txt"
-        if isinstance(message, Finished):
+        details = self.places.out / f"{job.stem}.error.txt"
+        if isinstance(end, Returned):
             details.unlink(missing_ok=True)
-            self.cards[job.stem] = read_card(message.path)
+            self.cards[job.stem] = read_card(end.value)
             if self._shipped:
-                ship(message.path)
-            return
-        if message.details:
-            details.write_text(message.details, encoding="utf-8")
-        where = details if message.details else None
-        self._failures[job.stem] = Failure(job, message.error, where)
+                ship(end.value)
+        elif isinstance(end, Lost):
+            self._failures[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
+        elif isinstance(end.error, UserError):
+            self._failures[job.stem] = Failure(job, str(end.error))
+        else:
+            said = f"{type(end.error).__name__}: {end.error}"
+            details.write_text("".join(traceback.format_exception(end.error)), encoding="utf-8")
+            self._failures[job.stem] = Failure(job, said, details)
+        self.show()
 
     def show(self) -> None:
         """Say how far everything is."""
@@ -183,75 +174,30 @@ class _Ledger:
         )
 
 
-def _run_here(ledger: _Ledger) -> None:
-    while order := ledger.take():
-
-        def tell(message: Message, job: Job = order.job) -> None:
-            ledger.tell(job, message)
-            ledger.show()
-
-        tell(attempt(order, tell))
-
-
-def _run_with(ledger: _Ledger, workers: int) -> None:
-    running: list[_Process] = []
-    try:
-        while not ledger.settled:
-            while len(running) < workers and (order := ledger.take()):
-                running.append(_Process(order))
-            ready = connections.wait([each.channel for each in running], _TICK_S)
-            for process in [each for each in running if each.channel in ready]:
-                message = process.receive()
-                ledger.tell(process.job, message)
-                if isinstance(message, Finished | Failed):
-                    running.remove(process)
-                    process.stop()
-            ledger.show()
-    finally:
-        for process in running:
-            process.stop()
+def _run(ledger: _Ledger, executor: Executor) -> None:
+    running: dict[int, Job] = {}
+    while True:
+        for worker in executor.free():
+            if job := ledger.take():
+                running[worker] = job
+                call = partial(fit_job, job, ledger.places)
+                executor.submit(worker, call, partial(ledger.tell, job))
+        if not running:
+            return
+        for worker, end in executor.completions(_TICK_S):
+            ledger.settle(running.pop(worker), end)
+        ledger.show()
 
 
-class _Process:
-    """A worker process and the job that it is at.
+@native.using(native.PORTABLE)
+def fit_job(job: Job, places: Places) -> Path:
+    """Fit a model and return its file; a few times a second it tells how far it is."""
+    told = 0.0
 
-    Started by command rather than by `multiprocessing`: the environment limits numpy and torch to
-    one thread before either is imported, and the user's script is not imported again.
-    """
+    def advance(moment: Moment) -> None:
+        nonlocal told
+        if time.monotonic() - told > _TELL_EVERY_S:
+            told = time.monotonic()
+            tell(moment)
 
-    def __init__(self, order: Order) -> None:
-        self.job = order.job
-        ours, theirs = socket.socketpair()
-        path = os.pathsep.join(entry for entry in sys.path if entry)
-        environment = {**os.environ, **dict.fromkeys(_ONE_THREAD, "1"), "PYTHONPATH": path}
-        # A blocked signal stays blocked in the child until it says how it takes it.
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        try:
-            self._process = subprocess.Popen(
-                [sys.executable, "-P", "-c", _BOOT, str(theirs.fileno())],
-                pass_fds=(theirs.fileno(),),
-                env=environment,
-                stdin=subprocess.DEVNULL,
-                stdout=sys.__stderr__,  # our standard output belongs to the command
-            )
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-            theirs.close()
-        self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
-        with suppress(OSError):  # a process that died already shows when we read
-            self.channel.send(order)
-
-    def receive(self) -> Message:
-        """Return the next message, or that the process ended without one."""
-        try:
-            return self.channel.recv()
-        except (EOFError, OSError):
-            status = self._process.wait()
-            hint = ", often for want of memory" if status == -signal.SIGKILL else ""
-            return Failed(f"its process ended with status {status}{hint}; its epochs are kept")
-
-    def stop(self) -> None:
-        """End the process now; harmless when it has ended."""
-        self._process.kill()
-        self._process.wait()
-        self.channel.close()
+    return fit(job.task(places.data), places.out, advance, places.tensorboard, tell)

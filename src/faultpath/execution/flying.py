@@ -1,0 +1,105 @@
+"""The tasks of a study on the workers of an executor."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from faultpath.execution.attempt import Died, Reply, Wrong
+from faultpath.execution.limits import TimeLimit
+from faultpath.execution.schedule import Recheck, Task
+from faultpath.execution.worker import Order, Started, Undeclared
+from faultpath.patience import too_late
+from faultpath.work import End, Executor, Failed, Lost, WorkerLost
+
+_TICK_S = 0.5
+_FALSE_STARTS = 4
+"""So many workers in a row may die before they have built the system."""
+
+
+@dataclass
+class _Running:
+    task: Task
+    since: float
+    started: bool = False
+    """Whether the system was built; its building has a limit of its own."""
+
+
+class Flying:
+    """Hands tasks out, watches their time, and makes a reply of what comes back.
+
+    `fly` flies an order; `name` is that of the system.
+    """
+
+    def __init__(
+        self, executor: Executor, fly: Callable[[Order], Reply], limit: TimeLimit, name: str
+    ) -> None:
+        self._executor, self._fly, self._limit, self._name = executor, fly, limit, name
+        self._running: dict[int, _Running] = {}
+        self._false_starts = 0
+        self.undeclared: set[str] = set()
+        """Files that the system has read and does not name among its data files."""
+
+    def run(
+        self,
+        take: Callable[[int], Task | None],
+        settle: Callable[[Task, Reply], None],
+        report: Callable[[], None],
+    ) -> None:
+        """Run what `take` returns for a worker, until it returns nothing and all is settled."""
+        while True:
+            for worker in self._executor.free():
+                if task := take(worker):
+                    self._submit(worker, task)
+            if not self._running:
+                return
+            for worker, end in self._executor.completions(_TICK_S):
+                running = self._running.pop(worker)
+                if isinstance(end, Lost) and not running.started:
+                    self._start_again(worker, running.task, end)
+                else:
+                    settle(running.task, _reply(end))
+            for task, reply in self._stop_late():
+                settle(task, reply)
+            report()
+
+    def _submit(self, worker: int, task: Task) -> None:
+        running = self._running[worker] = _Running(task, time.monotonic())
+
+        def told(message: Started | Undeclared) -> None:
+            if isinstance(message, Undeclared):
+                self.undeclared.update(message.paths)
+            else:
+                running.started, running.since = True, time.monotonic()
+                self._false_starts = 0
+
+        order = Order(task.unit.arm, task.scenes, task.recheck is Recheck.GUARDED)
+        self._executor.submit(worker, partial(self._fly, order), told)
+
+    def _start_again(self, worker: int, task: Task, end: Lost) -> None:
+        self._false_starts += 1
+        if self._false_starts > _FALSE_STARTS:
+            raise WorkerLost(f"worker processes do not come up: {end.how}")
+        self._submit(worker, task)
+
+    def _stop_late(self) -> list[tuple[Task, Died]]:
+        late: list[tuple[Task, Died]] = []
+        now = time.monotonic()
+        for worker, running in tuple(self._running.items()):
+            building, task = not running.started, running.task
+            allowed = self._limit.building_s if building else self._limit.seconds(len(task.scenes))
+            if now - running.since <= allowed:
+                continue
+            if building:
+                raise too_late(self._name, allowed, " in a worker process")
+            self._executor.cancel(worker)
+            del self._running[worker]
+            how = f"it was stopped at the time limit of {allowed:g} s"
+            late.append((task, Died(how, late=True)))
+        return late
+
+
+def _reply(end: End) -> Reply:
+    if isinstance(end, Failed):
+        return Wrong(end.error)
+    return Died(end.how) if isinstance(end, Lost) else end.value
