@@ -1,6 +1,6 @@
 """Our sides of the plant's and the camera's comparisons."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
@@ -9,7 +9,7 @@ from benchmarks.side import Side
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.perception.camera import mounted
-from faultpath.quadrotor.plant import PlantState, TorchPlant
+from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
@@ -32,12 +32,14 @@ class FullPlant(Side):
     Rate loop, mixer, motors, drag and wind; lanes are padded as in a flight, padding not counted.
     """
 
-    def __init__(self, count: int = VEHICLES) -> None:
+    def __init__(
+        self, count: int = VEHICLES, build: Callable[[Vehicle], Plant] = TorchPlant
+    ) -> None:
         torch.set_num_threads(1)
         self.amount = count * STEPS_PER_CONTROL
         lanes = padded_lanes(count)
         vehicle = Vehicle.stack(vehicles(count)).take(lanes)
-        self._plant = TorchPlant(vehicle)
+        self._plant = build(vehicle)
         still = torch.zeros(3, len(lanes), dtype=torch.float64)
         self._state = self._plant.start(State.hover(still, still[0]))
         self._command = vehicle.hover_command()

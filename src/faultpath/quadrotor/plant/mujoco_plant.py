@@ -70,7 +70,7 @@ def _numbers(values: ArrayLike) -> str:
     return " ".join(repr(float(x)) for x in np.atleast_1d(values))
 
 
-def _model(vehicle: VehicleParameters) -> mujoco.MjModel:
+def build_model(vehicle: VehicleParameters) -> mujoco.MjModel:
     """Return the MuJoCo model of one vehicle; actuators: four motors, then drag x, y, z."""
     scale = np.array([vehicle.thrust_scale] * 3 + [vehicle.torque_scale] * 3)
     motors = "".join(
@@ -109,7 +109,9 @@ class MujocoPlant(Plant):
     def __init__(self, vehicle: Vehicle) -> None:
         super().__init__(vehicle)
         parameters = _parameters(vehicle)
-        models = {each: _model(each) for each in set(parameters)}  # padded lanes repeat a vehicle
+        models = {
+            each: build_model(each) for each in set(parameters)
+        }  # padded lanes repeat a vehicle
         self._models = [models[each] for each in parameters]
         self._scratch = [mujoco.MjData(self._models[0])]
         self._pool = rollout.Rollout(nthread=0)
