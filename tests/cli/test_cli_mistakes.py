@@ -76,6 +76,8 @@ QUADROTOR_MISTAKES = {
     "predictor": ({"predictor": "oracle"}, ["'oracle'", "dki, dki-drag, true-parameter"]),
     "clearance": ({"clearance": "radar"}, ["'radar'", "depth, true"]),
     "planner": ({"planner": "rrt"}, ["'rrt'", "terminal, running"]),
+    "plant": ({"plant": "gazebo"}, ["'gazebo'", "torch, mujoco"]),
+    "plant on a GPU": ({"plant": "mujoco", "device": "cuda"}, ["CPU only", "leave --device out"]),
     "device": ({"device": "tpu"}, ["'tpu'", "cpu, cuda"]),
     "device that is not there": ({"device": "cuda"}, ["needs a GPU", "leave --device out"]),
     "option": ({"set": "colour=red"}, ["'colour'", "wind, environment, clearance, predictor"]),

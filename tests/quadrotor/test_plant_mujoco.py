@@ -1,12 +1,17 @@
 """The plant on MuJoCo: the reference plant's trajectories, and the laws that every plant keeps."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 import torch
+from flights import STEPS, quadrotor
+from flights import bits as outcome_bits
+from flights import fly as fly_trials
 from torch import Tensor
 
+from faultpath.errors import UserError
 from faultpath.quadrotor import so3, wind
 from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
@@ -19,6 +24,7 @@ from faultpath.quadrotor.vehicle import (
 )
 from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.quadrotor.world import World
+from faultpath.trials import SystemSpec, load_system
 
 pytest.importorskip("mujoco")
 from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
@@ -168,3 +174,30 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
         assert (getattr(ours, name) - getattr(theirs, name)).abs().max() < 1e-3
     assert worlds[0].wind_hashes == worlds[1].wind_hashes
     assert set(worlds[0].initial_hashes).isdisjoint(worlds[1].initial_hashes)
+
+
+def test_an_audit_s_trials_are_their_own_and_of_their_plant(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    scenes = [scene.id for scene in SCENES[:4]]
+    system, other = (quadrotor(wind="L3", plant=plant) for plant in ("mujoco", "torch"))
+    whole, alone, torch_s = (
+        fly_trials(each, "dob", chosen, seed=3)[0]
+        for each, chosen in ((system, scenes), (system, scenes[2:3]), (other, scenes))
+    )
+    assert outcome_bits(alone[0]) == outcome_bits(whole[2])
+    for ours, theirs in zip(whole, torch_s, strict=True):
+        assert ours.initial_hash != theirs.initial_hash
+        assert ours.disturbance_hash == theirs.disturbance_hash
+        assert ours.terminal_distance_m == pytest.approx(theirs.terminal_distance_m, abs=1e-3)
+    assert system.fingerprint() != other.fingerprint()
+    assert system.backend.endswith("MuJoCo")
+
+
+def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    monkeypatch.delitem(sys.modules, "faultpath.quadrotor.plant.mujoco_plant")
+    with pytest.raises(UserError, match=r"pip install 'faultpath\[mujoco\]'"):
+        load_system(SystemSpec(name="quadrotor", options={"plant": "mujoco"}))
+    assert load_system(SystemSpec(name="quadrotor", options={"plant": "torch"}))

@@ -48,6 +48,13 @@ class SamplerName(StrEnum):
     MODE_PRESERVING = "mode-preserving"
 
 
+class PlantName(StrEnum):
+    """What integrates the vehicle's motion; the vehicle is the same."""
+
+    TORCH = "torch"
+    MUJOCO = "mujoco"
+
+
 class DeviceName(StrEnum):
     """Where worlds and planners are computed."""
 
@@ -93,4 +100,5 @@ class QuadrotorChoices(BaseModel):
     candidates: Annotated[
         int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
     ] = 512
+    plant: Annotated[PlantName, "What integrates the vehicle's motion."] = PlantName.TORCH
     device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU

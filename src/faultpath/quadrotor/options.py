@@ -5,10 +5,13 @@ from typing import Self
 import torch
 from pydantic import BaseModel, ConfigDict
 
+from faultpath.errors import UserError
 from faultpath.quadrotor.choices import (
     ClearanceName,
+    DeviceName,
     Environment,
     PlannerName,
+    PlantName,
     QuadrotorChoices,
     SamplerName,
 )
@@ -29,6 +32,7 @@ from faultpath.quadrotor.planner import (
     TerminalGoal,
     WithinBundle,
 )
+from faultpath.quadrotor.plant import Plant, TorchPlant
 from faultpath.trials.options import call
 
 
@@ -53,16 +57,26 @@ class QuadrotorOptions(QuadrotorChoices):
 
     @classmethod
     def of(cls, choices: QuadrotorChoices) -> Self:
-        """Return the options behind some choices; `UserError` where there is no such device.
+        """Return the options behind some choices.
 
         Trials in free space have ground-truth clearance, those among obstacles the depth model,
         unless `clearance` says otherwise (paper, Section IV-A).
+
+        Raises:
+            UserError: There is no such device, or the plant does not fly on it.
+            ModuleNotFoundError: The plant needs a package that is not installed.
         """
         given = choices.model_dump(include=choices.model_fields_set)
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
+        if choices.plant is not PlantName.TORCH and choices.device is not DeviceName.CPU:
+            raise UserError(
+                f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
+            )
         require(choices.device)
-        return cls.model_validate(given)
+        options = cls.model_validate(given)
+        _ = options.plant_class  # what is missing is missed before anything flies
+        return options
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -78,6 +92,15 @@ class QuadrotorOptions(QuadrotorChoices):
     def place(self) -> torch.device:
         """Where tensors are made."""
         return device_of(self.device)
+
+    @property
+    def plant_class(self) -> type[Plant]:
+        """What flies the vehicles; `ModuleNotFoundError` where its package is not installed."""
+        if self.plant is PlantName.MUJOCO:
+            from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
+
+            return MujocoPlant
+        return TorchPlant
 
     def build_planner(self) -> Planner:
         """Return the planner that the options name."""

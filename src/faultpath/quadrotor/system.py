@@ -14,7 +14,7 @@ from faultpath.interface import Interface
 from faultpath.loop import Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.checkpoint import shipped_folder
-from faultpath.quadrotor.choices import ClearanceName, DeviceName
+from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
 from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
@@ -86,8 +86,12 @@ class Quadrotor(LoopSystem):
     @property
     def backend(self) -> str:
         """See `System.backend`."""
-        device = self.options.device
-        return native.describe() if device is DeviceName.CPU else describe(device)
+        options = self.options
+        computes = (
+            native.describe() if options.device is DeviceName.CPU else describe(options.device)
+        )
+        flies = {PlantName.TORCH: "", PlantName.MUJOCO: ", the plant on MuJoCo"}[options.plant]
+        return computes + flies
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`: the kernels' arithmetic on this machine, and the options."""
@@ -109,7 +113,7 @@ class Quadrotor(LoopSystem):
         options, free, place = self.options, self.options.free_space, self.options.place
 
         def world(scenes: Sequence[str]) -> World:
-            return World(self._records(scenes), options.wind, free, place)
+            return World(self._records(scenes), options.wind, free, place, options.plant_class)
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)
