@@ -13,10 +13,10 @@ from benchmarks.results import RESULTS, Results, load, save
 
 def measure(only: list[str]) -> None:
     """Take comparisons one after the other; results are saved after each."""
-    from benchmarks import commands, loop, machine, parts, planning, scaling
+    from benchmarks import ablation, commands, loop, machine, parts, planning, scaling
     from benchmarks.comparison import unmeasured
 
-    modules = (planning, loop, parts, scaling, commands)
+    modules = (planning, loop, ablation, parts, scaling, commands)
     known = {each.name: each for module in modules for each in module.COMPARISONS}
     unknown = [name for name in only if name not in known]
     if unknown:
@@ -33,7 +33,7 @@ def measure(only: list[str]) -> None:
         except Exception as error:  # one that fails must not lose the others
             reason = f"{type(error).__name__}: {error}"
             records, curves = [unmeasured(name, name, reason)], ()
-        results = results.replaced(here, name, records, curves)
+        results = results.replaced(here, name, records, curves, apart=bool(only))
         save(results)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
         for record in records:

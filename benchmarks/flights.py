@@ -48,13 +48,13 @@ WHOLE = "whole"
 class ClosedLoop(Side):
     """Twenty control steps of a block; the unit is one running scene's step."""
 
-    def __init__(self, clearance: str = "true") -> None:
+    def __init__(self, clearance: str = "true", scenes: int = SCENES) -> None:
         torch.set_num_threads(1)
         options = {"wind": "L3", "predictor": "wm-a-wind", "clearance": clearance}
         system = load_system(SystemSpec(name="quadrotor", options=options))
         assert isinstance(system, Quadrotor)
         self._system = system
-        self._scenes = [scene.id for scene in system.library("selection").scenes[:SCENES]]
+        self._scenes = [scene.id for scene in system.library("selection").scenes[:scenes]]
         self._steps: Iterator[Instant] = iter(())
         self.amount = 0
 
@@ -82,13 +82,16 @@ class ClosedLoop(Side):
         replans = 0
         for _ in range(STEPS):
             world: World = next(self._steps).state.world
-            replans += int(world.progress.running[:SCENES].sum())
+            replans += int(world.progress.running[: len(self._scenes)].sum())
         self.amount = replans
 
     def answer(self) -> Sequence[float]:
         """Return the time of each of `PARTS` and of the whole, s a running scene's step."""
-        repeats = 3
-        spent = dict.fromkeys((*PARTS, WHOLE), 0.0)
+        return list(self.spent(repeats=3).values())
+
+    def spent(self, repeats: int) -> dict[str, float]:
+        """Return the time of each of `PARTS` and of the `WHOLE`, s a running scene's step."""
+        spent, replans = dict.fromkeys((*PARTS, WHOLE), 0.0), 0.0
         for _ in range(repeats):
             self.prepare()
             with ExitStack() as stack:
@@ -98,7 +101,8 @@ class ClosedLoop(Side):
                 start = time.process_time()
                 self.work()
                 spent[WHOLE] += time.process_time() - start
-        return [seconds / (repeats * self.amount) for seconds in spent.values()]
+            replans += self.amount
+        return {part: seconds / replans for part, seconds in spent.items()}
 
 
 @contextmanager

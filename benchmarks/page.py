@@ -36,6 +36,9 @@ def text(results: Results) -> str:
         records = [r for r in results.records if r.comparison in section.comparisons]
         parts += [f"## {section.title}", section.words, _table(records)]
         parts += _notes(records)
+        for name in section.comparisons:
+            if name in results.apart:
+                parts += _machine(results.apart[name])
         if section.picture:
             parts.append(section.picture)
     return "\n\n".join(parts) + "\n"

@@ -1,7 +1,7 @@
 """What was measured, as `results.json` keeps it; the page is made from nothing else."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
@@ -88,14 +88,29 @@ class Results(_Frozen):
     machine: Machine
     records: tuple[Record, ...]
     curves: tuple[Curve, ...]
+    apart: Mapping[str, Machine] = {}
+    """What a comparison was measured on that was taken by itself, by its name."""
 
     def replaced(
-        self, machine: Machine, comparison: str, records: Sequence[Record], curves: Sequence[Curve]
+        self,
+        machine: Machine,
+        comparison: str,
+        records: Sequence[Record],
+        curves: Sequence[Curve],
+        apart: bool,
     ) -> "Results":
-        """Return these results with those of one comparison measured again."""
+        """Return these results with one comparison measured again, with all others or `apart`."""
         kept = [record for record in self.records if record.comparison != comparison]
         lines = [curve for curve in self.curves if curve.comparison != comparison]
-        return Results(machine=machine, records=(*kept, *records), curves=(*lines, *curves))
+        alone = {name: each for name, each in self.apart.items() if name != comparison}
+        if apart:
+            alone[comparison] = machine
+        return Results(
+            machine=self.machine if apart else machine,
+            records=(*kept, *records),
+            curves=(*lines, *curves),
+            apart=alone,
+        )
 
 
 def load(path: Path = RESULTS) -> Results:

@@ -75,6 +75,16 @@ many scenes alone. Below each, what the time goes into. The clock of a part incl
 calls; "taps and everything else" is the rest.""",
     ),
     Section(
+        "What each kernel buys",
+        ("kernels",),
+        """\
+The flights of the closed loop above, with all compiled kernels and with the portable form of one
+of them, in turn in one process: by how much the processor time of the flights grows without it,
+from the parts of a step that it changes. An audit is such flights and little else. Blocks of 5
+scenes, as an audit of few scenes has them, spread what a call costs over fewer scenes. What follows
+for kernels below 2 % stands in `docs/design/kernels.md`.""",
+    ),
+    Section(
         "One vehicle",
         ("latency",),
         """\

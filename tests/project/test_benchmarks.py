@@ -43,10 +43,23 @@ def test_every_record_has_its_numbers_or_says_why_not(benchmarks):
 
 def test_the_documents_fields_are_those_that_readers_expect():
     content = json.loads((ROOT / "benchmarks" / "results.json").read_text())
-    assert set(content) == {"machine", "records", "curves"}
+    assert set(content) == {"machine", "records", "curves", "apart"}
     expected = {"name", "ours", "peer", "ratio", "unit", "target", "met", "low", "high", "note"}
     assert all(expected <= set(record) for record in content["records"])
-    assert {"processor", "cores", "memory_gib", "commit"} <= set(content["machine"])
+    for machine in (content["machine"], *content["apart"].values()):
+        assert {"processor", "cores", "memory_gib", "commit"} <= set(machine)
+
+
+def test_a_comparison_taken_by_itself_names_its_own_machine(benchmarks):
+    results = benchmarks.results.load()
+    here = results.machine.model_copy(update={"commit": "f" * 40})
+    kept = [record for record in results.records if record.comparison == "plant"]
+    alone = results.replaced(here, "plant", kept, (), apart=True)
+    assert alone.machine == results.machine
+    assert "ffffffffffff" in benchmarks.page.text(alone)
+    together = alone.replaced(here, "plant", kept, (), apart=False)
+    assert together.machine == here
+    assert "plant" not in together.apart
 
 
 def test_a_ratio_is_formed_within_each_round(benchmarks):
