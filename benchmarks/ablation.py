@@ -9,7 +9,8 @@ from benchmarks.comparison import Comparison, Outcome, absolute, unmeasured
 from benchmarks.flights import SCENES, WHOLE, ClosedLoop
 from benchmarks.measure import NotMeasured, Running, Work
 from benchmarks.results import Record
-from faultpath.quadrotor import native, options, system
+from faultpath.quadrotor import native, system
+from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.perception import DepthRenderer, seen
 from faultpath.quadrotor.planner import (
     AutoregressiveSampler,
@@ -23,13 +24,13 @@ from faultpath.quadrotor.predictors.network import GatedCell
 from faultpath.quadrotor.scenes.field import DistanceField
 
 KERNELS: Mapping[str, tuple[Any, str, tuple[str, ...]]] = {
-    "rollout": (options, "rolling", ("candidates and rollout",)),
+    "rollout": (prediction, "rolling", ("rollout",)),
     "clearance queries": (seen, "_queries", ("clearance queries",)),
     "depth encoder": (seen, "_encoder", ("encoding",)),
     "depth renderer": (DepthRenderer, "__init__", ("rendering",)),
     "distance field": (DistanceField, "query", ("clearance queries",)),
     "noise": (AutoregressiveSampler, "noise", ("noise",)),
-    "candidates": (Sampler, "candidates", ("candidates and rollout",)),
+    "candidates": (Sampler, "candidates", ("candidates",)),
     "costs": (NavigationCost, "__call__", ("costs and update",)),
     "weights": (ScaledTemperature, "weights", ("costs and update",)),
     "weighted mean": (mppi, "weighted_mean", ("costs and update",)),

@@ -29,11 +29,8 @@ PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
     "rendering": ((DepthRenderer, "render"),),
     "encoding": ((Perception, "step"),),
     "noise": ((AutoregressiveSampler, "noise"),),
-    "candidates and rollout": (
-        (MPPI, "propose"),
-        (HorizonLoop, "__call__"),
-        (AnchoredPredictor, "step"),
-    ),
+    "candidates": ((MPPI, "propose"),),
+    "rollout": ((HorizonLoop, "__call__"), (AnchoredPredictor, "step")),
     "clearance queries": ((DepthClearance, "query"), (DistanceField, "query")),
     "costs and update": ((MPPI, "update"),),
     "plant and contact": ((World, "advance"),),
