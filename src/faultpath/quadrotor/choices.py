@@ -6,7 +6,7 @@ A new option is one field of `QuadrotorChoices`: flags, help and messages follow
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.trials import Offered
 
@@ -35,10 +35,12 @@ class ClearanceName(StrEnum):
 
 
 class PlannerName(StrEnum):
-    """Planner variants: where along the horizon the distance to the goal counts."""
+    """MPPI with the distance to the goal at the end of the horizon or along it, or the
+    cross-entropy method with that at the end."""
 
     TERMINAL = "terminal"
     RUNNING = "running"
+    CEM = "cem"
 
 
 class SamplerName(StrEnum):
@@ -95,7 +97,13 @@ class QuadrotorChoices(BaseModel):
         "Which training of it; variants that name a predictor take the seed of their arm.",
         Offered(0, 1, 2),
     ] = 0
-    planner: Annotated[PlannerName, "Where the distance to the goal counts."] = PlannerName.TERMINAL
+    planner: Annotated[
+        PlannerName,
+        "MPPI on the distance to the goal at the horizon's end or along it, or the cross-entropy "
+        "method.",
+    ] = PlannerName.TERMINAL
+    iterations: Annotated[int, "Of cem: proposals a replan.", Field(ge=1, le=10)] = 3
+    elites: Annotated[int, "Of cem: best candidates, fitted to.", Field(ge=2, le=512)] = 64
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
         int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B

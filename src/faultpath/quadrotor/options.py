@@ -17,9 +17,11 @@ from faultpath.quadrotor.choices import (
 )
 from faultpath.quadrotor.device import device_of, require
 from faultpath.quadrotor.planner import (
+    CEM,
     MPPI,
     AutoregressiveSampler,
     BundledSampler,
+    CEMSettings,
     CostWeights,
     GoalCost,
     NavigationCost,
@@ -67,6 +69,7 @@ class QuadrotorOptions(QuadrotorChoices):
             ModuleNotFoundError: The plant needs a package that is not installed.
         """
         given = choices.model_dump(include=choices.model_fields_set)
+        _check_planner(choices)
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
         if choices.plant is not PlantName.TORCH and choices.device is not DeviceName.CPU:
@@ -107,11 +110,32 @@ class QuadrotorOptions(QuadrotorChoices):
         goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
             PlannerName.TERMINAL: (TerminalGoal(), self.settings.terminal),
             PlannerName.RUNNING: (RunningGoal(), self.settings.running),
+            PlannerName.CEM: (TerminalGoal(), self.settings.terminal),
         }
         goal, weights = goals[self.planner]
         settings = self.settings.sampler.model_copy(update={"candidates": self.candidates})
         sampler: Sampler = AutoregressiveSampler(settings)
+        cost = NavigationCost(goal, weights)
+        if self.planner is PlannerName.CEM:
+            narrowing = CEMSettings(iterations=self.iterations, elites=self.elites)
+            return CEM(sampler, cost, narrowing)
         temperature: Temperature = ScaledTemperature(self.settings.temperature)
         if self.sampler is SamplerName.MODE_PRESERVING:
             sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
-        return MPPI(sampler, NavigationCost(goal, weights), temperature)
+        return MPPI(sampler, cost, temperature)
+
+
+def _check_planner(choices: QuadrotorChoices) -> None:
+    """Raise `UserError` for what does not apply to the planner that is chosen."""
+    if choices.planner is not PlannerName.CEM:
+        idle = sorted({"elites", "iterations"} & choices.model_fields_set)
+        if idle:
+            raise UserError(
+                f"{idle[0]} is of the planner cem, and planner {choices.planner} has none: add "
+                f"--planner cem or leave {idle[0]} out."
+            )
+    elif choices.sampler is SamplerName.MODE_PRESERVING:
+        raise UserError(
+            "the mode-preserving sampler keeps the modes of MPPI apart, and planner cem has its "
+            "own way to narrow: leave the sampler or the planner out."
+        )

@@ -1,5 +1,6 @@
 """The planners, with their samplers and costs as objects."""
 
+from faultpath.quadrotor.planner.cem import CEM, CEMSettings
 from faultpath.quadrotor.planner.costs import (
     CostWeights,
     GoalCost,
@@ -20,9 +21,11 @@ from faultpath.quadrotor.planner.protocol import Planner, Search, shift
 from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, SamplerSettings
 
 __all__ = [
+    "CEM",
     "MPPI",
     "AutoregressiveSampler",
     "BundledSampler",
+    "CEMSettings",
     "CostWeights",
     "FixedTemperature",
     "GoalCost",

@@ -48,16 +48,25 @@ class Sampler(ABC):
         if built is not None and native.whole_vectors(noise.shape[-1]) and noise.is_contiguous():
             sigma = (settings.thrust_sigma, *settings.rate_sigma_radps)
             return sampling.candidates(built, plan, hover, sigma, RATE_LIMIT_RADPS, noise)
-        scale = noise.new_empty(4, hover.shape[0], 1)
-        scale[0, :, 0] = settings.thrust_sigma * hover
-        for axis, sigma in enumerate(settings.rate_sigma_radps):
-            scale[axis + 1] = sigma
-        commands = noise.mul_(scale).add_(plan[..., None])
-        thrust = commands[:, 0]
-        torch.minimum(thrust.clamp_(min=0), 2 * hover[:, None], out=thrust)
-        for axis, limit in enumerate(RATE_LIMIT_RADPS):
-            commands[:, axis + 1].clamp_(-limit, limit)
-        return commands
+        return bound(noise.mul_(scales(self.settings, hover)).add_(plan[..., None]), hover)
+
+
+def scales(settings: SamplerSettings, hover: Tensor) -> Tensor:
+    """Return the standard deviations `[4, S, 1]` of commands about a plan, N and rad/s."""
+    scale = hover.new_empty(4, hover.shape[0], 1)
+    scale[0, :, 0] = settings.thrust_sigma * hover
+    for axis, sigma in enumerate(settings.rate_sigma_radps):
+        scale[axis + 1] = sigma
+    return scale
+
+
+def bound(commands: Tensor, hover: Tensor) -> Tensor:
+    """Return commands `[H, 4, S, K]` within the vehicle's limits, in place; see `candidates`."""
+    thrust = commands[:, 0]
+    torch.minimum(thrust.clamp_(min=0), 2 * hover[:, None], out=thrust)
+    for axis, limit in enumerate(RATE_LIMIT_RADPS):
+        commands[:, axis + 1].clamp_(-limit, limit)
+    return commands
 
 
 class AutoregressiveSampler(Sampler):
