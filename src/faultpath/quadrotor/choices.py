@@ -6,7 +6,7 @@ A new option is one field of `QuadrotorChoices`: flags, help and messages follow
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 
 from faultpath.trials import Offered
 
@@ -102,8 +102,10 @@ class QuadrotorChoices(BaseModel):
         "MPPI on the distance to the goal at the horizon's end or along it, or the cross-entropy "
         "method.",
     ] = PlannerName.TERMINAL
-    iterations: Annotated[int, "Of cem: proposals a replan.", Field(ge=1, le=10)] = 3
-    elites: Annotated[int, "Of cem: best candidates, fitted to.", Field(ge=2, le=512)] = 64
+    iterations: Annotated[int, "Of cem: proposals a replan.", Offered(1, 2, 3, 4, 5, 6)] = 3
+    elites: Annotated[
+        int, "Of cem: best candidates, to which the plan is fitted.", Offered(16, 32, 64, 128, 256)
+    ] = 64
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
         int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
