@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
-from rich.table import Table
 from rich.text import Text
 
 from faultpath.cli.terminal import SafeConsole
 from faultpath.errors import Stopped
+from faultpath.tables import MISSING, Line, Table, line
+from faultpath.tables.terminal import drawn
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.card import ModelCard
@@ -42,10 +43,9 @@ def list_models() -> None:
     """Print what can be fitted."""
     from faultpath.quadrotor.training.catalogue import ALL
 
-    table = _table(None, "model", "seeds", "what it is")
-    for entry in ALL:
-        table.add_row(entry.name, ",".join(map(str, entry.seeds)), entry.description)
-    SafeConsole().print(table)
+    columns = ("seeds", "what it is")
+    lines = tuple(line(e.name, ",".join(map(str, e.seeds)), e.description) for e in ALL)
+    SafeConsole().print(drawn(Table(corner="model", columns=columns, words=columns, lines=lines)))
 
 
 def train(wishes: Wishes) -> int:
@@ -77,19 +77,21 @@ def train(wishes: Wishes) -> int:
 
 def result_table(cards: Sequence[ModelCard]) -> Table:
     """Return the table of fitted models."""
-    heads = ("seed", "parameters", "training loss", "validation", "time")
-    table = _table("Fitted models", "model", *heads)
-    for card in cards:
-        metric, value = next(iter(card.final.items()), ("", None))
-        table.add_row(
-            card.name,
-            str(card.seed),
-            f"{card.parameters:,}",
-            f"{card.training_loss[-1]:.4g}",
-            "–" if value is None else f"{metric} {value:.4g}",
-            _duration(card.duration_s),
-        )
-    return table
+    columns = ("seed", "parameters", "training loss", "validation", "time")
+    lines = tuple(map(_line, cards))
+    return Table(title="Fitted models", corner="model", columns=columns, lines=lines)
+
+
+def _line(card: ModelCard) -> Line:
+    metric, value = next(iter(card.final.items()), ("", None))
+    return line(
+        card.name,
+        str(card.seed),
+        f"{card.parameters:,}",
+        f"{card.training_loss[-1]:.4g}",
+        MISSING if value is None else f"{metric} {value:.4g}",
+        _duration(card.duration_s),
+    )
 
 
 def _tell(console: SafeConsole, report: Report, out: Path) -> None:
@@ -98,7 +100,7 @@ def _tell(console: SafeConsole, report: Report, out: Path) -> None:
         line += f" ({failure.details})" if failure.details else ""
         console.print(Text(line, style="bold red"), soft_wrap=True)
     if report.cards:
-        console.print(result_table(report.cards))
+        console.print(drawn(result_table(report.cards), one_line=True))
         console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
 
 
@@ -202,14 +204,6 @@ def _progress(console: SafeConsole) -> Progress:
         TextColumn("{task.fields[left]}"),
         console=console,
     )
-
-
-def _table(title: str | None, *heads: str) -> Table:
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for number, head in enumerate(heads):
-        numeric = title is not None and number > 0
-        table.add_column(head, justify="right" if numeric else "left", no_wrap=numeric)
-    return table
 
 
 def _left(seconds: float | None) -> str:

@@ -12,7 +12,8 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from faultpath.evidence import EvidenceTable, Measurer
-    from faultpath.evidence.probe import Probe, ProbePlan
+    from faultpath.evidence.probe import Probe, ProbePlan, ProbeRow
+    from faultpath.tables import Line
 
 
 def command(
@@ -97,28 +98,31 @@ def _measure(
 
 
 def _table(probe: "Probe") -> "Table":
-    from math import exp
-
-    from rich.table import Table
-    from rich.text import Text
-
     from faultpath.report import wording
+    from faultpath.tables import Table as Figures
+    from faultpath.tables.terminal import drawn
 
-    first = probe.rows[0].variant
     title = (
         f"Median response after the horizon, {wording.counted(probe.windows, 'window')} of "
         f"{wording.counted(probe.scenes, 'scene')}, {wording.seeds(probe.seeds)}"
     )
-    table = Table(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for head in ("perturbation", "variant"):
-        table.add_column(head)
-    for head in ("response, cm", f"of {first}'s"):
-        table.add_column(head, justify="right", no_wrap=True)
-    for row in probe.rows:
-        found, log = row.response_cm, row.log_ratio
-        response = f"{wording.plain(found.value)} {wording.interval(found)}".rstrip()
-        ratio = "–"
-        if log is not None and log.low is not None and log.high is not None:
-            ratio = f"{exp(log.value):.2f} [{exp(log.low):.2f}, {exp(log.high):.2f}]"
-        table.add_row(Text(row.perturbation), Text(row.variant), Text(response), ratio)
-    return table
+    columns = ("variant", "response, cm", f"of {probe.rows[0].variant}'s")
+    lines = tuple(map(_line, probe.rows))
+    table = Figures(
+        title=title, corner="perturbation", columns=columns, words=columns[:1], lines=lines
+    )
+    return drawn(table, one_line=True)
+
+
+def _line(row: "ProbeRow") -> "Line":
+    from math import exp
+
+    from faultpath.report import wording
+    from faultpath.tables import MISSING, line
+
+    found, log = row.response_cm, row.log_ratio
+    response = f"{wording.plain(found.value)} {wording.interval(found)}".rstrip()
+    ratio = MISSING
+    if log is not None and log.low is not None and log.high is not None:
+        ratio = f"{exp(log.value):.2f} [{exp(log.low):.2f}, {exp(log.high):.2f}]"
+    return line(row.perturbation, row.variant, response, ratio)

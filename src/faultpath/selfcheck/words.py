@@ -2,25 +2,16 @@
 
 import itertools
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 
 from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Report
 from faultpath.selfcheck.promises import Cell
+from faultpath.tables import Table, line
+from faultpath.tables.markdown import grid
 
 _FEW = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 1e9)
-
-
-@dataclass(frozen=True)
-class Table:
-    """One table: what it shows, how to read it, and its cells as text."""
-
-    title: str
-    note: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
 
 
 def tables(report: Report) -> list[Table]:
@@ -66,13 +57,19 @@ def page(report: Report, broken: Sequence[str]) -> str:
     else:
         lines += ["No promise below is broken by more than three standard errors.", ""]
     for table in tables(report):
-        lines += [f"## {table.title}", "", table.note, "", *_markdown(table), ""]
+        lines += [f"## {table.title}", "", *table.notes, "", grid(table), ""]
     return "\n".join(lines).rstrip() + "\n"
 
 
-def _markdown(table: Table) -> list[str]:
-    rule = ["---", *("---:" for _ in table.columns[1:])]
-    return [f"| {' | '.join(row)} |" for row in (table.columns, rule, *table.rows)]
+def _table(title: str, note: str, columns: Sequence[str], rows: Iterable[tuple[str, ...]]) -> Table:
+    """Return a table; the first of `columns` heads the labels."""
+    return Table(
+        title=title,
+        corner=columns[0],
+        columns=tuple(columns[1:]),
+        lines=tuple(line(label, *texts) for label, *texts in rows),
+        notes=(note,),
+    )
 
 
 def _error(report: Report, name: str) -> str:
@@ -86,7 +83,7 @@ def _one_seed(cells: Sequence[Cell]) -> Table:
         lambda c: (f"{c['scenes']}, {_lean(float(c['lean']))}",),
         "rate",
     )
-    return Table(
+    return _table(
         "Interval of an effect, one seed",
         "Coverage of the 95 % interval (Tango's), exact, by scenes, by how discordant scenes "
         "split, and by the share of scenes that is discordant. Promised: at least .93.",
@@ -101,7 +98,7 @@ def _several_seeds(cells: Sequence[Cell]) -> Table:
         lambda c: (f"{c['seeds']} seeds, {c['scenes']} scenes",),
         "rate",
     )
-    return Table(
+    return _table(
         "Interval of an effect, several seeds",
         "Least and greatest coverage over three splits, over seeds that are independent, half "
         "alike or copies of each other, without and with strong seed effects. Columns: share of "
@@ -122,7 +119,7 @@ def _by_differing(cells: Sequence[Cell]) -> Table:
             rows.append(
                 (name, str(len(rates)), _share(min(rates)), _share(max(rates)), f"{below}/{above}")
             )
-    return Table(
+    return _table(
         "Where the interval covers more than it says",
         "All settings of both tables above, by the expected number of scenes that differ. At most "
         ".98 is not promised, because no interval of counts that tosses no coin can keep it there: "
@@ -143,7 +140,7 @@ def _models(cells: Sequence[Cell]) -> Table:
         ),
         "rate",
     )
-    return Table(
+    return _table(
         "Interval of an effect, newly trained models",
         "Coverage of the 95 % interval of `--generalise models`, the hull of score interval and "
         "crossed bootstrap. Only the first arm ever wins; half of the scenes treat all "
@@ -162,7 +159,7 @@ def _break_even(cells: Sequence[Cell]) -> Table:
         lambda c: (f"{c['seeds']} seed{'s' if c['seeds'] != 1 else ''}, {c['scenes']} scenes",),
         "cost rate",
     )
-    return Table(
+    return _table(
         "Break-even frequency",
         "Least and greatest coverage of the set of frequencies at which it is not decided who is "
         "ahead, over costs that are one-sided, in between or none on balance, gains of 5 and 30 "
@@ -191,7 +188,7 @@ def _detection(cells: Sequence[Cell]) -> Table:
         f"{', half alike' if alike else ''}, p ≤ {float(alpha):.3g}"
         for seeds, alike, alpha in kinds
     )
-    return Table(
+    return _table(
         "Minimum detectable effect",
         "Audits of equal arms report what they could have detected; then the true difference is "
         "made that. Share of audits that detect it, averaged over what was reported; columns: "
@@ -206,7 +203,7 @@ def _detection(cells: Sequence[Cell]) -> Table:
 
 
 def _equal(cells: Sequence[Cell]) -> Table:
-    return Table(
+    return _table(
         "Audits of equal arms",
         "Share of audits with four paths that announce anything at all: an effect, a change, a "
         "reversal. Paths alike: chance that a scene ends the same on all paths. Promised: at most "
@@ -226,7 +223,7 @@ def _equal(cells: Sequence[Cell]) -> Table:
 
 
 def _reversal(cells: Sequence[Cell]) -> Table:
-    return Table(
+    return _table(
         "Reversals",
         "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
         "isolated effects are 0 there is none; promised: at most .025. The others show the power.",
@@ -244,7 +241,7 @@ def _reversal(cells: Sequence[Cell]) -> Table:
 
 
 def _trainings(cells: Sequence[Cell]) -> Table:
-    return Table(
+    return _table(
         "Equal methods, other trainings",
         "Two methods that are equal, of which every training is off by 8 pp (standard deviation). "
         "Share of audits that detect a difference. For newly trained models (`--generalise "

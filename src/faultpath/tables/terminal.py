@@ -20,7 +20,9 @@ def drawn(table: Table, *, one_line: bool = False) -> "Drawn":
     from rich.text import Text
 
     title = Text(table.title) if table.title else None
-    made = Drawn(title=title, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    tall = any("\n" in entry.text for line in table.lines for entry in line.entries)
+    apart = (0, 2, 1 if tall else 0, 0)
+    made = Drawn(title=title, title_justify="left", box=None, pad_edge=False, padding=apart)
     # Columns of words give way first, else the labels.
     made.add_column(Text(table.corner), no_wrap=one_line and bool(table.words))
     for column in table.columns:
@@ -31,15 +33,16 @@ def drawn(table: Table, *, one_line: bool = False) -> "Drawn":
         cells = [_text(entry) for entry in line.entries]
         for cell in cells:
             cell.no_wrap, cell.overflow = one_line, "ellipsis" if one_line else None
-        made.add_row(_label(line), *cells)
+        made.add_row(_label(line, below=tall), *cells)
     return made
 
 
-def _label(line: Line) -> "Text":
+def _label(line: Line, *, below: bool) -> "Text":
     from rich.text import Text
 
     text = Text(line.label, "" if line.entries else "italic")
-    return text.append(f" ({line.aside})", "dim") if line.aside else text
+    parted = "\n" if below else " "
+    return text.append(f"{parted}({line.aside})", "dim") if line.aside else text
 
 
 def _text(entry: Entry) -> "Text":
