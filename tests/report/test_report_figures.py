@@ -110,6 +110,13 @@ def _row(one_seed: ReportInput, **changes: object) -> str:
     return figures.forest([row], "a", "b")
 
 
+def test_only_a_decided_difference_is_bold(one_seed: ReportInput) -> None:
+    for sign in (-1, 0, 1):
+        value = f">{figures.effect_rows(one_seed.record)[0].effect.value:+.1f}".replace("-", "−")
+        (drawn,) = (line for line in _row(one_seed, sign=sign).split("<text") if value in line)
+        assert ("bold" in drawn) == (sign != 0)
+
+
 def test_a_dot_is_filled_for_what_is_decided_and_for_nothing_else(one_seed: ReportInput) -> None:
     for sign, look in ((1, "dot repair"), (-1, "dot baseline"), (0, "dot open")):
         drawn = _row(one_seed, sign=sign)

@@ -96,7 +96,7 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
         svg.text(214, y + 4, wording.plain(row.baseline_percent), "", "end")
         svg.text(266, y + 4, wording.plain(row.repair_percent), "", "end")
         _mark(svg, plot, row.effect, y, row.sign, row.band_pp)
-        _numbers(svg, 612, y + 4, row.effect)
+        _numbers(svg, 612, y + 4, row)
         svg.text(768, y + 4, row.wins_losses)
     _footnote(svg, rows, bottom + 40, 292)
     return svg
@@ -208,9 +208,10 @@ def _mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: flo
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")
 
 
-def _numbers(svg: Svg, x: float, y: float, e: Estimate) -> None:
-    svg.text(x + 34, y, wording.signed(e.value), "bold", "end")
-    svg.text(x + 42, y, wording.interval(e))
+def _numbers(svg: Svg, x: float, y: float, row: EffectRow) -> None:
+    """Write difference and interval; bold is decided, as in every table."""
+    svg.text(x + 34, y, wording.signed(row.effect.value), "bold" if row.sign else "", "end")
+    svg.text(x + 42, y, wording.interval(row.effect))
 
 
 def _footnote(svg: Svg, rows: Sequence[EffectRow], y: float, x: float) -> None:
