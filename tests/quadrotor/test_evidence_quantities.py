@@ -16,7 +16,7 @@ from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import FlightSettings, fly
 from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows
 from faultpath.quadrotor.training.quality_predictors import position_errors
-from faultpath.quadrotor.training.replay import correct
+from faultpath.quadrotor.training.replay import CODE, correct
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
 
 torch.set_num_threads(1)
@@ -151,7 +151,7 @@ def test_a_shuffle_gives_every_code_to_another_window(recorded):
     subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
     with torch.inference_mode():
         plain, shuffled, again, other = (
-            replace(subject, seed=seed).tell(recorded.windows, faults, "name").code
+            replace(subject, seed=seed).deliver(recorded.windows, faults, "name")[CODE].T
             for seed, faults in (
                 (0, ()),
                 (0, ("history_code:shuffle",)),

@@ -48,7 +48,7 @@ def test_zero_noise_is_the_baseline_to_the_bit(base, data, tmp_path):
 
 def test_noise_reaches_every_place_with_one_draw_a_window(data):
     noisy = loaded("wm-u+dcc", data)
-    taps = noisy._supplied
+    taps = noisy._delivered
     mass = [value for (channel, _), value in taps.items() if channel == "mass"]
     scale = [value for (channel, _), value in taps.items() if channel == "thrust_scale"]
     assert {place for channel, place in taps if channel == "mass"} >= {
@@ -63,7 +63,7 @@ def test_noise_reaches_every_place_with_one_draw_a_window(data):
     assert off.std() == pytest.approx(0.2 / 3**0.5, rel=0.2)
     assert torch.corrcoef(torch.stack([off, other]))[0, 1].abs() < 0.35
     noisy.begin_epoch(1)
-    assert not torch.equal(noisy._supplied["mass", "predictor.history"], mass[0])
+    assert not torch.equal(noisy._delivered["mass", "predictor.history"], mass[0])
 
 
 @pytest.mark.parametrize("name", RECIPES)

@@ -21,7 +21,7 @@ from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.quality import Checkpoints, measure
 from faultpath.quadrotor.training.quality_intervals import Episodes
 from faultpath.quadrotor.training.quality_predictors import position_errors, supply
-from faultpath.quadrotor.training.quality_reconstructions import estimate, levels
+from faultpath.quadrotor.training.quality_reconstructions import levels
 from faultpath.quadrotor.training.quality_results import Quality
 from faultpath.quadrotor.training.reconstruction_task import (
     CHECK_ERROR,
@@ -29,7 +29,7 @@ from faultpath.quadrotor.training.reconstruction_task import (
     ReconstructionTask,
     _Samples,
 )
-from faultpath.quadrotor.training.replay import correct
+from faultpath.quadrotor.training.replay import correct, estimate
 from faultpath.quadrotor.training.windows import windows_of
 from faultpath.quadrotor.wind import WIND_LEVELS
 
@@ -167,7 +167,7 @@ def test_an_error_of_zero_is_no_error_to_the_bit(name, windy):
     made = PREDICTORS[name].load(name, None)
     if name.startswith("wm"):
         made.network.load_state_dict(blank(name, 0).state_dict())
-    consumers = frozenset(f"predictor.{place}" for place in made.reads)
+    consumers = made.consumers()
     plain, off = correct(made, windy), supply(windy, consumers, 0.1)
     with torch.inference_mode():
         same = position_errors(made, windy, supply(windy, consumers, 0.0))
@@ -175,10 +175,8 @@ def test_an_error_of_zero_is_no_error_to_the_bit(name, windy):
         assert not torch.equal(same, position_errors(made, windy, off))
 
 
-def test_a_supplied_error_scales_mass_up_and_thrust_down_at_every_consumer(windy):
-    consumers = frozenset(
-        f"predictor.{place}" for place in PREDICTORS["wm-a"].load("wm-a", None).reads
-    )
+def test_a_delivered_error_scales_mass_up_and_thrust_down_at_every_consumer(windy):
+    consumers = PREDICTORS["wm-a"].load("wm-a", None).consumers()
     told = supply(windy, consumers, 0.2)
     assert {channel for channel, _ in told} == {"mass", "thrust_scale"}
     for (channel, _), value in told.items():

@@ -10,7 +10,7 @@ from torch import Tensor
 from faultpath.quadrotor.predictors import Calibration
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, Sensed
-from faultpath.quadrotor.training.quality_reconstructions import delivered
+from faultpath.quadrotor.training.replay import inputs_at, remembered
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
 
@@ -21,15 +21,13 @@ def nominal(windows: Windows, calibration: Calibration) -> Tensor:
     hold; the start of its belief has decayed by a factor of a million.
     """
     observer = DisturbanceObserver()
-    told = {
+    delivered = {
         ("mass", "reconstruction.nominal_model"): calibration.mass_kg,
         ("thrust_scale", "reconstruction.nominal_model"): calibration.thrust_scale,
         ("mass", "reconstruction.wind_map"): calibration.mass_kg,
     }
-    memory = observer.begin(delivered(observer, windows, told, 0))
-    for step in range(1, HISTORY):
-        memory = observer.update(memory, delivered(observer, windows, told, step))
-    return observer.nominal(memory, Sensed.of(delivered(observer, windows, told, HISTORY)))
+    memory = remembered(observer, windows, delivered, HISTORY - 1)
+    return observer.nominal(memory, Sensed.of(inputs_at(observer, windows, delivered, HISTORY)))
 
 
 def wind_term(windows: Windows, map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:

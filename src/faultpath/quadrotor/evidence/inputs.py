@@ -1,9 +1,10 @@
-"""What a variant's modules are told on every window: through taps, and under faults."""
+"""What a variant's taps deliver on every window, and under faults."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import torch
 from torch import Tensor
@@ -12,32 +13,24 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold, parse_fault
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
-from faultpath.quadrotor.state import padded_lanes
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training.quality_predictors import BATCH
-from faultpath.quadrotor.training.quality_reconstructions import estimate
-from faultpath.quadrotor.training.replay import Supplied, history
+from faultpath.quadrotor.training.replay import (
+    CODE,
+    WIND,
+    DeliveredInputs,
+    by_batch,
+    deliver,
+    encode,
+    estimate,
+)
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 from faultpath.quadrotor.variants import choices
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Variant
 
-_CALIBRATION = ("mass", "thrust_scale")
-_BY_WINDOW = frozenset({*_CALIBRATION, "wind"})
-_BY_RECORDING = frozenset({"history_code"})
+_BY_WINDOW = frozenset({"mass", "thrust_scale", WIND[0]})
+_BY_RECORDING = frozenset({CODE[0]})
 _IN_TIME = (Delay, Drift, Dropout, Freeze, Hold)
-
-
-@dataclass(frozen=True)
-class Told:
-    """What the taps of a variant deliver on W windows."""
-
-    supplied: Supplied
-    """Calibration by channel and consumer, `[W]` each."""
-    wind_mps: Tensor | None
-    """`[3, W]`; `None` for a predictor without a wind input."""
-    code: Tensor | None
-    """History code `[32, W]`; `None` for a predictor without a memory."""
 
 
 @dataclass(frozen=True)
@@ -67,25 +60,27 @@ class Subject:
         )
 
     def check(self, faults: Sequence[str]) -> None:
-        """Raise the `UserError` that `tell` would raise about these faults on any windows."""
+        """Raise the `UserError` that `deliver` would raise about these faults on any windows."""
         for found in self._parse(faults):
             self._taps(("any",), found)
 
-    def tell(self, windows: Windows, faults: Sequence[str], recording: str) -> Told:
-        """Return what the modules get on windows of the recording of that name.
+    def deliver(self, windows: Windows, faults: Sequence[str], recording: str) -> DeliveredInputs:
+        """Return what the taps deliver on windows of the recording of that name.
 
         `UserError` for a fault that does not fit the variant, or of a channel or in a way that
         windows do not have.
         """
         by_window, by_recording = self._parse(faults)
         taps = self._taps(windows.ids, by_window)
-        lanes = padded_lanes(len(windows))
-        wide = windows.take(lanes)
-        supplied = self._supplied(taps, windows)
-        spread = {tap: value[lanes] for tap, value in supplied.items()}
-        wind = self._wind(taps, wide, spread, len(windows))
+        delivered = self._delivered(taps, windows.calibration)
+        if WIND[1] in self.variant.consumers:
+            wind = self._wind(taps.bindings["wind"], windows, delivered)
+            delivered |= self._delivered(taps, {"wind": wind.T})
         taps.verify(last_step=0)
-        return Told(supplied, wind, self._code(recording, by_recording, wide, spread, len(windows)))
+        if CODE[1] in self.variant.consumers:
+            code = by_batch(partial(encode, self.predictor), windows, delivered, padded=True)
+            delivered[CODE] = self._exchanged(code.T, recording, by_recording)
+        return delivered
 
     def _parse(self, texts: Sequence[str]) -> tuple[list[AnyFault], list[AnyFault]]:
         """Return the faults that strike windows one by one, and those that strike all at once."""
@@ -135,59 +130,27 @@ class Subject:
             privileged=self.variant.privileged,
         )
 
-    def _supplied(self, taps: Taps, windows: Windows) -> Supplied:
-        values = dict(zip(_CALIBRATION, (windows.mass_kg, windows.thrust_scale), strict=True))
-        return {
-            (name, consumer): taps.deliver(
-                name, consumer, Reading(values[name], taps.bindings[name], 0), 0
-            )
-            for name in _CALIBRATION
-            for consumer in self.system.interface.channel(name).consumers
-            if consumer in self.variant.consumers
-        }
+    def _delivered(
+        self, taps: Taps, readings: Mapping[str, Tensor]
+    ) -> dict[tuple[str, str], Tensor]:
+        return deliver(taps, self.system.interface, self.variant.consumers, readings)
 
-    def _wind(self, taps: Taps, wide: Windows, told: Supplied, count: int) -> Tensor | None:
-        if "wind_map" not in self.predictor.reads:
-            return None
-        source = taps.bindings["wind"]
+    def _wind(self, source: str, windows: Windows, delivered: DeliveredInputs) -> Tensor:
+        """Return what the source of the wind channel holds at the present, `[3, W]`."""
         if self.reconstruction is not None:
-            value = estimate(self.reconstruction, wide, told)
-        else:
-            truth = wide.wind_mps[:, HISTORY]
-            value = truth if source == "true_wind" else torch.zeros_like(truth)
-        reading = Reading(value[:, :count].T, source, 0)
-        return taps.deliver("wind", "predictor.wind_map", reading, 0).T
+            return estimate(self.reconstruction, windows, delivered, padded=True)
+        truth = windows.wind_mps[:, HISTORY]
+        return truth if source == "true_wind" else torch.zeros_like(truth)
 
-    def _code(
-        self,
-        recording: str,
-        faults: Sequence[AnyFault],
-        wide: Windows,
-        told: Supplied,
-        count: int,
-    ) -> Tensor | None:
-        """Return the history code as delivered.
+    def _exchanged(self, code: Tensor, recording: str, faults: Sequence[AnyFault]) -> Tensor:
+        """Return history codes `[W, 32]` as delivered.
 
-        For this tap the whole recording is one scene and its reading is `[W, 32]`. A shuffle
-        permutes a scene's own reading, and so exchanges the codes of windows: each is one that the
-        predictor meets in flight, but of another history.
+        For this tap the whole recording is one scene. A shuffle permutes a scene's own reading,
+        and so exchanges the codes of windows: each is one that the predictor meets in flight, but
+        of another history.
         """
-        if "history" not in self.predictor.reads:
-            return None
-        codes = [
-            self.predictor.encode(
-                history(
-                    self.predictor,
-                    wide.take(index),
-                    {tap: value[index] for tap, value in told.items()},
-                )
-            )
-            for index in torch.arange(len(wide)).split(BATCH)
-        ]
-        code = torch.cat([each for each in codes if each is not None], 1)[:, :count]
-        (source,) = self.system.interface.channel("history_code").sources
-        taps = self._taps((recording,), faults, {source: tuple(code.T.shape)})
-        reading = Reading(code.T[None], source, 0)
-        delivered = taps.deliver("history_code", "predictor.latent", reading, 0)
+        (source,) = self.system.interface.channel(CODE[0]).sources
+        taps = self._taps((recording,), faults, {source: tuple(code.shape)})
+        delivered = taps.deliver(*CODE, Reading(code[None], source, 0), 0)
         taps.verify(last_step=0)
-        return delivered[0].T
+        return delivered[0]

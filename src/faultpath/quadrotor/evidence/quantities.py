@@ -8,12 +8,11 @@ from torch import Tensor
 from faultpath.errors import UserError
 from faultpath.evidence import Measured, Measurement, Quantity
 from faultpath.quadrotor.evidence.compensation import nominal, wind_term
-from faultpath.quadrotor.evidence.inputs import Subject, Told
+from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.recording import Recorded, quadrotor
 from faultpath.quadrotor.predictors import Calibration, Predictor
 from faultpath.quadrotor.state import padded_lanes
-from faultpath.quadrotor.training.quality_predictors import BATCH
-from faultpath.quadrotor.training.replay import predict
+from faultpath.quadrotor.training.replay import WIND, DeliveredInputs, by_batch, predict
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
 
@@ -42,33 +41,34 @@ def measured(measurement: Measurement, recorded: Recorded) -> Measured:
 
 
 def _position_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    told = _told(subject, asked, windows)
-    return (final_positions(subject.predictor, windows, told) - windows.position[:, -1]).norm(dim=0)
+    delivered = _delivered(subject, asked, windows)
+    return (final_positions(subject.predictor, windows, delivered) - windows.position[:, -1]).norm(
+        dim=0
+    )
 
 
 def _position_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
     correct = asked.model_copy(update={"faults": ()})
     here, there = (
-        final_positions(subject.predictor, windows, _told(subject, each, windows))
+        final_positions(subject.predictor, windows, _delivered(subject, each, windows))
         for each in (correct, asked)
     )
     return (there - here).norm(dim=0)
 
 
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    told = _told(subject, asked, windows)
-    supplied = Calibration(
-        told.supplied["mass", "predictor.dynamics"],
-        told.supplied["thrust_scale", "predictor.dynamics"],
+    delivered = _delivered(subject, asked, windows)
+    calibration = Calibration(
+        *(delivered[channel, "predictor.dynamics"] for channel in windows.calibration)
     )
     return (
-        (_nominal(windows, supplied) - _nominal(windows, _true(windows)))
-        + _wind_term_difference(windows, told)
+        (_nominal(windows, calibration) - _nominal(windows, _true(windows)))
+        + _wind_term_difference(windows, delivered)
     ).norm(dim=0)
 
 
 def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(windows, _told(subject, asked, windows)).norm(dim=0)
+    return _wind_term_difference(windows, _delivered(subject, asked, windows)).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -79,34 +79,28 @@ _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]
 }
 
 
-def final_positions(predictor: Predictor, windows: Windows, told: Told) -> Tensor:
+def final_positions(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) -> Tensor:
     """Return the predicted position after the last step, `[3, W]`, m, world frame."""
-    found: list[Tensor] = []
-    for index in padded_lanes(len(windows)).split(BATCH):
-        *_, last = predict(
-            predictor,
-            windows.take(index),
-            {tap: value[index] for tap, value in told.supplied.items()},
-            None if told.wind_mps is None else told.wind_mps[:, index],
-            None if told.code is None else told.code[:, index],
-        )
-        found.append(last.position[..., 0])
-    return torch.cat(found, 1)[:, : len(windows)]
+
+    def final(windows: Windows, delivered: DeliveredInputs) -> Tensor:
+        *_, last = predict(predictor, windows, delivered)
+        return last.position[..., 0]
+
+    return by_batch(final, windows, delivered, padded=True)
 
 
 def _subject(asked: Measurement) -> Subject:
     return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
 
 
-def _told(subject: Subject, asked: Measurement, windows: Windows) -> Told:
-    return subject.tell(windows, asked.faults, asked.recording.name)
+def _delivered(subject: Subject, asked: Measurement, windows: Windows) -> DeliveredInputs:
+    return subject.deliver(windows, asked.faults, asked.recording.name)
 
 
-def _wind_term_difference(windows: Windows, told: Told) -> Tensor:
-    assert told.wind_mps is not None
-    supplied = told.supplied["mass", "predictor.wind_map"]
+def _wind_term_difference(windows: Windows, delivered: DeliveredInputs) -> Tensor:
+    map_mass = delivered["mass", "predictor.wind_map"]
     truth = wind_term(windows, windows.mass_kg, windows.wind_mps[:, HISTORY])
-    return wind_term(windows, supplied, told.wind_mps) - truth
+    return wind_term(windows, map_mass, delivered[WIND].T) - truth
 
 
 def _true(windows: Windows) -> Calibration:

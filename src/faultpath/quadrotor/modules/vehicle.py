@@ -11,8 +11,8 @@ from faultpath.quadrotor.device import at_hand
 from faultpath.quadrotor.modules.clearance import geometric_clearance
 from faultpath.quadrotor.modules.lanes import lanes_last, scenes_first
 from faultpath.quadrotor.perception import DepthRenderer, mounted
+from faultpath.quadrotor.predictors import Physics
 from faultpath.quadrotor.scenes.field import DistanceField
-from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Query
 
@@ -76,7 +76,7 @@ class VehiclePlant(Plant):
         wind = scenes_first(world.wind_mps, count)
         sensed: dict[str, object] = {
             "mission_goal": scenes_first(world.goal, count),
-            "true_physics": scenes_first(_physics(world.vehicle, world.plant_state.thrusts), count),
+            "true_physics": scenes_first(_physics(world), count),
             "true_wind": wind,
             "zero_wind": torch.zeros_like(wind),
             "vehicle": _truth(world),
@@ -139,13 +139,12 @@ def _truth(world: World) -> dict[str, Tensor]:
     return {name: scenes_first(value, world.count) for name, value in values.items()}
 
 
-def _physics(vehicle: Vehicle, motors: Tensor) -> Tensor:
-    return torch.cat(
-        [
-            vehicle.inertia_kgm2,
-            vehicle.torque_scale[None],
-            vehicle.motor_time_constant_s[None],
-            vehicle.drag_kgps,
-            motors.sum(0, keepdim=True),
-        ]
-    )
+def _physics(world: World) -> Tensor:
+    vehicle = world.vehicle
+    return Physics(
+        vehicle.inertia_kgm2,
+        vehicle.torque_scale,
+        vehicle.motor_time_constant_s,
+        vehicle.drag_kgps,
+        world.plant_state.thrusts.sum(0),
+    ).reading()

@@ -25,10 +25,6 @@ class Calibration:
         """Collective thrust command that holds the vehicle if the calibration is right, N."""
         return self.mass_kg * gravity / self.thrust_scale
 
-    def squeeze(self) -> "Calibration":
-        """Return it without the candidate axis, `[*batch, 1]` to `[*batch]`."""
-        return Calibration(self.mass_kg[..., 0], self.thrust_scale[..., 0])
-
 
 @dataclass(frozen=True)
 class Physics:
@@ -40,6 +36,19 @@ class Physics:
     drag_kgps: Tensor
     collective_thrust_n: Tensor
     """Thrust that the motors hold at this moment, before the thrust scale, N."""
+
+    @classmethod
+    def of(cls, reading: Tensor) -> "Physics":
+        """Return the parameters in a reading `[9, *batch]` of the channel `physics`."""
+        return cls(reading[0:3], reading[3], reading[4], reading[5:8], reading[8])
+
+    def reading(self) -> Tensor:
+        """Return them as the channel `physics` carries them, `[9, *batch]`."""
+        torque, lag, thrust = (
+            part[None]
+            for part in (self.torque_scale, self.motor_time_constant_s, self.collective_thrust_n)
+        )
+        return torch.cat((self.inertia_kgm2, torque, lag, self.drag_kgps, thrust))
 
 
 @dataclass(frozen=True)
@@ -115,6 +124,10 @@ class Predictor(ABC):
 
     reads: frozenset[str]
     """Places at which it reads its channels: its consumers in the interface."""
+
+    def consumers(self, module: str = "predictor") -> frozenset[str]:
+        """Return the names `module.place` under which the interface lists its places."""
+        return frozenset(f"{module}.{place}" for place in self.reads)
 
     def encode(self, history: History) -> Tensor | None:
         """Return the history code `[32, *batch]`, once a replan; `None` without a memory."""

@@ -62,7 +62,7 @@ def told(reads: Collection[str], take: Take) -> PredictorInputs:
         dynamics=calibrated("dynamics"),
         wind_map_mass_kg=column("mass", "wind_map") if "wind_map" in reads else None,
         wind_mps=column("wind", "wind_map") if "wind_map" in reads else None,
-        physics=_physics(column("physics", "physics")) if "physics" in reads else None,
+        physics=Physics.of(column("physics", "physics")) if "physics" in reads else None,
         thrust_mass_kg=(
             column("mass", "normalise_thrust") if "normalise_thrust" in reads else None
         ),
@@ -101,13 +101,3 @@ def _start(state: State) -> State:
         rotation = torch.where(off, so3.project(rotation), rotation)
     parts = (state.position, state.velocity, rotation, state.rate)
     return State(*(part[..., None] for part in parts))
-
-
-def _physics(values: Tensor) -> Physics:
-    return Physics(
-        inertia_kgm2=values[0:3],
-        torque_scale=values[3],
-        motor_time_constant_s=values[4],
-        drag_kgps=values[5:8],
-        collective_thrust_n=values[8],
-    )

@@ -6,8 +6,9 @@ from torch import Tensor
 
 from faultpath.faults import Coupled, Fault, UniformScale
 from faultpath.interface import Interface
+from faultpath.quadrotor.training.replay import DeliveredInputs, deliver
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.taps import Reading, Taps
+from faultpath.taps import Taps
 
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
@@ -63,19 +64,14 @@ class Corruption:
         self._seed = seed
         self._taps(0)
 
-    def deliver(self, epoch: int, readings: Mapping[str, Tensor]) -> dict[tuple[str, str], Tensor]:
+    def deliver(self, epoch: int, readings: Mapping[str, Tensor]) -> DeliveredInputs:
         """Return what each consumer gets in an epoch, by (channel, consumer), each `[W]`.
 
         `readings` `[W]` are the values by channel. Raises `NotDelivered` where a fault missed a
         consumer that it names.
         """
         taps = self._taps(epoch)
-        delivered: dict[tuple[str, str], Tensor] = {}
-        for name, value in readings.items():
-            reading = Reading(value, taps.bindings[name], 0)
-            for consumer in self._interface.channel(name).consumers:
-                if consumer in self._consumers:
-                    delivered[name, consumer] = taps.deliver(name, consumer, reading, 0)
+        delivered = deliver(taps, self._interface, self._consumers, readings)
         taps.verify(last_step=0)
         return delivered
 

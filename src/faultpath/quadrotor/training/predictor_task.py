@@ -23,7 +23,7 @@ from faultpath.quadrotor.predictors.network import features
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
-from faultpath.quadrotor.training.replay import Supplied, correct, predict
+from faultpath.quadrotor.training.replay import DeliveredInputs, correct, predict
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
 from faultpath.streams import generator
@@ -94,7 +94,7 @@ class PredictorTask(Task):
         self._train = training
         self._scales = scales(training)
         predictor = self._recipe.predictor(self._recipe.network())
-        self._consumers = frozenset(f"predictor.{place}" for place in predictor.reads)
+        self._consumers = predictor.consumers()
         self._corruption = Corruption(
             quadrotor_interface(),
             [dcc(_calibrated(self._consumers), self._half_range)] if self.is_dcc else [],
@@ -102,7 +102,7 @@ class PredictorTask(Task):
             training.ids,
             self.seed,
         )
-        self._supplied: Supplied = {}
+        self._delivered: DeliveredInputs = {}
 
     @property
     def is_dcc(self) -> bool:
@@ -129,14 +129,13 @@ class PredictorTask(Task):
 
     def begin_epoch(self, epoch: int) -> None:
         """Draw what each window's consumers get of the calibration in this epoch."""
-        readings = {"mass": self._train.mass_kg, "thrust_scale": self._train.thrust_scale}
-        self._supplied = self._corruption.deliver(epoch, readings)
+        self._delivered = self._corruption.deliver(epoch, self._train.calibration)
 
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
         """See `Task.loss`."""
         batch = _pick(self._train, index)
-        supplied = {tap: value[index] for tap, value in self._supplied.items()}
-        predicted = list(predict(self._recipe.predictor(module), batch, supplied))
+        delivered = {tap: value[index] for tap, value in self._delivered.items()}
+        predicted = list(predict(self._recipe.predictor(module), batch, delivered))
         return error(predicted, batch, self._scales)
 
     def validate(self, module: nn.Module) -> Mapping[str, float]:

@@ -18,13 +18,11 @@ from faultpath.quadrotor.training.quality_results import (
     PredictorQuality,
     PredictorScore,
 )
-from faultpath.quadrotor.training.replay import Supplied, predict
+from faultpath.quadrotor.training.replay import WIND, DeliveredInputs, by_batch, predict
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
 ERRORS = (-0.2, -0.1, 0.0, 0.1, 0.2)
 """Coupled calibration errors e: m~ = m (1 + e), T~ = T (1 - e) (paper, Section IV-B)."""
-BATCH = 512
-"""Windows at a time: their tensors stay in the processor's cache."""
 
 Floats = NDArray[np.float64]
 
@@ -51,12 +49,12 @@ ROWS = (
 )
 
 
-def supply(windows: Windows, consumers: frozenset[str], error: float) -> Supplied:
+def supply(windows: Windows, consumers: frozenset[str], error: float) -> DeliveredInputs:
     """Return the calibration that taps deliver to `consumers` under a coupled error, each `[W]`.
 
     Consumers that read no calibration are left alone: there is nothing to corrupt.
     """
-    readings = {"mass": windows.mass_kg, "thrust_scale": windows.thrust_scale}
+    readings = windows.calibration
     interface = quadrotor_interface()
     readers = {name for channel in readings for name in interface.channel(channel).consumers}
     faults = [calibration(error)] if consumers & readers else []
@@ -64,34 +62,35 @@ def supply(windows: Windows, consumers: frozenset[str], error: float) -> Supplie
 
 
 def position_errors(
-    predictor: Predictor, windows: Windows, supplied: Supplied, wind: str = "true"
+    predictor: Predictor, windows: Windows, delivered: DeliveredInputs, wind: str = "true"
 ) -> Tensor:
     """Return the distance of predicted from recorded positions after each step, `[20, W]`, m."""
-    found = []
-    for index in torch.arange(len(windows)).split(BATCH):
-        batch = windows.take(index)
-        told = {tap: value[index] for tap, value in supplied.items()}
-        still = torch.zeros_like(batch.wind_mps[:, 0]) if wind == "zero" else None
-        states = predict(predictor, batch, told, still)
-        ahead = batch.position[:, HISTORY + 1 :].unbind(1)
-        missed = [
-            (state.position[..., 0] - there).norm(dim=0)
-            for state, there in zip(states, ahead, strict=True)
-        ]
-        found.append(torch.stack(missed))
-    return torch.cat(found, 1)
+    if wind == "zero":
+        delivered = {**delivered, WIND: windows.mass_kg.new_zeros(len(windows), 3)}
+
+    def missed(windows: Windows, delivered: DeliveredInputs) -> Tensor:
+        ahead = windows.position[:, HISTORY + 1 :].unbind(1)
+        states = predict(predictor, windows, delivered)
+        return torch.stack(
+            [
+                (state.position[..., 0] - there).norm(dim=0)
+                for state, there in zip(states, ahead, strict=True)
+            ]
+        )
+
+    return by_batch(missed, windows, delivered)
 
 
 def measure(
     row: Row, models: Mapping[int | None, Predictor], windows: Windows, episodes: Episodes
 ) -> PredictorQuality:
     """Return the errors of the models of one row, by seed (`None`: nothing is learned)."""
-    consumers = frozenset(f"predictor.{place}" for place in next(iter(models.values())).reads)
-    told = [supply(windows, consumers, error) for error in ERRORS]
+    consumers = next(iter(models.values())).consumers()
+    calibrations = [supply(windows, consumers, error) for error in ERRORS]
     missed = {
         seed: [
-            position_errors(model, windows, supplied, row.wind).double().numpy()
-            for supplied in told
+            position_errors(model, windows, delivered, row.wind).double().numpy()
+            for delivered in calibrations
         ]
         for seed, model in models.items()
     }

@@ -5,18 +5,16 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from torch import Tensor
 
 from faultpath.quadrotor.reconstruction import Reconstruction
-from faultpath.quadrotor.reconstruction.base import Delivered
 from faultpath.quadrotor.training.quality_intervals import Drawn, Episodes
-from faultpath.quadrotor.training.quality_predictors import BATCH, ERRORS, supply
+from faultpath.quadrotor.training.quality_predictors import ERRORS, supply
 from faultpath.quadrotor.training.quality_results import (
     ReconstructionQuality,
     ReconstructionScore,
     ReconstructionUnderError,
 )
-from faultpath.quadrotor.training.replay import Supplied
+from faultpath.quadrotor.training.replay import estimate
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 from faultpath.quadrotor.wind import WIND_LEVELS
 
@@ -38,22 +36,6 @@ def levels(windows: Windows) -> NDArray[np.str_]:
     return np.array(list(WIND_LEVELS))[nearest.numpy()]
 
 
-def estimate(reconstruction: Reconstruction, windows: Windows, supplied: Supplied) -> Tensor:
-    """Return the wind at the present of every window, `[3, W]`, m/s.
-
-    The module starts anew at state 0 and takes in the 12 intervals of the history.
-    """
-    found = []
-    for index in torch.arange(len(windows)).split(BATCH):
-        batch = windows.take(index)
-        told = {tap: value[index] for tap, value in supplied.items()}
-        memory = reconstruction.begin(delivered(reconstruction, batch, told, 0))
-        for step in range(1, HISTORY + 1):
-            memory = reconstruction.update(memory, delivered(reconstruction, batch, told, step))
-        found.append(reconstruction.wind(memory))
-    return torch.cat(found, 1)
-
-
 def measure(
     name: str,
     models: Mapping[int | None, Reconstruction],
@@ -62,13 +44,13 @@ def measure(
 ) -> ReconstructionQuality:
     """Return the errors of one reconstruction, by seed (`None`: nothing is learned)."""
     consumers = next(iter(models.values())).consumers()
-    told = [supply(windows, consumers, error) for error in ERRORS]
+    calibrations = [supply(windows, consumers, error) for error in ERRORS]
     level = levels(windows)
     truth = windows.wind_mps[:, HISTORY]
     rmse: list[Drawn] = []
     scores: dict[int | None, ReconstructionScore] = {}
     for seed, model in models.items():
-        found = [estimate(model, windows, supplied) for supplied in told]
+        found = [estimate(model, windows, delivered) for delivered in calibrations]
         squared = [(each - truth).square().sum(0).double().numpy() for each in found]
         correct = ERRORS.index(0.0)
         rmse.append(episodes.root_mean_square(squared[correct]))
@@ -89,26 +71,6 @@ def measure(
         seeds={seed: score for seed, score in scores.items() if seed is not None},
         mean=_mean(Drawn.mean(rmse), list(scores.values())),
     )
-
-
-def delivered(
-    reconstruction: Reconstruction, windows: Windows, supplied: Supplied, step: int
-) -> Delivered:
-    """Return what the module reads at state `step`; at the first, the command means nothing."""
-    state = windows.state(step)
-    readings = {
-        "position": state.position,
-        "velocity": state.velocity,
-        "attitude": state.rotation,
-        "body_rate": state.rate,
-        "action": windows.command[:, max(step - 1, 0)],
-    }
-    return {
-        (channel, place): readings[channel]
-        if channel in readings
-        else supplied[channel, f"reconstruction.{place}"]
-        for channel, place in reconstruction.reads
-    }
 
 
 def _by_level(squared: Floats, level: NDArray[np.str_]) -> dict[str, float]:

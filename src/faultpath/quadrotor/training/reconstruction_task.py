@@ -15,9 +15,14 @@ from torch.nn import functional
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.reconstruction import (
+    RecurrentMemory,
+    RecurrentReconstruction,
+)
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
+from faultpath.quadrotor.training.replay import correct, remembered
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
 from faultpath.streams import generator
@@ -66,7 +71,7 @@ class _Samples:
 
     @classmethod
     def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
-        intervals, latest = network.inputs(*_history(windows))
+        intervals, latest = network.inputs(*_history(windows, network))
         return cls(
             intervals, latest, _calibration(windows), network.target(_wind(windows)), windows.ids
         )
@@ -99,7 +104,8 @@ class ReconstructionTask(Task):
 
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs and target from the training ones."""
-        self._scaled.measure(*_history(training), _calibration(training), _wind(training))
+        history = _history(training, self._scaled)
+        self._scaled.measure(*history, _calibration(training), _wind(training))
         self._training = _Samples.of(training, self._scaled)
         self._validation = _Samples.of(validation, self._scaled)
         self._corruption = self._corrupted(training.ids)
@@ -204,11 +210,11 @@ _DESCRIPTIONS = {
 }
 
 
-def _history(windows: Windows) -> tuple[Tensor, Tensor]:
-    """Return states 0..12 `[18, 13, W]` and commands 0..11 `[4, 12, W]`."""
-    rotation = windows.rotation.flatten(0, 1)
-    states = torch.cat((windows.position, windows.velocity, rotation, windows.rate))
-    return states[:, : HISTORY + 1], windows.command[:, :HISTORY]
+def _history(windows: Windows, network: WindNetwork) -> tuple[Tensor, Tensor]:
+    """Return the states `[18, 13, W]` and commands `[4, 12, W]` that the module remembers."""
+    module = RecurrentReconstruction(network)
+    memory: RecurrentMemory = remembered(module, windows, correct(module, windows))
+    return memory.states, memory.commands
 
 
 def _calibration(windows: Windows) -> Tensor:

@@ -1,110 +1,170 @@
-"""A predictor on recorded windows: what it would be told at the present, and what it predicts.
+"""Recorded windows in place of a flight: what taps deliver there, and what modules make of it.
 
-Training, validation and probes all come here, so a predictor is fitted to exactly what the closed
-loop gives it.
+Fitting, validation and evidence all come here. Modules, and the map from taps to their inputs
+(`predictors.places`), are those of a flight; only where readings come from differs.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.predictors import (
-    Calibration,
-    History,
-    Physics,
-    Predictor,
-    PredictorInputs,
-)
+from faultpath.interface import Interface
+from faultpath.quadrotor.predictors import Physics, Predictor
+from faultpath.quadrotor.predictors.places import Take, history, told
+from faultpath.quadrotor.reconstruction import Reconstruction
+from faultpath.quadrotor.reconstruction.base import Delivered, Memory
 from faultpath.quadrotor.rollout import unroll
-from faultpath.quadrotor.state import State
+from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training.windows import HISTORY, Windows
+from faultpath.taps import Reading, Taps
 
-Supplied = Mapping[tuple[str, str], Tensor]
-"""Calibration that each tap delivers, `[W]`, by channel and consumer."""
+DeliveredInputs = Mapping[tuple[str, str], Tensor]
+"""What taps delivered at the windows' present, `[W, ...]`, by channel and consumer.
+
+Calibration always comes from here, and is held over history and horizon. The wind and the history
+code may; where they do not, they follow from the recording, as motion and commands always do.
+"""
+
+WIND = ("wind", "predictor.wind_map")
+CODE = ("history_code", "predictor.latent")
+BATCH = 512
+"""Windows at a time: their tensors stay in the processor's cache."""
 
 
-def correct(predictor: Predictor, windows: Windows) -> Supplied:
-    """Return the true calibration at every place at which `predictor` reads it."""
-    values = {"mass": windows.mass_kg, "thrust_scale": windows.thrust_scale}
+def deliver(
+    taps: Taps, interface: Interface, consumers: Collection[str], readings: Mapping[str, Tensor]
+) -> dict[tuple[str, str], Tensor]:
+    """Return what `consumers` get of readings `[W, ...]`, which are given by channel."""
     return {
-        (channel, f"predictor.{place}"): value
-        for channel, value in values.items()
-        for place in predictor.reads
+        (channel, consumer): taps.deliver(
+            channel, consumer, Reading(value, taps.bindings[channel], 0), 0
+        )
+        for channel, value in readings.items()
+        for consumer in interface.channel(channel).consumers
+        if consumer in consumers
     }
 
 
-def predict(
-    predictor: Predictor,
-    windows: Windows,
-    supplied: Supplied,
-    wind_mps: Tensor | None = None,
-    code: Tensor | None = None,
-) -> Iterator[State]:
+def correct(model: Predictor | Reconstruction, windows: Windows) -> DeliveredInputs:
+    """Return the true calibration at every place at which a model reads it."""
+    return {
+        (channel, consumer): value
+        for channel, value in windows.calibration.items()
+        for consumer in model.consumers()
+    }
+
+
+def predict(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) -> Iterator[State]:
     """Yield the predicted states 13 to 32 of every window, batch `[W, 1]`.
 
-    `wind_mps` `[3, W]` replaces the true wind of the present, which is held over the horizon;
-    `code` `[32, W]` replaces the history code.
+    The wind of the present is held over the horizon.
     """
-    if code is None:
-        code = predictor.encode(history(predictor, windows, supplied))
-    wind = windows.wind_mps[:, HISTORY] if wind_mps is None else wind_mps
-    inputs = PredictorInputs(
-        state=_column(windows.state(HISTORY)),
-        trim=_calibration(supplied, "trim"),
-        dynamics=_calibration(supplied, "dynamics"),
-        wind_map_mass_kg=_at(supplied, "mass", "wind_map"),
-        wind_mps=wind[..., None],
-        physics=_physics(windows) if "physics" in predictor.reads else None,
-        thrust_mass_kg=_at(supplied, "mass", "normalise_thrust"),
-        conditioning=_calibration(supplied, "features"),
-        code=None if code is None else code[..., None],
-    )
+    if "history" in predictor.reads and CODE not in delivered:
+        delivered = {**delivered, CODE: encode(predictor, windows, delivered).T}
+    inputs = told(predictor.reads, _taps(windows, delivered, "predictor", HISTORY))
     commands = windows.command[:, HISTORY:].movedim(1, 0)[..., None]
     return unroll(predictor, inputs, commands)
 
 
-def history(predictor: Predictor, windows: Windows, supplied: Supplied) -> History:
-    """Return the recorded history of every window as `predictor` is told it, batch `[W]`."""
+def encode(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) -> Tensor:
+    """Return the code `[32, W]` of every window's history, of a predictor that reads one."""
     past = slice(0, HISTORY)
-    features = _calibration(supplied, "features") if "features" in predictor.reads else None
-    return History(
-        velocity_mps=windows.velocity[:, past],
-        rotation=windows.rotation[:, :, past],
-        rate_radps=windows.rate[:, past],
-        commands=windows.command[:, past],
-        mass_kg=supplied.get(("mass", "predictor.history"), windows.mass_kg),
-        conditioning=features and features.squeeze(),
+    code = predictor.encode(
+        history(predictor.reads, _taps(windows, delivered, "predictor", past, past))
     )
+    assert code is not None
+    return code
 
 
-def _at(supplied: Supplied, channel: str, place: str) -> Tensor:
-    """Return what a place gets, `[W, 1]`; where it does not read, a hole that would show."""
-    value = supplied.get((channel, f"predictor.{place}"))
-    if value is None:
-        value = torch.full_like(next(iter(supplied.values())), torch.nan)
-    return value[:, None]
+def remembered(
+    reconstruction: Reconstruction,
+    windows: Windows,
+    delivered: DeliveredInputs,
+    intervals: int = HISTORY,
+) -> Memory:
+    """Return what a module that starts at state 0 remembers after so many intervals."""
+    memory = reconstruction.begin(inputs_at(reconstruction, windows, delivered, 0))
+    for step in range(1, intervals + 1):
+        memory = reconstruction.update(memory, inputs_at(reconstruction, windows, delivered, step))
+    return memory
 
 
-def _calibration(supplied: Supplied, place: str) -> Calibration:
-    return Calibration(_at(supplied, "mass", place), _at(supplied, "thrust_scale", place))
+def inputs_at(
+    reconstruction: Reconstruction, windows: Windows, delivered: DeliveredInputs, step: int
+) -> Delivered:
+    """Return what a module reads at state `step`; at the first, the command means nothing."""
+    take = _taps(windows, delivered, "reconstruction", step, max(step - 1, 0))
+    return {read: take(*read) for read in reconstruction.reads}
 
 
-def _column(state: State) -> State:
-    """Add the candidate axis."""
-    return State(
-        state.position[..., None],
-        state.velocity[..., None],
-        state.rotation[..., None],
-        state.rate[..., None],
-    )
+def estimate(
+    reconstruction: Reconstruction,
+    windows: Windows,
+    delivered: DeliveredInputs,
+    padded: bool = False,
+) -> Tensor:
+    """Return the wind at the present of every window, `[3, W]`, m/s; see `by_batch`."""
+
+    def wind(windows: Windows, delivered: DeliveredInputs) -> Tensor:
+        return reconstruction.wind(remembered(reconstruction, windows, delivered))
+
+    return by_batch(wind, windows, delivered, padded)
 
 
-def _physics(windows: Windows) -> Physics:
+def by_batch(
+    compute: Callable[[Windows, DeliveredInputs], Tensor],
+    windows: Windows,
+    delivered: DeliveredInputs,
+    padded: bool = False,
+) -> Tensor:
+    """Return what `compute` makes of windows, `[..., W]`, some of them at a time.
+
+    With `padded`, the last are filled up to a multiple of 32: no window's bits then depend on how
+    many there are.
+    """
+    lanes = padded_lanes(len(windows)) if padded else torch.arange(len(windows))
+    found = [
+        compute(windows.take(index), {tap: value[index] for tap, value in delivered.items()})
+        for index in lanes.split(BATCH)
+    ]
+    return torch.cat(found, -1)[..., : len(windows)]
+
+
+def _taps(
+    windows: Windows,
+    delivered: DeliveredInputs,
+    module: str,
+    states: int | slice,
+    commands: int | slice = 0,
+) -> Take:
+    """Return what takes a module's readings, `[..., W]`; of a slice of states, `[..., T, W]`."""
+    recorded = {
+        "position": windows.position,
+        "velocity": windows.velocity,
+        "attitude": windows.rotation,
+        "body_rate": windows.rate,
+        "wind": windows.wind_mps,
+    }
+
+    def take(channel: str, place: str) -> Tensor:
+        tap = (channel, f"{module}.{place}")
+        if tap in delivered:
+            return delivered[tap].movedim(0, -1).contiguous()
+        if channel == "action":
+            return windows.command[:, commands]
+        if channel == "physics":
+            return _physics(windows)
+        return recorded[channel][..., states, :]
+
+    return take
+
+
+def _physics(windows: Windows) -> Tensor:
     return Physics(
-        inertia_kgm2=windows.inertia_kgm2[..., None],
-        torque_scale=windows.torque_scale[..., None],
-        motor_time_constant_s=windows.motor_time_constant_s[..., None],
-        drag_kgps=windows.drag_kgps[..., None],
-        collective_thrust_n=windows.motor_thrust_n[HISTORY][..., None],
-    )
+        windows.inertia_kgm2,
+        windows.torque_scale,
+        windows.motor_time_constant_s,
+        windows.drag_kgps,
+        windows.motor_thrust_n[HISTORY],
+    ).reading()

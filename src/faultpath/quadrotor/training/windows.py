@@ -74,6 +74,11 @@ class Windows:
             tuple(self.ids[i] for i in index.tolist()),
         )
 
+    @property
+    def calibration(self) -> dict[str, Tensor]:
+        """The true calibration by channel, `[W]` each."""
+        return {"mass": self.mass_kg, "thrust_scale": self.thrust_scale}
+
     def state(self, k: int) -> State:
         """Return state `k` (0..32) of every window."""
         return State(
