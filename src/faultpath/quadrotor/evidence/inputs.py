@@ -1,4 +1,4 @@
-"""What a variant's taps deliver on every window, and under faults."""
+"""What the taps of a variant deliver on recorded windows, under faults."""
 
 from __future__ import annotations
 
