@@ -35,11 +35,11 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, monkeypatch):
     replayed: list[PredictorInputs] = []
     for module, seen in ((prediction, flown), (replay, replayed)):
 
-        def spy(reads, take, original=module.told, seen=seen):
+        def spy(reads, take, original=module.predictor_inputs, seen=seen):
             seen.append(original(reads, take))
             return seen[-1]
 
-        monkeypatch.setattr(module, "told", spy)
+        monkeypatch.setattr(module, "predictor_inputs", spy)
     system = create(wind="L3", environment="free-space", clearance="true")
     assert isinstance(system, Quadrotor)
     scene = system.library("selection").scenes[0].id

@@ -7,7 +7,7 @@ from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.quadrotor.modules.candidates import Candidates, Predicted
 from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of, scenes_first
 from faultpath.quadrotor.predictors import Predictor
-from faultpath.quadrotor.predictors.places import ports, told
+from faultpath.quadrotor.predictors.places import ports, predictor_inputs
 from faultpath.quadrotor.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import Query
@@ -38,7 +38,7 @@ class Prediction(Module):
         def take(channel: str, place: str) -> Tensor:
             return lanes_last(inputs[Port(channel, place)], lanes).float()
 
-        known = told(self._predictor.reads, take)
+        known = predictor_inputs(self._predictor.reads, take)
         hover = known.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
 
         def predict(asked: Candidates) -> Predicted:

@@ -44,7 +44,7 @@ def calibration(take: Take, place: str) -> Calibration:
     return Calibration(take("mass", place), take("thrust_scale", place))
 
 
-def told(reads: Collection[str], take: Take) -> PredictorInputs:
+def predictor_inputs(reads: Collection[str], take: Take) -> PredictorInputs:
     """Return what a predictor that reads at these places is told, batch `[*lanes, 1]`.
 
     `take` gives `[..., *lanes]`; of the places in `reads`, only that of the history is not asked.

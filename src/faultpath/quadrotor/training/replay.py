@@ -11,7 +11,7 @@ from torch import Tensor
 
 from faultpath.interface import Interface
 from faultpath.quadrotor.predictors import Physics, Predictor
-from faultpath.quadrotor.predictors.places import Take, history, told
+from faultpath.quadrotor.predictors.places import Take, history, predictor_inputs
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.reconstruction.base import Delivered, Memory
 from faultpath.quadrotor.rollout import unroll
@@ -62,7 +62,7 @@ def predict(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) 
     """
     if "history" in predictor.reads and CODE not in delivered:
         delivered = {**delivered, CODE: encode(predictor, windows, delivered).T}
-    inputs = told(predictor.reads, _taps(windows, delivered, "predictor", HISTORY))
+    inputs = predictor_inputs(predictor.reads, _taps(windows, delivered, "predictor", HISTORY))
     commands = windows.command[:, HISTORY:].movedim(1, 0)[..., None]
     return unroll(predictor, inputs, commands)
 
