@@ -8,7 +8,7 @@ import torch
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.predictors import PredictorInputs
-from faultpath.quadrotor.system import Quadrotor, create
+from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay
 from faultpath.quadrotor.training.closed_loop import record_flights
 from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows
@@ -40,8 +40,7 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, monkeypatch):
             return seen[-1]
 
         monkeypatch.setattr(module, "predictor_inputs", spy)
-    system = create(wind="L3", environment="free-space", clearance="true")
-    assert isinstance(system, Quadrotor)
+    system = Quadrotor.parse(wind="L3", environment="free-space", clearance="true")
     scene = system.library("selection").scenes[0].id
     flights = record_flights(system, variant, (scene,), 0)
     pool = Flown.decode("x", encode_rows(range(1), flights), encode_episodes(range(1), flights))
