@@ -15,7 +15,7 @@ from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
 from paper_blocks import SHIPPED
 
-from faultpath.cli.pages import RECORD, SYSTEM, TRACES
+from faultpath.door.saved import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
 from faultpath.report import ReportInput, Traces, write_report

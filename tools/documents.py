@@ -28,7 +28,7 @@ import platform_blocks
 from blocks import REFERENCE, ROOT, Wrong, load
 from pictures import IMAGES, digest, made_from, make_images
 
-from faultpath.cli.pages import MADE_FROM
+from faultpath.door.saved import MADE_FROM
 from faultpath.selfcheck import Report, failures, page
 
 sys.path.insert(0, str(ROOT))

@@ -1,9 +1,9 @@
 """A system with three modules that only lays out arms and never runs."""
 
-from faultpath.audit import Audit, plan_audit
 from faultpath.faults import Coupled, Fault, parse_fault
 from faultpath.faults.values import Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
+from faultpath.planning import Audit, plan_audit
 from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
 
 INTERFACE = Interface(

@@ -3,9 +3,9 @@
 import pytest
 from audit_toys import INTERFACE, Paper, planned
 
-from faultpath.audit import Audit
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
+from faultpath.planning import Audit
 from faultpath.trials import Status, Variant
 
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.audit import Audit, plan_audit
 from faultpath.execution import run_study
 from faultpath.faults import parse_fault
+from faultpath.planning import Audit, plan_audit
 from faultpath.record import DecisionRecord, StruckTap
 from faultpath.store import read_deliveries, read_outcomes
 from faultpath.trials import SystemSpec, load_system

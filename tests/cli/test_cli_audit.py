@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
 
-from faultpath.cli.records import read_record
+from faultpath.door.saved import read_record
 from faultpath.interface import read_interface
 from faultpath.record import SHARED
 

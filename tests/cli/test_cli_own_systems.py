@@ -154,7 +154,7 @@ def test_a_system_that_flies_wrongly(code, says, workers, tmp_path):
 
 def test_an_error_of_ours_keeps_its_traceback(monkeypatch, tmp_path):
     broken = Mock(side_effect=AssertionError("a bug of faultpath"))
-    monkeypatch.setattr("faultpath.cli.run.save_pages", broken)
+    monkeypatch.setattr("faultpath.door.run.write_report", broken)
     with pytest.raises(AssertionError, match="a bug of faultpath"):
         audit(out=tmp_path / "run")
 

@@ -4,7 +4,7 @@ import json
 
 from cli_runs import audit, faultpath
 
-from faultpath.cli.records import read_record
+from faultpath.door.saved import read_record
 from faultpath.quadrotor import native
 from faultpath.quadrotor.scenes.library import write_library
 from faultpath.trials import SystemSpec, load_system

@@ -7,21 +7,25 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.cli.studies import Done, carry_out, tell
+from faultpath.cli.reproduce import tell
+from faultpath.door.display import Display
+from faultpath.door.reproducing import carry_out
+from faultpath.door.reproduction import ReproductionRun
 from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
 from faultpath.studies.pages import figure_2, table_4
 from faultpath.studies.run import Plan
 from faultpath.tables import MISSING
 
+TOLD = Display(command=("faultpath", "reproduce"))
 ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Done:
-    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), 0, ("faultpath", "reproduce"))
+def done(tmp_path_factory: pytest.TempPathFactory) -> ReproductionRun:
+    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), 0, TOLD)
 
 
-def test_every_file_is_there(done: Done) -> None:
+def test_every_file_is_there(done: ReproductionRun) -> None:
     assert done.folder.name == "table-4"
     assert {path.name for path in done.folder.iterdir()} == {
         "deliveries.json",
@@ -37,7 +41,7 @@ def test_every_file_is_there(done: Done) -> None:
     }
 
 
-def test_no_file_names_the_library_that_did_not_fly(done: Done) -> None:
+def test_no_file_names_the_library_that_did_not_fly(done: ReproductionRun) -> None:
     """`The library selection takes the place of the held-out one` apart."""
     stands = "takes the place of the held-out one"
     for name in ("ledger.md", "tables.md", "tables.tex", "reproduction.html"):
@@ -45,39 +49,41 @@ def test_no_file_names_the_library_that_did_not_fly(done: Done) -> None:
         assert "held-out" not in text.lower(), name
 
 
-def test_no_figure_of_ours_is_missing(done: Done) -> None:
-    (table,) = done.reproduction.tables
+def test_no_figure_of_ours_is_missing(done: ReproductionRun) -> None:
+    (table,) = done.record.tables
     assert MISSING not in {entry.text for line in table.lines for entry in line.entries}
 
 
-def test_the_ledger_holds_the_claims_that_the_table_is_about(done: Done) -> None:
-    claims = {claim.id for claim in done.reproduction.ledger.claims}
+def test_the_ledger_holds_the_claims_that_the_table_is_about(done: ReproductionRun) -> None:
+    claims = {claim.id for claim in done.record.ledger.claims}
     assert {"C23", "C24", "C26", "C28", "C29"} <= claims
     assert "C05" not in claims
 
 
-def test_the_fault_at_the_reconstruction_hurts_what_trusts_calibration(done: Done) -> None:
+def test_the_fault_at_the_reconstruction_hurts_what_trusts_calibration(
+    done: ReproductionRun,
+) -> None:
     """The effect is so large that few scenes show it."""
-    claims = {claim.id: claim for claim in done.reproduction.ledger.claims}
+    claims = {claim.id: claim for claim in done.record.ledger.claims}
     assert claims["C23"].verdict == "confirmed"
     assert claims["C28"].parts[0].answer == "confirmed"
 
 
-def test_the_same_command_again_flies_nothing(done: Done) -> None:
-    again = carry_out(ASKED, done.folder.parent, 0, ("faultpath", "reproduce"))
+def test_the_same_command_again_flies_nothing(done: ReproductionRun) -> None:
+    again = carry_out(ASKED, done.folder.parent, 0, TOLD)
     provenance = (again.folder / "provenance.json").read_text("utf-8")
     assert '"blocks_computed": 0' in provenance
-    assert again.reproduction.tables == done.reproduction.tables
+    assert again.record.tables == done.record.tables
 
 
-def test_the_tables_are_printed(done: Done, capsys: pytest.CaptureFixture[str]) -> None:
-    tell(ASKED, done)
+def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:
+    tell(done, whole=False)
     assert "Wins:losses" in capsys.readouterr().out
 
 
 def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
     drawn = Plan((figure_2.PAGE,), QUICK, {HELD_OUT: SELECTION})
-    done = carry_out(drawn, tmp_path, 0, ("faultpath", "reproduce"))
+    done = carry_out(drawn, tmp_path, 0, TOLD)
     page = (done.folder / "reproduction.html").read_text("utf-8")
-    assert (done.reproduction.trials, done.reproduction.flown) == (0, None)
-    assert all(shown.topology in page for shown in done.reproduction.gallery)
+    assert (done.record.trials, done.record.flown) == (0, None)
+    assert all(shown.topology in page for shown in done.record.gallery)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from cli_runs import audit
 
-from faultpath.cli.records import read_record
+from faultpath.door.saved import read_record
 from faultpath.record import DecisionRecord
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.cli.pages import save_pages
+from faultpath.door.run import open_run
 from faultpath.record import DecisionRecord
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -74,7 +74,7 @@ def taken(conclude, finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 def test_a_reference_folder_is_enough_for_report(taken: Path) -> None:
     before = {path.name: path.read_bytes() for path in taken.iterdir()}
-    save_pages(taken)
+    open_run(taken).report()
     assert {path.name: path.read_bytes() for path in taken.iterdir()} == before
 
 
@@ -86,7 +86,7 @@ def test_a_run_decided_anew_is_still_enough_for_report(conclude, taken: Path) ->
     (taken / "record.json").write_text(json.dumps(record))
     conclude.conclude_all(lambda _: None)
     before = {path.name: path.read_bytes() for path in taken.iterdir()}
-    save_pages(taken)
+    open_run(taken).report()
     assert {path.name: path.read_bytes() for path in taken.iterdir()} == before
     assert b"Something of before." not in b"".join(before.values())
     assert before["traces.parquet"] == traces
@@ -95,4 +95,4 @@ def test_a_run_decided_anew_is_still_enough_for_report(conclude, taken: Path) ->
 def test_every_reference_folder_with_receipts_is_enough_for_report(tmp_path: Path) -> None:
     for place in sorted((ROOT / "docs" / "reference").glob("*/provenance.json")):
         if "deliveries.json" in json.loads(place.read_bytes()).get("files", {}):
-            save_pages(Path(shutil.copytree(place.parent, tmp_path / place.parent.name)))
+            open_run(Path(shutil.copytree(place.parent, tmp_path / place.parent.name)))

@@ -9,10 +9,10 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from faultpath.audit import Audit, plan_audit
 from faultpath.execution import run_study
 from faultpath.execution.provenance import packages, processor
 from faultpath.faults import parse_fault
+from faultpath.planning import Audit, plan_audit
 from faultpath.record import DecisionRecord, RunProvenance, decide
 from faultpath.store import read_outcomes
 from faultpath.store.tables import encode_outcomes

@@ -1,18 +1,14 @@
 """`faultpath audit`: run the arms of one question, decide, report."""
 
-import hashlib
-import re
 import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, numbers, path, settings, worker_count
+from faultpath.cli.options import SET, TimeLimit, numbers, path, settings
 
 FAILED_TRIALS = 1
-LONGEST_NAME = 180
-"""Of a run folder; file systems take 255 bytes."""
 
 
 def command(
@@ -58,58 +54,31 @@ def command(
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
-    from faultpath.audit import plan_audit
-    from faultpath.faults import parse_fault
-    from faultpath.patience import patience
-    from faultpath.trials import SystemSpec, library_of, load_system
+    drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
-    options = settings(set_ or [])
-    spec = SystemSpec(name=system, options=options)
-    with patience(system, time_limit):
-        built = load_system(spec)
-        scenes_from = library_of(built, library)
-    audit = plan_audit(
-        built,
-        spec,
+    from faultpath.door.audit import audit
+    from faultpath.door.display import Display, SafeConsole
+
+    console = SafeConsole()
+    run = audit(
+        system,
         baseline=baseline,
         repair=repair,
-        fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
-        fault_text=fault,
-        library=scenes_from,
+        fault=fault,
+        library=library,
         scenes=scenes,
-        seeds=numbers(seeds, "--seeds"),
+        seeds=drawn,
         primary=primary,
         generalise=generalise,
+        options=options,
+        folder=out,
+        workers=workers,
+        time_limit_s=time_limit,
+        progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
-    # Pages and workers: no mistake so far waits for them.
-    from faultpath.cli.run import run_audit
-    from faultpath.store.earlier import keyed
-    from faultpath.trials.state import system_code
+    from faultpath.report import decision
 
-    name = _name(audit.study.name, fault, library, scenes, seeds, options)
-    folder, other = (out, "") if out else keyed(Path("runs"), name, system_code(built, spec).state)
-    count = worker_count(built, workers)
-
-    failed = run_audit(built, audit, folder, count, ("faultpath", *sys.argv[1:]), other, time_limit)
-    return FAILED_TRIALS if failed else 0
-
-
-def _name(
-    study: str,
-    fault: str,
-    library: str,
-    scenes: int | None,
-    seeds: str,
-    options: dict[str, str],
-) -> str:
-    """Name the run folder after everything that makes it another study."""
-    parts = [study, fault, Path(library).stem, *(f"{k}-{v}" for k, v in sorted(options.items()))]
-    if scenes is not None:
-        parts.append(f"{scenes}-scenes")
-    if seeds != "0":
-        parts.append(f"seeds-{seeds}")
-    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
-    if len(name) > LONGEST_NAME:
-        name = f"{name[:LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
-    return name
+    console.print(decision(run.record))
+    console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
+    return FAILED_TRIALS if run.failed else 0

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path, refuse_unless, worker_count
+from faultpath.cli.options import TimeLimit, path, refuse_unless
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
@@ -55,24 +55,25 @@ def command(
             time_limit=time_limit,
         )
         return _show(run, as_json)
-    profile = profile or "paper"
-    from faultpath.studies.run import plan, standing
+    from faultpath.cli.reproduce import tell
+    from faultpath.door.display import Display, SafeConsole
+    from faultpath.door.reproduction import reproduce
 
-    options = {} if device is None else {"device": device}
-    asked = plan((), profile, standing(str(library)), options)
-    folder, other = (out, "") if out else asked.folder(f"claims-{library.stem}-{profile}")
-
-    from faultpath.cli.studies import carry_out, tell
-
-    line = ("faultpath", *sys.argv[1:])
-    done = carry_out(
-        asked, folder, worker_count(asked.system, workers), line, as_json, other, time_limit
+    done = reproduce(
+        profile=profile or "paper",
+        library=str(library),
+        folder=out,
+        workers=workers,
+        device=device,
+        time_limit_s=time_limit,
+        progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
+        name="claims",
     )
     if as_json:
-        _print(done.reproduction.ledger)
+        _print(done.record.ledger)
     else:
-        tell(asked, done)
-    return FAILED_TRIALS if done.reproduction.failed_trials else 0
+        tell(done, whole=True)
+    return FAILED_TRIALS if done.record.failed_trials else 0
 
 
 def _show(run: Path | None, as_json: bool) -> int:
@@ -87,7 +88,7 @@ def _show(run: Path | None, as_json: bool) -> int:
     if as_json:
         _print(answers)
         return 0
-    from faultpath.cli.terminal import SafeConsole
+    from faultpath.door.display import SafeConsole
     from faultpath.report.reproduction import ledger_view
 
     SafeConsole().print(ledger_view(answers))

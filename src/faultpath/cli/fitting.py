@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from faultpath.cli.terminal import SafeConsole
+from faultpath.door.display import SafeConsole
 from faultpath.errors import Stopped
 from faultpath.tables import MISSING, Line, Table, line
 from faultpath.tables.terminal import drawn

@@ -23,7 +23,7 @@ def command(
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
 ) -> None:
     """Print a system's information interface, and draw it."""
-    from faultpath.cli.terminal import SafeConsole
+    from faultpath.door.display import SafeConsole
     from faultpath.errors import UserError
     from faultpath.interface import interface_yaml, json_schema
     from faultpath.report import draw_interface, interface_table

@@ -1,18 +1,14 @@
 """Reading what several verbs take."""
 
-import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from faultpath.errors import UserError
 from faultpath.text import one_line, steers
-
-if TYPE_CHECKING:
-    from faultpath.trials import System
 
 _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
@@ -32,13 +28,6 @@ TimeLimit = Annotated[
 
 SET = "Option of the system, key=value; for scripts, and where a flag above has the same name."
 """Help of `--set`."""
-
-
-def worker_count(system: "System", asked: int | None) -> int:
-    """Return the number of worker processes: one a core where the system gains by several."""
-    if asked is not None:
-        return asked
-    return (os.cpu_count() or 1) if system.parallel else 1
 
 
 def check_arguments(arguments: Sequence[str]) -> None:

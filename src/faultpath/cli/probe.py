@@ -73,7 +73,7 @@ def command(
     if as_json:
         typer.echo(probe.model_dump_json(indent=2))
     else:
-        from faultpath.cli.terminal import SafeConsole
+        from faultpath.door.display import SafeConsole
 
         SafeConsole().print(_table(probe))
 
@@ -83,7 +83,7 @@ def _measure(
 ) -> "EvidenceTable":
     from rich.progress import Progress
 
-    from faultpath.cli.terminal import SafeConsole
+    from faultpath.door.display import SafeConsole
 
     console = SafeConsole(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_interactive) as bar:

@@ -17,7 +17,7 @@ def command(
     if not (folder / "provenance.json").exists():
         raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
 
-    from faultpath.cli.pages import save_pages
+    from faultpath.door.run import open_run
 
-    for written in save_pages(folder):
+    for written in open_run(folder).report():
         typer.echo(written)

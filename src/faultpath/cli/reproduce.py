@@ -2,11 +2,14 @@
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path, worker_count
+from faultpath.cli.options import TimeLimit, path
+
+if TYPE_CHECKING:
+    from faultpath.door.reproduction import ReproductionRun
 
 FAILED_TRIALS = 1
 
@@ -32,24 +35,33 @@ def command(
     time_limit: TimeLimit = None,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and set the results beside it."""
-    from faultpath.studies.run import plan, standing
+    from faultpath.door.display import Display, SafeConsole
+    from faultpath.door.reproduction import reproduce
 
-    options = {} if device is None else {"device": device}
-    asked = plan(pages or (), profile, standing(library), options)
-    own = "" if library is None else f"-{Path(library).stem}"
-    name = f"reproduction{own}-{asked.profile.name}"
-    folder, other = (out, "") if out else asked.folder(name)
-
-    from faultpath.cli.studies import carry_out, tell
-
-    line = ("faultpath", *sys.argv[1:])
-    done = carry_out(
-        asked,
-        folder,
-        worker_count(asked.system, workers),
-        line,
-        first=other,
+    run = reproduce(
+        pages or (),
+        profile=profile,
+        library=library,
+        folder=out,
+        workers=workers,
+        device=device,
         time_limit_s=time_limit,
+        progress=Display(SafeConsole(), ("faultpath", *sys.argv[1:])),
     )
-    tell(asked, done)
-    return FAILED_TRIALS if done.reproduction.failed_trials else 0
+    tell(run, whole=not pages)
+    return FAILED_TRIALS if run.record.failed_trials else 0
+
+
+def tell(run: "ReproductionRun", whole: bool) -> None:
+    """Print what came out: the ledger of the whole paper, or the tables of its pages."""
+    from faultpath.door.display import SafeConsole
+    from faultpath.report.reproduction import ledger_view
+    from faultpath.tables.terminal import drawn
+
+    console = SafeConsole()
+    if whole:
+        console.print(ledger_view(run.record.ledger))
+    for table in () if whole else run.record.tables:
+        console.print(drawn(table))
+    page = run.folder / "reproduction.html"
+    console.print(f"Report: {page}", markup=False, soft_wrap=True)

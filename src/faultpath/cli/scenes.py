@@ -45,7 +45,7 @@ def _making(count: int) -> Generator[Callable[[int], None]]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
     from rich.progress import TimeRemainingColumn as TimeLeft
 
-    from faultpath.cli.terminal import SafeConsole
+    from faultpath.door.display import SafeConsole
 
     columns = (
         TextColumn("{task.description}"),

@@ -36,8 +36,7 @@ def statistics(
 
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
-    from faultpath.cli.run import left
-    from faultpath.cli.terminal import SafeConsole
+    from faultpath.door.display import SafeConsole, left
     from faultpath.selfcheck import check_statistics, failures
     from faultpath.selfcheck.terminal import show
     from faultpath.store import check_writable, write_text

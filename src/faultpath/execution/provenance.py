@@ -8,10 +8,10 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-import faultpath
 from faultpath.code import Code
 from faultpath.execution.runner import RunResult
 from faultpath.record.provenance import RunProvenance
+from faultpath.version import __version__
 
 _PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 
@@ -37,10 +37,10 @@ def run_provenance(
     files: Mapping[str, str] | None = None,
 ) -> RunProvenance:
     """Describe the run that has just finished; `files` are digests of what it wrote, by name."""
-    commit, dirty = checkout(Path(faultpath.__file__).parent)
+    commit, dirty = checkout(Path(__file__).parents[1])
     system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
     return RunProvenance(
-        faultpath_version=faultpath.__version__,
+        faultpath_version=__version__,
         commit=commit,
         dirty=dirty,
         command=tuple(command),

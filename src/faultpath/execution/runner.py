@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-import faultpath
 from faultpath.code import Code
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
@@ -30,6 +29,7 @@ from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
+from faultpath.version import __version__
 from faultpath.work import Executor, local
 
 _log = logging.getLogger("faultpath")
@@ -122,7 +122,7 @@ def run_study(
     check_rows(study.rows, system.variants)
     units = plan(study.arms(), scenes, system.block_size, library, fingerprint)
     manifest = Manifest(
-        faultpath_version=faultpath.__version__,
+        faultpath_version=__version__,
         code=code.state,
         library_hash=library.content_hash,
         study=study,

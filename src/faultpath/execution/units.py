@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 
-import faultpath
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
+from faultpath.version import __version__
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def plan(
 
 def _key(arm: Arm, scenes: Sequence[str], library: Library, fingerprint: str) -> str:
     content = {
-        "faultpath": faultpath.__version__,
+        "faultpath": __version__,
         "system": fingerprint,
         "arm": arm.model_dump(mode="json"),
         "scenes": list(scenes),

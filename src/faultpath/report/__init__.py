@@ -5,6 +5,7 @@ from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Trac
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_terminal import interface_table
 from faultpath.report.interface_wiring import StruckPath, struck_paths
+from faultpath.report.notebook import notebook_view
 from faultpath.report.tables import latex_table, markdown_table
 from faultpath.report.terminal import decision
 from faultpath.report.write import write_report
@@ -20,6 +21,7 @@ __all__ = [
     "interface_table",
     "latex_table",
     "markdown_table",
+    "notebook_view",
     "report_page",
     "struck_paths",
     "write_report",

@@ -5,8 +5,8 @@ Its decision record and its flights are what a report shows of the reversal.
 
 from dataclasses import replace
 
-from faultpath.audit import struck_taps
 from faultpath.faults import Fault
+from faultpath.planning import struck_taps
 from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
 from faultpath.studies.flights import SYSTEM, Leg
 from faultpath.studies.pages import table_4

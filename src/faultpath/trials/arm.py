@@ -7,6 +7,8 @@ from pydantic import BaseModel, ConfigDict
 
 from faultpath.faults import AnyFault
 
+_OBJECT = " object"
+
 
 class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -17,6 +19,16 @@ class SystemSpec(_Frozen):
 
     name: str
     options: dict[str, str] = {}
+
+    @classmethod
+    def of_class(cls, kind: type) -> "SystemSpec":
+        """Return what stands for an object of this class, which only its own process has."""
+        return cls(name=f"{kind.__name__}{_OBJECT}")
+
+    @property
+    def is_object(self) -> bool:
+        """Whether nothing can build the system again; no name of a factory reads like this."""
+        return self.name.endswith(_OBJECT) and ":" not in self.name
 
 
 class Arm(_Frozen):

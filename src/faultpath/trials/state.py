@@ -1,7 +1,10 @@
 """What decides the trials of a system beside variant, scene, faults and seed."""
 
+import inspect
 import sys
+from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 from faultpath.code import Code, CodeState, Root, read_code
 from faultpath.trials.arm import SystemSpec
@@ -17,15 +20,38 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     """Return the code and data that `system`, built from `spec`, flies with, in their state.
 
     Its own modules and all that they import, faultpath's included, the data files that it names,
-    and what its `fingerprint()` says. `UserError` for a data file that cannot be read.
+    and what its `fingerprint()` says. Of an object that nothing can build again, that is the file
+    of its class, or its source where it was typed into a notebook. `UserError` for a data file that
+    cannot be read.
     """
-    root = factory_root(spec)
-    return read_code(
-        (root, *_classes(system, root), _FLIES),
+    root = _class_root(system) if spec.is_object else factory_root(spec)
+    code = read_code(
+        ((root,) if root else ()) + (*_classes(system, root), _FLIES),
         data=map(Path, system.data_files),
-        base=None if root.path is None else root.path.parent,
-        given=fingerprint_of(system),
+        base=root.path.parent if root and root.path else None,
+        given=fingerprint_of(system) if root else f"{_source(system)}{fingerprint_of(system)}",
     )
+    return code if root else replace(code, main=None)
+
+
+def _class_root(system: System) -> Root | None:
+    """Return the module of an object's class; `None` where it is in no file."""
+    name = type(system).__module__
+    file = _file(sys.modules.get(name))
+    return None if file is None else Root(name, file)
+
+
+def _file(module: ModuleType | None) -> Path | None:
+    """Return a module's file; what is typed in, or piped in, has none."""
+    name = getattr(module, "__file__", None)
+    return Path(name) if name and Path(name).is_file() else None
+
+
+def _source(system: System) -> str:
+    try:
+        return inspect.getsource(type(system))
+    except (OSError, TypeError):
+        return ""
 
 
 def source_state(spec: SystemSpec) -> CodeState:
@@ -33,15 +59,15 @@ def source_state(spec: SystemSpec) -> CodeState:
     return read_code((factory_root(spec), _FLIES)).state
 
 
-def _classes(system: System, root: Root) -> tuple[Root, ...]:
+def _classes(system: System, root: Root | None) -> tuple[Root, ...]:
     """Return the modules of the system's classes, which its factory may have found anywhere."""
     found: dict[str, Root] = {}
     for each in type(system).__mro__:
         module = sys.modules.get(each.__module__)
-        file = getattr(module, "__file__", None)
-        if module is None or file is None or each.__module__ == root.module:
+        file = _file(module)
+        if module is None or file is None or (root and each.__module__ == root.module):
             continue
         findable = getattr(module, "__spec__", None) is not None
         name = each.__module__
-        found[name] = Root(name, None if findable else Path(file), of_system=False)
+        found[name] = Root(name, None if findable else file, of_system=False)
     return tuple(found.values())

@@ -13,7 +13,6 @@ import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-import faultpath
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import wind
@@ -28,6 +27,7 @@ from faultpath.quadrotor.training.provenance import (
 from faultpath.quadrotor.training.shards import Shard
 from faultpath.store import atomic
 from faultpath.store.lock import locked
+from faultpath.version import __version__
 from faultpath.work import local, run_all
 
 EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
@@ -159,7 +159,7 @@ def _assemble(path: Path, asked: Recipe, shards: Sequence[Shard]) -> None:
     steps = pools_on_disk.steps_of(episodes)
     provenance = Provenance(
         **dict(asked),
-        faultpath_version=faultpath.__version__,
+        faultpath_version=__version__,
         packages=packages(),
         rows=int(steps.sum()) + len(steps),
         vehicle_seconds=pools_on_disk.vehicle_seconds(steps),

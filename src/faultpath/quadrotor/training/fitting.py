@@ -19,7 +19,6 @@ from safetensors.torch import save
 from torch import LongTensor, nn
 from torch.optim import Adam, AdamW, Optimizer
 
-import faultpath
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import read_card, stem
 from faultpath.quadrotor.checkpoint import digest, save_checkpoint, tensors
@@ -32,6 +31,7 @@ from faultpath.quadrotor.training.journal import (
 from faultpath.quadrotor.training.scalars import Scalars, open_scalars
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.streams import generator
+from faultpath.version import __version__
 
 __all__ = ["Diverged", "Moment", "Schedule", "Task", "fit", "forget"]
 
@@ -165,7 +165,7 @@ class _Work:
             "description": str(self._task.describe().get("description", "")),
             "first_loss": self._first_loss,
             "torch_version": torch.__version__,
-            "faultpath_version": faultpath.__version__,
+            "faultpath_version": __version__,
         }
         save_checkpoint(self._module, self._path, card)
         self._journal.unlink(missing_ok=True)

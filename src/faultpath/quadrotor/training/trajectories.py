@@ -12,7 +12,6 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-import faultpath
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import native
 from faultpath.quadrotor.system import Quadrotor
@@ -30,6 +29,7 @@ from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
+from faultpath.version import __version__
 from faultpath.work import local, run_all
 
 POOL = "trajectory"
@@ -126,7 +126,7 @@ def _assemble(path: Path, place: Path) -> None:
         },
         wind={},
         code_sha256=code_sha256(),
-        faultpath_version=faultpath.__version__,
+        faultpath_version=__version__,
         packages=packages(),
         rows=int(steps.sum()) + len(steps),
         vehicle_seconds=vehicle_seconds(steps),

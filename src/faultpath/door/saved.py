@@ -1,18 +1,19 @@
-"""From a run folder to its pages. What is in the folder is all that they are made from."""
+"""What a finished audit left in its folder, read as data: nothing that it names is imported."""
 
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from faultpath.audit import struck_taps
-from faultpath.cli.records import parsed, read_provenance
+from pydantic import BaseModel, ValidationError
+
 from faultpath.errors import UserError
+from faultpath.planning import struck_taps
 from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import ReportInput, Traces, write_report
+from faultpath.report import ReportInput, Traces
 from faultpath.store import read_table
 from faultpath.store.parquet import Unreadable
-from faultpath.store.sealed import AGAIN, unseal
+from faultpath.store.sealed import AGAIN, read_regular, unseal
 from faultpath.store.tables import decode_outcomes, decode_traces
 from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
@@ -26,25 +27,28 @@ RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES = (
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of a run folder that its pages are made from, and checked against."""
 
+_Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")
 
 
-def save_pages(folder: Path) -> list[Path]:
-    """Write report and tables from what the run folder holds; return their paths.
+def read_record(folder: Path) -> DecisionRecord:
+    """Read `record.json`; `UserError` when it is missing, damaged or of another version."""
+    path = folder / RECORD
+    return _parsed(read_regular(path), path, DecisionRecord)
 
-    The folder is taken for data: nothing that it names is imported, and every file is compared with
-    the digest in `provenance.json` first. `UserError` for a file that is missing, damaged or
-    changed, and for files that do not belong together.
+
+def read_run(folder: Path) -> ReportInput:
+    """Read all that the pages of a run are made from.
+
+    Every file is compared with the digest in `provenance.json` first. `UserError` for a file that
+    is missing, damaged or changed, and for files that do not belong together.
     """
-    return write_report(_read(folder), folder)
-
-
-def _read(folder: Path) -> ReportInput:
-    provenance = read_provenance(folder)
+    place = folder / "provenance.json"
+    provenance = _parsed(read_regular(place), place, RunProvenance)
     held = unseal(folder, provenance.files, MADE_FROM)
-    record = parsed(held[RECORD], folder / RECORD, DecisionRecord)
-    shown = parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
-    deliveries = parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
+    record = _parsed(held[RECORD], folder / RECORD, DecisionRecord)
+    shown = _parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
+    deliveries = _parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
     outcomes = _decoded(held[OUTCOMES], folder / OUTCOMES, decode_outcomes)
     traces = _decoded(held[TRACES], folder / TRACES, decode_traces)
     doubts = _doubts(record, provenance, shown, outcomes) or _unlike(record, deliveries)
@@ -62,6 +66,18 @@ def _read(folder: Path) -> ReportInput:
         ),
         plans=shown.plans,
     )
+
+
+def _parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
+    """Return a file's contents as `model`; `UserError` when they are not that."""
+    try:
+        return model.model_validate_json(data)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"])) or "the whole"
+        raise UserError(
+            f"{path} is damaged or of another version of faultpath ({where!r}): {AGAIN}."
+        ) from None
 
 
 def _decoded(data: bytes, path: Path, decode: Callable[[bytes], _Table]) -> _Table:

@@ -1,0 +1,154 @@
+"""`faultpath.audit`: run the arms of one question, decide, and write the run folder."""
+
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
+from datetime import datetime
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from faultpath.door.checks import checked_count, checked_seeds, checked_texts
+from faultpath.door.display import Display, display
+from faultpath.door.systems import Chosen, choose, worker_count
+from faultpath.errors import UserError
+from faultpath.faults import parse_fault
+from faultpath.planning import Audit, plan_audit
+from faultpath.record import Generalise
+from faultpath.trials import System, library_of
+from faultpath.trials.state import system_code
+
+if TYPE_CHECKING:
+    from faultpath.door.run import Run
+
+_LONGEST_NAME = 180
+"""Of a run folder; file systems take 255 bytes."""
+
+
+def audit(
+    system: str | PathLike[str] | System,
+    *,
+    baseline: str,
+    repair: str,
+    fault: str,
+    library: str = "held-out",
+    scenes: int | None = None,
+    seeds: int | Sequence[int] = 0,
+    primary: str | None = None,
+    generalise: Generalise = "scenes",
+    options: Mapping[str, object] | None = None,
+    folder: str | PathLike[str] | None = None,
+    workers: int | None = None,
+    time_limit_s: float | None = None,
+    progress: bool | Display = True,
+) -> "Run":
+    """Audit a repair against a baseline under correct inputs, under the fault at each module
+    alone, and under the shared fault.
+
+    Args:
+        system: `quadrotor`, `module:attribute`, `file.py:attribute`, a file in which `create`
+            builds the system, or a `System`. One that `load_system` gave is built again from its
+            name and options, in worker processes too. Any other object flies as it is, in this
+            process, and its trials are never taken for those of another call.
+        baseline: Variant to compare with.
+        repair: Variant that is meant to help.
+        fault: As on the command line: `calibration=+0.1`, `mass:scale=1.1`,
+            `wind:delay=5@predictor,onset=20`.
+        library: Library of scenes, by name or file.
+        scenes: How many of its first scenes; `None` for all.
+        seeds: Seeds of the noise, and of trained models where there are any.
+        primary: Path that leads the headline, a module or `shared`; default the shared one.
+        generalise: To new `scenes`, or to newly trained `models` too, which takes several seeds.
+        options: The system's own options, such as `{"wind": "L3"}`.
+        folder: Run folder. The default is `runs/<question>-<code>` in the working directory, so
+            that the same call resumes, and finds what is finished.
+        workers: Worker processes, 0 for none beside this one; default one a core, if that helps.
+        time_limit_s: Seconds that a block of scenes may take in a worker.
+        progress: Whether to show progress and notices, in a notebook's cell or on the standard
+            error; otherwise notices go to the log `faultpath`.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
+    drawn = checked_seeds(seeds)
+    chosen = choose(system, options or {}, workers)
+    built = chosen.system
+    asked = plan_audit(
+        built,
+        chosen.spec,
+        baseline=baseline,
+        repair=repair,
+        fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
+        fault_text=fault,
+        library=library_of(built, library),
+        scenes=checked_count("scenes", scenes),
+        seeds=drawn,
+        primary=primary,
+        generalise=generalise,
+    )
+    told = display(
+        progress,
+        "audit",
+        system=chosen.spec.name,
+        baseline=baseline,
+        repair=repair,
+        fault=fault,
+        library=library,
+        scenes=scenes,
+        seeds=seeds,
+        primary=primary,
+        generalise=generalise,
+        options=chosen.spec.options,
+        folder=None if folder is None else str(folder),
+        workers=workers,
+        time_limit_s=time_limit_s,
+    )
+
+    # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
+    from faultpath.door.carrying_out import carry_out
+    from faultpath.door.run import open_run
+
+    if folder is None:
+        place, other = _folder(asked, chosen, library, scenes)
+    else:
+        place, other = Path(folder), ""
+    if chosen.own and (place / "manifest.json").exists():
+        raise UserError(
+            f"{place} holds a run, and whether it was of this same object cannot be told: give "
+            "another folder, or put what builds the system into a file and name that."
+        )
+    for sentence in filter(None, (other, chosen.notice)):
+        told.say(sentence)
+    carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s)
+    run = open_run(place)
+    run.report()
+    return run
+
+
+def _folder(audit: Audit, chosen: Chosen, library: str, scenes: int | None) -> tuple[Path, str]:
+    """Return the run folder of a question and the code as it is, and a sentence about others."""
+    from faultpath.store.earlier import keyed
+
+    name = _name(audit, library, scenes)
+    if chosen.own:
+        now = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
+        return Path("runs") / f"{name}-{now}", ""
+    return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+
+
+def _name(audit: Audit, library: str, scenes: int | None) -> str:
+    """Name the run folder after everything that makes it another study."""
+    asked = audit.question
+    seeds = ",".join(map(str, asked.seeds))
+    options = (f"{key}-{value}" for key, value in sorted(asked.options.items()))
+    parts = [audit.study.name, asked.fault, Path(library).stem, *options]
+    if scenes is not None:
+        parts.append(f"{scenes}-scenes")
+    if seeds != "0":
+        parts.append(f"seeds-{seeds}")
+    name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
+    if len(name) > _LONGEST_NAME:
+        name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
+    return name

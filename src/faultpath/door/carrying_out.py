@@ -1,0 +1,97 @@
+"""Carrying an audit out: run it, tell of it, and leave the files that its pages are made from."""
+
+import json
+from pathlib import Path
+
+from faultpath.door.display import Display
+from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM
+from faultpath.errors import Stopped
+from faultpath.execution import (
+    Failure,
+    Interrupted,
+    Progress,
+    RunResult,
+    Stopwatch,
+    run_provenance,
+    run_study,
+)
+from faultpath.planning import Audit
+from faultpath.store import write_text
+from faultpath.store.sealed import seal
+from faultpath.trials import System, system_shown
+
+_SHOWN = 5
+"""Different errors told one by one."""
+
+
+def carry_out(
+    system: System,
+    audit: Audit,
+    folder: Path,
+    workers: int,
+    told: Display,
+    time_limit_s: float | None,
+) -> None:
+    """Run, decide and write what the run folder's pages are made from.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
+    compare.
+    """
+    stopwatch = Stopwatch()
+    if system.backend:
+        told.say(f"Computing with {system.backend}.")
+    asked = audit.question
+    shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
+    result = _run(system, audit, folder, workers, told, time_limit_s)
+    _tell_failures(told, result, folder)
+    record = audit.conclude(result.outcomes, result.deliveries)
+    write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
+    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    files = seal(folder, MADE_FROM)
+    provenance = run_provenance(result, stopwatch, told.command, workers, system.backend, files)
+    write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
+
+
+def _run(
+    system: System,
+    audit: Audit,
+    folder: Path,
+    workers: int,
+    told: Display,
+    time_limit_s: float | None,
+) -> RunResult:
+    with told.progress("Running") as show:
+
+        def note(now: Progress) -> None:
+            count = f"{now.trials_done} of {now.trials_total} trials"
+            show(now.trials_estimated, now.trials_total, count, now.seconds_left, "")
+
+        try:
+            return run_study(
+                audit.study,
+                folder,
+                workers,
+                note,
+                notice=told.say,
+                system=system,
+                time_limit_s=time_limit_s,
+            )
+        except Interrupted as stop:
+            raise Stopped(
+                f"interrupted with {stop.done} of {stop.total} blocks done and kept in {folder}; "
+                f"run the same {told.called} again to resume."
+            ) from None
+
+
+def _tell_failures(told: Display, result: RunResult, folder: Path) -> None:
+    if not result.failures:
+        return
+    told.say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")
+    alike: dict[str, list[Failure]] = {}
+    for failure in result.failures:
+        alike.setdefault(failure.error, []).append(failure)
+    for error, (first, *more) in list(alike.items())[:_SHOWN]:
+        rest = f" and {len(more)} more trials" if more else ""
+        told.say(f"  {first.scene}{rest}: {' '.join(error.split())} ({first.details})")
+    if len(alike) > _SHOWN:
+        told.say(f"  and {len(alike) - _SHOWN} other errors, in {folder / 'failures'}")

@@ -1,0 +1,148 @@
+"""Where a call tells what it does: a terminal, a notebook, plain lines, or nowhere."""
+
+import logging
+import time
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.util import find_spec
+
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.segment import Segment
+
+from faultpath.text import printable
+
+Show = Callable[[float, float | None, str, float | None, str], None]
+"""Shows how much is done of how much, the same in words, seconds left, and a remark."""
+
+_LINE_S = 10.0
+"""Seconds between two lines, where no bar can move."""
+
+_log = logging.getLogger("faultpath")
+
+
+class SafeConsole(Console):
+    """A console on which no name that a user or a file gave can steer the terminal."""
+
+    def render(
+        self, renderable: RenderableType, options: ConsoleOptions | None = None
+    ) -> Iterable[Segment]:
+        """Yield what `Console.render` does, with control characters in texts escaped."""
+        for segment in super().render(renderable, options):
+            if segment.control or segment.text.isprintable():
+                yield segment
+            else:
+                text = "\n".join(map(printable, segment.text.split("\n")))
+                yield Segment(text, segment.style)
+
+
+@dataclass(frozen=True)
+class Display:
+    """Who is told of a call: by default nobody, and what must be read goes to the log."""
+
+    console: Console | None = None
+    command: tuple[str, ...] = ()
+    """The command line, or the call from Python as one text."""
+
+    @property
+    def called(self) -> str:
+        """What the user has to make again to go on: a command or a call."""
+        return "command" if len(self.command) > 1 else "call"
+
+    def say(self, text: str, style: str | None = None) -> None:
+        """Tell a sentence."""
+        if self.console is None:
+            _log.warning(text)
+        else:
+            self.console.print(text, markup=False, soft_wrap=True, style=style)
+
+    @contextmanager
+    def progress(self, what: str) -> Generator[Show]:
+        """Show how far something has come: as a bar that moves, or in a line now and then."""
+        if self.console is None:
+            yield _nowhere
+        elif self.console.is_terminal or (self.console.is_jupyter and find_spec("ipywidgets")):
+            with _bar(self.console, what) as show:
+                yield show
+        else:
+            yield _Lines(self.console, what).show
+
+
+def display(progress: bool | Display, name: str, **given: object) -> Display:
+    """Return who is told of a call from Python: notebooks in their cell, others on stderr.
+
+    `name` and `given` are what was called, and with what; left out is what is `None` or empty.
+    """
+    if isinstance(progress, Display):
+        return progress
+    said = (f"{key}={value!r}" for key, value in given.items() if value not in (None, (), {}))
+    call = f"faultpath.{name}({', '.join(said)})"
+    return Display(SafeConsole(stderr=True) if progress else None, (call,))
+
+
+def left(seconds: float | None) -> str:
+    """Say how long it will still take, where that is known."""
+    return "" if seconds is None else f"{_clock(seconds)} left"
+
+
+@contextmanager
+def _bar(console: Console, what: str) -> Generator[Show]:
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.fields[count]}"),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[left]}"),
+        TextColumn("{task.fields[remark]}"),
+    )
+    with Progress(*columns, console=console) as bar:
+        task = bar.add_task(what, total=None, count="", left="", remark="")
+
+        def show(
+            done: float, total: float | None, count: str, seconds: float | None, remark: str
+        ) -> None:
+            bar.update(
+                task, completed=done, total=total, count=count, left=left(seconds), remark=remark
+            )
+
+        yield show
+
+
+class _Lines:
+    """Progress where no line can be written over: one now and then, and one at the end."""
+
+    def __init__(self, console: Console, what: str) -> None:
+        self._console = console
+        self._what = what
+        self._began = self._last = time.monotonic()
+        self._ended = False
+
+    def show(
+        self, done: float, total: float | None, count: str, seconds: float | None, remark: str
+    ) -> None:
+        now = time.monotonic()
+        ends = total is not None and done >= total
+        if self._ended or not (ends or now - self._last >= _LINE_S):
+            return
+        self._last, self._ended = now, ends
+        parts = (
+            count,
+            f"{_clock(now - self._began)} so far",
+            "" if ends else left(seconds),
+            remark,
+        )
+        line = f"{self._what}: {', '.join(filter(None, parts))}"
+        self._console.print(line, markup=False, soft_wrap=True)
+
+
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
+
+
+def _nowhere(
+    done: float, total: float | None, count: str, seconds: float | None, remark: str
+) -> None:
+    del done, total, count, seconds, remark

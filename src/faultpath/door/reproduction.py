@@ -1,0 +1,88 @@
+"""`faultpath.reproduce`: the paper's tables, figures and claims, flown again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+from faultpath.door.display import Display, display
+from faultpath.door.systems import worker_count
+from faultpath.record import Reproduction
+from faultpath.studies.run import plan, standing
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ReproductionRun:
+    """A finished reproduction: what was found, and where its files are.
+
+    A notebook shows the tables, with the paper's numbers beside our own.
+    """
+
+    folder: Path
+    record: Reproduction
+    """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
+
+    def __repr__(self) -> str:
+        """Return folder and size."""
+        return f"<ReproductionRun in {self.folder}: {self.record.trials} trials>"
+
+    def _repr_markdown_(self) -> str:
+        from faultpath.tables import markdown
+
+        return "\n\n".join(map(markdown.block, self.record.tables))
+
+
+def reproduce(
+    pages: str | Sequence[str] = (),
+    *,
+    profile: str = "quick",
+    library: str | None = None,
+    folder: str | PathLike[str] | None = None,
+    workers: int | None = None,
+    device: str | None = None,
+    time_limit_s: float | None = None,
+    progress: bool | Display = True,
+    name: str = "reproduction",
+) -> ReproductionRun:
+    """Fly every study of the paper, or some of its pages, and set the results beside it.
+
+    Args:
+        pages: `table-4`, `figure-3`, `text-wind` and so on; default all.
+        profile: `quick` (few scenes, one seed) or `paper` (its size).
+        library: Library or file to fly in place of the held-out one.
+        folder: Run folder; default `runs/<name>-<library>-<profile>-<code>`.
+        workers: Worker processes, 0 for none beside this one; default one a core, or one a GPU.
+        device: `cpu` (default) or `cuda`.
+        time_limit_s: Seconds that a block of scenes may take in a worker.
+        progress: As in `audit`.
+        name: Of the run folder.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    named = (pages,) if isinstance(pages, str) else tuple(pages)
+    options = {} if device is None else {"device": device}
+    asked = plan(named, profile, standing(library), options)
+    place, other = Path(folder or ""), ""
+    if folder is None:
+        own = "" if library is None else f"-{Path(library).stem}"
+        place, other = asked.folder(f"{name}{own}-{asked.profile.name}")
+    told = display(
+        progress,
+        "reproduce",
+        pages=named,
+        profile=profile,
+        library=library,
+        folder=None if folder is None else str(folder),
+        workers=workers,
+        device=device,
+        time_limit_s=time_limit_s,
+    )
+
+    # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
+    from faultpath.door.reproducing import carry_out
+
+    if other:
+        told.say(other)
+    return carry_out(asked, place, worker_count(asked.system, workers), told, time_limit_s)

@@ -1,0 +1,105 @@
+"""A system from whatever names it: a name, a file, or the object itself."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import cast
+
+from faultpath import trials
+from faultpath.errors import UserError
+from faultpath.trials import System, SystemSpec
+from faultpath.trials.checks import check_system
+from faultpath.trials.options import as_text
+
+_FACTORY = "create"
+"""What builds the system in a file that is named without it."""
+
+_LOADED = "_faultpath_loaded"
+"""Under which name an object keeps what it was loaded from."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A system, and how it is named."""
+
+    system: System
+    spec: SystemSpec
+    workers: int | None
+    own: bool = False
+    """Whether it is an object of the caller's: nothing but this process has it."""
+    notice: str = ""
+
+
+def load_system(
+    system: str | PathLike[str], *, options: Mapping[str, object] | None = None
+) -> System:
+    """Build a system: what it reads, its variants, its libraries of scenes, to look at or to audit.
+
+    `system` is a name, `module:attribute`, `file.py:attribute`, or a file in which `create` builds
+    it; `options` are its own, such as `{"wind": "L3"}`. Raises `UserError` for a name or an option
+    that there is none of, and for a package that is missing.
+    """
+    spec = _spec(system, options or {})
+    built = trials.load_system(spec)
+    vars(built)[_LOADED] = spec, dict(vars(built))
+    return built
+
+
+def choose(
+    system: str | PathLike[str] | System, options: Mapping[str, object], workers: int | None
+) -> Chosen:
+    """Return the system to audit; raises as `load_system`, and for what an object cannot do."""
+    if not isinstance(system, System):
+        spec = _spec(system, options)
+        return Chosen(trials.load_system(spec), spec, workers)
+    if options:
+        raise UserError(
+            "options build a system, and this one is built: give its name with the options, or "
+            "give them to load_system."
+        )
+    spec = _loaded(system)
+    if spec is not None:
+        return Chosen(trials.load_system(spec), spec, workers)
+    if workers:
+        raise UserError(
+            "an object cannot be sent to worker processes: put what builds the system into a file "
+            "and name that, as 'my_system.py:create', or leave workers out."
+        )
+    spec = SystemSpec.of_class(type(system))
+    check_system(system, spec.name)
+    notice = (
+        "The system is an object, so it runs in this process; one that is named, as "
+        "'my_system.py:create', runs in several."
+    )
+    return Chosen(system, spec, 0, own=True, notice=notice)
+
+
+def worker_count(system: System, asked: int | None) -> int:
+    """Return the number of worker processes: one a core where the system gains by several."""
+    if asked is not None:
+        return asked
+    return (os.cpu_count() or 1) if system.parallel else 1
+
+
+def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
+    if not isinstance(system, str | PathLike):
+        raise UserError(
+            f"a system is a name, a file or a faultpath.System, not {system!r:.80}: name one as "
+            "'quadrotor' or 'my_system.py:create'."
+        )
+    name = os.fspath(cast("str | PathLike[str]", system))
+    return SystemSpec(
+        name=f"{name}:{_FACTORY}" if name.endswith(".py") else name, options=as_text(options)
+    )
+
+
+def _loaded(system: System) -> SystemSpec | None:
+    """Return what an object was loaded from; `None` for one that was made or changed otherwise."""
+    spec, before = vars(system).get(_LOADED, (None, {}))
+    now = {name: value for name, value in vars(system).items() if name != _LOADED}
+    same = all(name in now and now[name] is value for name, value in before.items())
+    more = [name for name in now if name not in before]
+    cached = (isinstance(getattr(type(system), name, None), cached_property) for name in more)
+    return spec if same and all(cached) else None

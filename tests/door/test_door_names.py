@@ -1,0 +1,78 @@
+"""What is public, and what importing it costs."""
+
+import os
+import re
+import subprocess
+import sys
+import typing
+from pathlib import Path
+
+import pytest
+
+import faultpath
+
+DOCS = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+
+
+def test_a_dozen_names_at_most_are_public_and_listed():
+    listed = re.findall(r"^\| `(\w+)[`(]", DOCS.read_text(), re.MULTILINE)
+    assert listed == [name for name in faultpath.__all__ if name != "__version__"]
+    assert len(faultpath.__all__) <= 12
+
+
+@pytest.mark.parametrize("name", faultpath.__all__)
+def test_every_name_is_there_and_says_what_it_is(name):
+    found = getattr(faultpath, name)
+    assert name in dir(faultpath)
+    assert name == "__version__" or (found.__doc__ or "").strip()
+
+
+@pytest.mark.parametrize("name", ["audit", "load_system", "open_run", "reproduce"])
+def test_every_call_is_typed(name):
+    function = getattr(faultpath, name)
+    hints = function.__annotations__
+    code = function.__code__
+    assert set(hints) == {*code.co_varnames[: code.co_argcount + code.co_kwonlyargcount], "return"}
+    assert typing.Any not in hints.values()
+
+
+def test_a_name_that_there_is_none_of():
+    with pytest.raises(AttributeError, match="no attribute 'octopus'"):
+        faultpath.octopus  # noqa: B018
+
+
+def test_importing_loads_nothing_heavy():
+    code = (
+        "import sys, faultpath\n"
+        "heavy = {'numpy', 'scipy', 'torch', 'rich', 'pyarrow', 'pydantic', 'jinja2', 'pandas'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
+        "faultpath.audit, faultpath.Run, faultpath.load_system\n"
+        "assert 'torch' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+LEFT_ALONE = """
+import os, random, signal, sys
+import faultpath, torch
+torch.set_num_threads(3)
+before = (torch.get_num_threads(), dict(os.environ), random.getstate(), os.getcwd())
+handler = signal.getsignal(signal.SIGINT)
+system = faultpath.load_system("quadrotor", options={"wind": "L1", "candidates": 1024})
+assert system.interface and "gru" in system.variants
+faultpath.audit(
+    TOY, baseline="calibrated", repair="blind", fault="gain:scale=0.6", library="carts", scenes=8,
+    workers=0, progress=False,
+)
+assert before == (torch.get_num_threads(), dict(os.environ), random.getstate(), os.getcwd())
+assert signal.getsignal(signal.SIGINT) is handler
+"""
+
+
+def test_calls_leave_the_process_as_it_was(tmp_path):
+    toy = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+    code = f"TOY = {str(toy)!r}\n{LEFT_ALONE}"
+    there = {**os.environ, "OMP_NUM_THREADS": "4"}
+    line = [sys.executable, "-c", code]
+    done = subprocess.run(line, cwd=tmp_path, env=there, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
