@@ -3,6 +3,7 @@
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
@@ -13,6 +14,7 @@ from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose, worker_count
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
+from faultpath.patience import patience
 from faultpath.planning import Audit, plan_audit
 from faultpath.record import Generalise
 from faultpath.trials import System, library_of
@@ -73,8 +75,12 @@ def audit(
     """
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
     drawn = checked_seeds(seeds)
-    chosen = choose(system, options or {}, workers)
-    built = chosen.system
+    called = isinstance(progress, Display) and progress.is_command
+    limit = patience(str(system), time_limit_s) if called else nullcontext()
+    with limit:
+        chosen = choose(system, options or {}, workers)
+        built = chosen.system
+        scenes_from = library_of(built, library)
     asked = plan_audit(
         built,
         chosen.spec,
@@ -82,7 +88,7 @@ def audit(
         repair=repair,
         fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
         fault_text=fault,
-        library=library_of(built, library),
+        library=scenes_from,
         scenes=checked_count("scenes", scenes),
         seeds=drawn,
         primary=primary,

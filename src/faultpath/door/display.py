@@ -46,9 +46,14 @@ class Display:
     """The command line, or the call from Python as one text."""
 
     @property
+    def is_command(self) -> bool:
+        """Whether the command line made the call, so that the process is its own."""
+        return len(self.command) > 1
+
+    @property
     def called(self) -> str:
         """What the user has to make again to go on: a command or a call."""
-        return "command" if len(self.command) > 1 else "call"
+        return "command" if self.is_command else "call"
 
     def say(self, text: str, style: str | None = None) -> None:
         """Tell a sentence."""
