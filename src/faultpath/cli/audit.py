@@ -19,8 +19,11 @@ def command(
             "its own options too."
         ),
     ],
-    baseline: Annotated[str, typer.Option(help="Variant to compare with.")],
-    repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
+    baseline: Annotated[
+        str,
+        typer.Option(help="Variant to compare with, of the quadrotor also your file.py:factory."),
+    ],
+    repair: Annotated[str, typer.Option(help="Variant that is meant to help, likewise.")],
     fault: Annotated[
         str,
         typer.Option(

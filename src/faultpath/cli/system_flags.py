@@ -141,7 +141,7 @@ def _shown(option: _Option, system: str) -> OptionInfo:
     said = option.help.rstrip(".")
     if choices and not short:
         said += f": {', '.join(option.choices)}" if said else f"One of {', '.join(option.choices)}"
-    if option.default is not None:
+    if option.default:
         said += f"{'; d' if said else 'D'}efault {option.default}"
     return typer.Option(
         _flag(option),

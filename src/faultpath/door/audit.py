@@ -52,8 +52,9 @@ def audit(
             builds the system, or a `System`. One that `load_system` gave is built again from its
             name and options, in worker processes too. Any other object flies as it is, in this
             process, and its trials are never taken for those of another call.
-        baseline: Variant to compare with.
-        repair: Variant that is meant to help.
+        baseline: Variant to compare with. Of the quadrotor also what builds a predictor,
+            reconstruction or planner of your own, as `my_model.py:create`.
+        repair: Variant that is meant to help, likewise.
         fault: As on the command line: `calibration=+0.1`, `mass:scale=1.1`,
             `wind:delay=5@predictor,onset=20`.
         library: Library of scenes, by name or file.
@@ -78,7 +79,7 @@ def audit(
     called = isinstance(progress, Display) and progress.is_command
     limit = patience(str(system), time_limit_s) if called else nullcontext()
     with limit:
-        chosen = choose(system, options or {}, workers)
+        chosen = choose(system, options or {}, workers, (baseline, repair))
         built = chosen.system
         scenes_from = library_of(built, library)
     asked = plan_audit(

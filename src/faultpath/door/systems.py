@@ -1,7 +1,7 @@
 """A system from whatever names it: a name, a file, or the object itself."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -12,6 +12,7 @@ from faultpath.errors import UserError
 from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
+from faultpath.trials.parts import with_parts
 
 _FACTORY = "create"
 """What builds the system in a file that is named without it."""
@@ -48,11 +49,17 @@ def load_system(
 
 
 def choose(
-    system: str | PathLike[str] | System, options: Mapping[str, object], workers: int | None
+    system: str | PathLike[str] | System,
+    options: Mapping[str, object],
+    workers: int | None,
+    variants: Sequence[str],
 ) -> Chosen:
-    """Return the system to audit; raises as `load_system`, and for what an object cannot do."""
+    """Return the system to audit, with the parts that its variants name.
+
+    Raises as `load_system`, and for what an object cannot do.
+    """
     if not isinstance(system, System):
-        spec = _spec(system, options)
+        spec = _with_parts(_spec(system, options), variants)
         return Chosen(trials.load_system(spec), spec, workers)
     if options:
         raise UserError(
@@ -61,6 +68,7 @@ def choose(
         )
     spec = _loaded(system)
     if spec is not None:
+        spec = _with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec, workers)
     if workers:
         raise UserError(
@@ -93,6 +101,10 @@ def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
     return SystemSpec(
         name=f"{name}:{_FACTORY}" if name.endswith(".py") else name, options=as_text(options)
     )
+
+
+def _with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
+    return SystemSpec(name=spec.name, options=with_parts(spec.name, spec.options, variants))
 
 
 def _loaded(system: System) -> SystemSpec | None:

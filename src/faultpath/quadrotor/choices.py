@@ -89,9 +89,11 @@ class QuadrotorChoices(BaseModel):
         ClearanceName,
         "From the depth model, or the geometry's own: a reference, and the default in free space.",
     ] = ClearanceName.DEPTH
-    predictor: Annotated[str, "Predictor of the variants that name none.", Offered(*PREDICTORS)] = (
-        "wm-a-wind"
-    )
+    predictor: Annotated[
+        str,
+        "Predictor of the variants that name none, or your own as file.py:factory.",
+        Offered(*PREDICTORS, factories=True),
+    ] = "wm-a-wind"
     predictor_seed: Annotated[
         int,
         "Which training of it; variants that name a predictor take the seed of their arm.",
@@ -112,3 +114,22 @@ class QuadrotorChoices(BaseModel):
     ] = 512
     plant: Annotated[PlantName, "What integrates the vehicle's motion."] = PlantName.TORCH
     device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU
+    bring: Annotated[
+        str,
+        "Parts of your own, file.py:factory, parted by commas; those that baseline and repair name "
+        "are added.",
+    ] = ""
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Everything of the user's own that is named, each once.
+
+        A reconstruction may be named with the predictor that it feeds, `wm-a-wind/my.py:create`.
+        """
+        named = [*self.bring.split(","), *([self.predictor] if ":" in self.predictor else [])]
+        return tuple(dict.fromkeys(_own(name.strip()) for name in named if name.strip()))
+
+
+def _own(name: str) -> str:
+    head, _, rest = name.partition("/")
+    return rest if head in PREDICTORS else name

@@ -105,6 +105,11 @@ class QuadrotorOptions(QuadrotorChoices):
             return MujocoPlant
         return TorchPlant
 
+    @property
+    def sampling(self) -> SamplerSettings:
+        """How many candidates are drawn, and how."""
+        return self.settings.sampler.model_copy(update={"candidates": self.candidates})
+
     def build_planner(self) -> Planner:
         """Return the planner that the options name."""
         goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
@@ -113,8 +118,7 @@ class QuadrotorOptions(QuadrotorChoices):
             PlannerName.CEM: (TerminalGoal(), self.settings.terminal),
         }
         goal, weights = goals[self.planner]
-        settings = self.settings.sampler.model_copy(update={"candidates": self.candidates})
-        sampler: Sampler = AutoregressiveSampler(settings)
+        sampler: Sampler = AutoregressiveSampler(self.sampling)
         cost = NavigationCost(goal, weights)
         if self.planner is PlannerName.CEM:
             narrowing = CEMSettings(iterations=self.iterations, elites=self.elites)

@@ -13,6 +13,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Module, Plant
 from faultpath.quadrotor import native
+from faultpath.quadrotor.brought import bring
 from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
 from faultpath.quadrotor.device import arithmetic, describe
@@ -51,7 +52,8 @@ class Quadrotor(LoopSystem):
         self.parallel = options.device is DeviceName.CPU
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
-        self.choices = {choice.name: choice for choice in choices(options)}
+        self.brought = bring(options.parts, options.sampling)
+        self.choices = {choice.name: choice for choice in choices(options, self.brought)}
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -101,7 +103,13 @@ class Quadrotor(LoopSystem):
     @property
     def data_files(self) -> Sequence[Path]:
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
-        return (*_weights(), Path("interface.yaml"), Path("native/source"))
+        own = (file for part in self.brought.values() for file in part.data_files)
+        return (*_weights(), Path("interface.yaml"), Path("native/source"), *own)
+
+    @property
+    def parts(self) -> Sequence[str]:
+        """See `System.parts`."""
+        return tuple(self.brought)
 
     @property
     def wirings(self) -> Mapping[str, Wiring]:
@@ -133,7 +141,7 @@ class Quadrotor(LoopSystem):
         found: list[Module] = [
             ExactEstimator(),
             Prediction(predictor, place),
-            Planning(self.options.build_planner(), place),
+            Planning(choice.load_planner(seed, self.options), place),
         ]
         if reconstruction is not None:
             found.append(WindReconstruction(reconstruction, place))

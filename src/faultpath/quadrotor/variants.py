@@ -2,18 +2,29 @@
 
 A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
 (`wm-a+dcc`), or by both (`wm-a-wind/gru`). What a variant names takes the seed of its arm as the
-seed of its training; a predictor that it does not name is that of the options.
+seed of its training; a predictor that it does not name is that of the options. Parts that the user
+brings stand beside those that ship, under the names by which they were brought; a planner makes a
+variant with the predictor of the options.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 import torch
 
+from faultpath.quadrotor.brought import Brought
 from faultpath.quadrotor.choices import ClearanceName
 from faultpath.quadrotor.device import CPU
-from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS, predictor, reconstruction
+from faultpath.quadrotor.models import (
+    PREDICTORS,
+    RECONSTRUCTIONS,
+    PredictorKind,
+    ReconstructionKind,
+    predictor,
+    reconstruction,
+)
 from faultpath.quadrotor.options import QuadrotorOptions
+from faultpath.quadrotor.planner import Planner
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.trials import Wiring
@@ -21,15 +32,11 @@ from faultpath.trials import Wiring
 ZERO_WIND = "zero-wind"
 TRUE_WIND = "true-wind"
 
-_WINDS = {
+_FIXED = {
     ZERO_WIND: ("zero_wind", "the wind input is held at zero"),
-    **{
-        name: ("reconstructed_wind", f"{kind.description} supplies the wind")
-        for name, kind in RECONSTRUCTIONS.items()
-    },
     TRUE_WIND: ("true_wind", "the simulator's wind at this moment is supplied: a reference"),
 }
-"""Source of the wind channel and its description, by name of the wind input."""
+"""Source of the wind channel and its description, where no reconstruction supplies it."""
 
 
 @dataclass(frozen=True)
@@ -42,19 +49,33 @@ class Choice:
     """`None`: the seed of the arm."""
     wind: str | None
     """`None` for a predictor without a wind input."""
+    planner: str | None = None
+    """One that the user brings; `None` for that of the options."""
+    brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
 
     def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
         """Return the predictor for an arm of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
-        return predictor(self.predictor, self.predictor_seed if fixed else seed, device)
+        trained = self.predictor_seed if fixed else seed
+        if self.predictor in self.brought:
+            return self.brought[self.predictor].load(trained, device)
+        return predictor(self.predictor, trained, device)
 
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
     ) -> Reconstruction | None:
         """Return the wind reconstruction for an arm of this seed, if the variant has one."""
-        if self.wind is None or self.wind not in RECONSTRUCTIONS:
+        if self.wind is None or self.wind in _FIXED:
             return None
+        if self.wind in self.brought:
+            return self.brought[self.wind].load(seed, device)
         return reconstruction(self.wind, seed, device)
+
+    def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
+        """Return the planner for an arm of this seed."""
+        if self.planner is None:
+            return options.build_planner()
+        return self.brought[self.planner].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
         """Describe the choice to an audit: in words, and which sources it takes."""
@@ -63,26 +84,52 @@ class Choice:
             "clearance": "estimated_clearance" if seen else "true_clearance",
             "wind": "zero_wind",
         }
-        words = PREDICTORS[self.predictor].description
+        words = self._said(self.predictor, PREDICTORS)
+        words = f"{words[0].upper()}{words[1:]}"
         if self.wind is not None:
-            bindings["wind"], described = _WINDS[self.wind]
-            words = f"{words}; {described}"
-        return Wiring(f"{words[0].upper()}{words[1:]}.", bindings)
+            bindings["wind"], said = _FIXED.get(self.wind) or (
+                "reconstructed_wind",
+                f"{self._said(self.wind, RECONSTRUCTIONS)} supplies the wind",
+            )
+            words = f"{words}; {said}"
+        if self.planner is not None:
+            words = f"{words}; {self.brought[self.planner].description} plans"
+        return Wiring(f"{words}.", bindings)
+
+    def _said(self, name: str, shipped: Mapping[str, PredictorKind | ReconstructionKind]) -> str:
+        return (self.brought.get(name) or shipped[name]).description
 
 
-def choices(options: QuadrotorOptions) -> Iterator[Choice]:
-    """Yield every way to wire the quadrotor under these options."""
-    if _has_wind(options.predictor):
-        for wind in _WINDS:
-            yield Choice(wind, options.predictor, options.predictor_seed, wind)
-    for name in PREDICTORS:
-        if not _has_wind(name):
-            yield Choice(name, name, None, None)
+def choices(
+    options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
+) -> Iterator[Choice]:
+    """Yield every way to wire the quadrotor under these options, with the parts brought to it."""
+    mine = brought or {}
+    chosen, seed = options.predictor, options.predictor_seed
+    winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
+    if _has_wind(chosen, mine):
+        for wind in winds:
+            yield Choice(wind, chosen, seed, wind, brought=mine)
+    for name in (*PREDICTORS, *_of(Predictor, mine)):
+        if not _has_wind(name, mine):
+            yield Choice(name, name, None, None, brought=mine)
             continue
-        yield Choice(name, name, None, ZERO_WIND)
-        for wind in _WINDS:
-            yield Choice(f"{name}/{wind}", name, None, wind)
+        yield Choice(name, name, None, ZERO_WIND, brought=mine)
+        for wind in winds:
+            yield Choice(f"{name}/{wind}", name, None, wind, brought=mine)
+    for name in _of(Planner, mine):
+        if not _has_wind(chosen, mine):
+            yield Choice(name, chosen, seed, None, name, mine)
+            continue
+        yield Choice(name, chosen, seed, ZERO_WIND, name, mine)
+        for wind in winds:
+            yield Choice(f"{name}/{wind}", chosen, seed, wind, name, mine)
 
 
-def _has_wind(name: str) -> bool:
-    return "wind_map" in predictor(name, None).reads
+def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:
+    return (name for name, part in brought.items() if isinstance(part.blank, kind))
+
+
+def _has_wind(name: str, brought: Mapping[str, Brought]) -> bool:
+    reads = brought[name].reads if name in brought else predictor(name, None).reads
+    return "wind_map" in reads

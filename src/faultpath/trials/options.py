@@ -39,10 +39,14 @@ class Option:
 
 
 class Offered:
-    """In `Annotated`: what of a wider type may be chosen from outside, such as three numbers."""
+    """In `Annotated`: what of a wider type may be chosen from outside, such as three numbers.
 
-    def __init__(self, *choices: object) -> None:
+    With `factories` also what a user brings, named as `path/to/file.py:factory`.
+    """
+
+    def __init__(self, *choices: object, factories: bool = False) -> None:
         self.choices = {_text(choice): choice for choice in choices}
+        self.factories = factories
 
 
 @dataclass(frozen=True)
@@ -54,14 +58,18 @@ class _Slot:
     values: Mapping[str, Any]
     """By text, where they can be listed."""
     required: bool
+    factories: bool = False
 
     def read(self, text: str, system: str) -> Any:
         """Return the value that `text` stands for; `UserError` where there is none."""
         if self.values:
             if text in self.values:
                 return self.values[text]
+            if self.factories and ":" in text:
+                return text
             known = ", ".join(self.values)
-            raise UserError(f"unknown {self.option.name} '{text}'; choose one of {known}.")
+            own = ", or name your own as 'path/to/file.py:factory'" if self.factories else ""
+            raise UserError(f"unknown {self.option.name} '{text}'; choose one of {known}{own}.")
         try:
             return TypeAdapter[Any](self.annotation).validate_python(text)
         except PydanticSchemaGenerationError:
@@ -140,9 +148,11 @@ def _slots(factory: Factory) -> dict[str, _Slot]:
 def _slot(name: str, kind: Any, notes: Iterable[Any], default: Any, required: bool) -> _Slot:
     notes = tuple(notes)
     said = " ".join(note for note in notes if isinstance(note, str))
-    values = next((note.choices for note in notes if isinstance(note, Offered)), _values(kind))
+    offered = next((note for note in notes if isinstance(note, Offered)), None)
+    values = _values(kind) if offered is None else offered.choices
     shown = None if required or default is None else _text(default)
-    return _Slot(Option(name, said, tuple(values), shown), kind, values, required)
+    option = Option(name, said, tuple(values), shown)
+    return _Slot(option, kind, values, required, offered is not None and offered.factories)
 
 
 def _values(kind: Any) -> dict[str, Any]:

@@ -4,7 +4,7 @@ import importlib
 import importlib.util
 import os
 import sys
-from collections.abc import Generator
+from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from hashlib import sha256
 from importlib.machinery import SourceFileLoader
@@ -73,15 +73,41 @@ def system_options(name: str) -> tuple[Option, ...]:
         raise _missing(name, error) from error
 
 
+def load_parts(names: Iterable[str]) -> dict[str, Factory]:
+    """Return what builds each part of their own that users name to a system, as they name systems.
+
+    A module is loaded once, whatever number of factories it has. Raises as `load_system`, which
+    undoes what a failure leaves where the factory of a system asks.
+    """
+    modules: dict[str, ModuleType] = {}
+    found: dict[str, Factory] = {}
+    for name in names:
+        place, attribute = _split(name)
+        try:
+            modules[place] = modules.get(place) or _module(place, name)
+        except ModuleNotFoundError as error:
+            raise _missing(name, error) from error
+        found[name] = _attribute(modules[place], place, attribute)
+    return found
+
+
 def _factory(name: str) -> Factory:
     """Return what builds the system `name`; raises as `load_system`, or `ModuleNotFoundError`."""
     place, attribute = _target(name)
+    return _attribute(_module(place, name), place, attribute)
+
+
+def _module(place: str, name: str) -> ModuleType:
     module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
     if module.__file__ is not None and name not in BUILT_IN:
         note_system(module.__file__)
+    return module
+
+
+def _attribute(module: ModuleType, place: str, attribute: str) -> Factory:
     factory = getattr(module, attribute, None)
     if not callable(factory):
-        raise UserError(f"{place} has no function {attribute!r} that builds a system")
+        raise UserError(f"{place} has no function {attribute!r} to build from: check the name")
     return factory
 
 
@@ -116,17 +142,22 @@ def load_measurer(name: str) -> Measurer:
 
 
 def _target(name: str) -> tuple[str, str]:
-    target = BUILT_IN.get(name, name)
-    place, separator, attribute = target.rpartition(":")
-    if (
-        not separator
-        or not place
-        or not attribute
-        or (place.startswith(".") and not place.endswith(".py"))
-    ):
+    try:
+        return _split(BUILT_IN.get(name, name))
+    except UserError:
         raise UserError(
             f"there is no system {name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
             "factory as 'module:attribute' or 'path/to/file.py:attribute'"
+        ) from None
+
+
+def _split(name: str) -> tuple[str, str]:
+    """Return module or file, and the factory in it; `UserError` for a name that has not both."""
+    place, _, attribute = name.rpartition(":")
+    if not place or not attribute or (place.startswith(".") and not place.endswith(".py")):
+        raise UserError(
+            f"{name!r} names nothing to build: name it as 'module:attribute' or "
+            "'path/to/file.py:attribute'"
         )
     return place, attribute
 
@@ -140,7 +171,7 @@ def _load_module(name: str, system: str) -> ModuleType:
     except ModuleNotFoundError as error:
         if error.name and (name == error.name or name.startswith(error.name + ".")):
             raise UserError(
-                f"there is no module {error.name!r}, needed for the system: check the name, or "
+                f"there is no module {error.name!r}, which {system!r} names: check the name, or "
                 "give the path of the file as 'path/to/file.py:attribute'"
             ) from error
         raise
@@ -177,7 +208,7 @@ def _compile(place: str, name: str) -> None:
 def _file(place: str) -> Path:
     path = Path(os.path.realpath(place))  # `resolve` stumbles over links to themselves
     if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
-        raise UserError(f"there is no file {place!r} to load a system from: check the path")
+        raise UserError(f"there is no file {place!r} to load from: check the path")
     return path
 
 
@@ -190,9 +221,9 @@ def _check_own(root: Root, folder: Path) -> None:
     """Refuse a system that would run another system's module in place of its own."""
     if other := shadowed(root, folder):
         raise UserError(
-            f"the system imports {other.module!r}, which is {other.found} in this process and not "
-            f"its own {other.own}: rename one of the two, or load the systems in processes of "
-            "their own"
+            f"{root.file or root.module} imports {other.module!r}, which is {other.found} in this "
+            f"process and not its own {other.own}: rename one of the two, or load them in "
+            "processes of their own"
         )
 
 
@@ -239,8 +270,6 @@ def _missing(name: str, error: ModuleNotFoundError) -> SystemMistake:
     package = (error.name or "").partition(".")[0]
     extra = _EXTRAS.get(package)
     hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
-    mistake = SystemMistake(
-        f"system {name!r} needs the package {package!r}, not installed here: {hint}"
-    )
+    mistake = SystemMistake(f"{name!r} needs the package {package!r}, not installed here: {hint}")
     mistake.place = where(error)
     return mistake

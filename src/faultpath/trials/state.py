@@ -19,14 +19,14 @@ _FLIES = Root("faultpath.execution.attempt")
 def system_code(system: System, spec: SystemSpec) -> Code:
     """Return the code and data that `system`, built from `spec`, flies with, in their state.
 
-    Its own modules and all that they import, faultpath's included, the data files that it names,
-    and what its `fingerprint()` says. Of an object that nothing can build again, that is the file
+    Its own modules and all that they import, faultpath's included, those of parts that the user
+    named, the data files that it names, and what its `fingerprint()` says. Of an object that nothing can build again, that is the file
     of its class, or its source where it was typed into a notebook. `UserError` for a data file that
     cannot be read.
     """
     root = _class_root(system) if spec.is_object else factory_root(spec)
     code = read_code(
-        ((root,) if root else ()) + (*_classes(system, root), _FLIES),
+        ((root,) if root else ()) + (*_classes(system, root), *_parts(system), _FLIES),
         data=map(Path, system.data_files),
         base=root.path.parent if root and root.path else None,
         given=fingerprint_of(system) if root else f"{_source(system)}{fingerprint_of(system)}",
@@ -52,6 +52,11 @@ def _source(system: System) -> str:
         return inspect.getsource(type(system))
     except (OSError, TypeError):
         return ""
+
+
+def _parts(system: System) -> tuple[Root, ...]:
+    """Return the modules of the parts that the user named: no import leads there."""
+    return tuple(factory_root(SystemSpec(name=name)) for name in system.parts)
 
 
 def source_state(spec: SystemSpec) -> CodeState:

@@ -67,6 +67,14 @@ class System(ABC):
         """
         return ()
 
+    @property
+    def parts(self) -> Sequence[str]:
+        """Factories of parts that the user named, as `path/to/file.py:factory`, if it takes any.
+
+        Their code counts as the system's own does.
+        """
+        return ()
+
     def fingerprint(self) -> str:
         """Return what decides a result and stands in no file: a device, an option, a service.
 

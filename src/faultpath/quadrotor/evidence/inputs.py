@@ -24,7 +24,6 @@ from faultpath.quadrotor.training.replay import (
     estimate,
 )
 from faultpath.quadrotor.training.windows import HISTORY, Windows
-from faultpath.quadrotor.variants import choices
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Variant
 
@@ -46,7 +45,7 @@ class Subject:
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
         """Load a variant; `UserError` for an unknown one, or where a checkpoint is missing."""
-        found = {choice.name: choice for choice in choices(system.options)}
+        found = system.choices
         if name not in found:
             raise UserError(
                 f"the quadrotor has no variant {name!r} to measure: choose from {', '.join(found)}"

@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
 
 import torch
 from torch import Tensor
@@ -33,6 +34,8 @@ class Planner(ABC):
 
     iterations: int = 1
     """Proposals and updates of one step."""
+    data_files: Sequence[str | PathLike[str]] | None = None
+    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
 
     def __init__(self, sampler: Sampler) -> None:
         self.sampler = sampler

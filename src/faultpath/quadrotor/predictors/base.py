@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from os import PathLike
 from typing import Any, TypeVar
 
 import torch
@@ -124,6 +125,8 @@ class Predictor(ABC):
 
     reads: frozenset[str]
     """Places at which it reads its channels: its consumers in the interface."""
+    data_files: Sequence[str | PathLike[str]] | None = None
+    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
 
     def consumers(self, module: str = "predictor") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists its places."""

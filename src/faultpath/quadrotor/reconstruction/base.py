@@ -1,7 +1,8 @@
 """What recovers a channel that no sensor supplies."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from typing import Any, TypeAlias
 
 from torch import Tensor
@@ -28,6 +29,8 @@ class Reconstruction(ABC):
     """
 
     reads: frozenset[Read]
+    data_files: Sequence[str | PathLike[str]] | None = None
+    """Of one that a user brings: the files that it reads, of every seed, such as weights."""
 
     def consumers(self, module: str = "reconstruction") -> frozenset[str]:
         """Return the names `module.place` under which the interface lists the reads."""
