@@ -6,6 +6,7 @@ what it reads will be looked at, so that weights may be blank.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -81,7 +82,8 @@ def bring(names: Sequence[str], settings: SamplerSettings) -> dict[str, Brought]
     `UserError` for a name that leads nowhere, `SystemMistake` for what is no part, or reads where
     nothing is.
     """
-    return {name: _brought(name, create, settings) for name, create in load_parts(names).items()}
+    created = _explaining(lambda: load_parts(names))
+    return {name: _brought(name, create, settings) for name, create in created.items()}
 
 
 def _brought(name: str, create: Callable[..., Any], settings: SamplerSettings) -> Brought:
@@ -98,6 +100,8 @@ def _brought(name: str, create: Callable[..., Any], settings: SamplerSettings) -
 
 
 def _built(name: str, create: Callable[..., Any], seed: int | None) -> Part:
+    if not _takes_a_seed(create):
+        raise SystemMistake(f"{name} cannot be called with a seed alone: let it take just that")
     part = _explaining(lambda: create(seed))
     if not isinstance(part, KINDS):
         kinds = " or a ".join(kind.__name__ for kind in KINDS)
@@ -106,6 +110,16 @@ def _built(name: str, create: Callable[..., Any], seed: int | None) -> Part:
             "derived from the class of that name"
         )
     return part
+
+
+def _takes_a_seed(create: Callable[..., Any]) -> bool:
+    try:
+        inspect.signature(create).bind(0)
+    except TypeError:
+        return False
+    except ValueError:  # of some built-in functions nothing is known
+        return True
+    return True
 
 
 def _explaining(act: Callable[[], Any]) -> Any:

@@ -1,0 +1,67 @@
+"""Parts as a user would bring them: what the tests of bringing share."""
+
+import torch
+from torch import Tensor
+
+from faultpath.quadrotor.options import QuadrotorOptions
+from faultpath.quadrotor.planner import (
+    MPPI,
+    AutoregressiveSampler,
+    NavigationCost,
+    ScaledTemperature,
+    TerminalGoal,
+)
+from faultpath.quadrotor.predictors import KinematicIntegrator
+from faultpath.quadrotor.reconstruction import Reconstruction
+
+OPTIONS = QuadrotorOptions()
+
+
+class Heavy(KinematicIntegrator):
+    """Kinematics that a compiled kernel does not stand for."""
+
+    def __init__(self, seed: int | None) -> None:
+        super().__init__(drag=True)
+        self.seed = seed
+
+
+class Constant(Reconstruction):
+    """Wind from nowhere."""
+
+    reads = frozenset({("mass", "wind_map")})
+
+    def begin(self, delivered: dict[tuple[str, str], Tensor]) -> Tensor:
+        return delivered["mass", "wind_map"]
+
+    def update(self, memory: Tensor, delivered: dict[tuple[str, str], Tensor]) -> Tensor:
+        return delivered["mass", "wind_map"]
+
+    def wind(self, memory: Tensor) -> Tensor:
+        return torch.stack([2 * memory, memory, 0 * memory])
+
+
+class Halved(MPPI):
+    """MPPI that goes half of its way."""
+
+    def update(self, search, scored):
+        return super().update(search, scored)
+
+
+def predictor(seed):
+    return Heavy(seed)
+
+
+def exact(seed):
+    return KinematicIntegrator(drag=True)
+
+
+def wind(seed):
+    return Constant()
+
+
+def planner(seed):
+    return Halved(
+        AutoregressiveSampler(OPTIONS.sampling),
+        NavigationCost(TerminalGoal(), OPTIONS.settings.terminal),
+        ScaledTemperature(OPTIONS.settings.temperature),
+    )

@@ -1,0 +1,244 @@
+"""Predictors, reconstructions and planners that a user brings."""
+
+import os
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from flights import HELD_OUT, bits, fly, quadrotor
+
+from faultpath.errors import UserError
+from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
+from faultpath.trials import SystemSpec
+from faultpath.trials.parts import with_parts
+from faultpath.trials.state import system_code
+
+PARTS = Path(__file__).with_name("own_parts.py")
+PREDICTOR, EXACT, WIND, PLANNER = (
+    f"{PARTS}:{name}" for name in ("predictor", "exact", "wind", "planner")
+)
+
+
+@pytest.fixture(autouse=True)
+def _short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 6)
+
+
+def test_what_a_user_brings_stands_beside_what_ships():
+    system = quadrotor(predictor=PREDICTOR, bring=f"{WIND},{PLANNER}")
+    assert {WIND, PREDICTOR, f"{PREDICTOR}/{WIND}", f"wm-a-wind/{WIND}", f"{PLANNER}/gru"} < set(
+        system.variants
+    )
+    own, shipped = system.variants[f"{PREDICTOR}/{WIND}"], system.variants["dki-drag/dob"]
+    assert own.bindings == shipped.bindings
+    assert "reconstruction.wind_map" in own.consumers
+    assert "reconstruction.head" not in own.consumers
+    assert own.description == f"Heavy of {PREDICTOR}; Constant of {WIND} supplies the wind."
+    assert system.parts == (WIND, PLANNER, PREDICTOR)
+
+
+def test_a_part_flies_as_the_shipped_one_that_it_equals():
+    system = quadrotor(bring=EXACT, wind="L2")
+    (own,), _ = fly(system, f"{EXACT}/dob")
+    (shipped,), _ = fly(system, "dki-drag/dob")
+    assert bits(own) == bits(shipped)
+
+
+@pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
+    system = quadrotor(bring=f"{WIND},{PLANNER}", wind="L2")
+    (_,), taps = fly(system, f"dki-drag/{WIND}")
+    supplied = taps.delivered("wind", "predictor.wind_map")[:, 0]
+    mass = taps.delivered("mass", "reconstruction.wind_map")[:, 0]
+    assert (supplied[:, 0] == 2 * mass).all()
+    assert (supplied[:, 2] == 0).all()
+    (planned,), _ = fly(system, f"{PLANNER}/dob")
+    (shipped,), _ = fly(system, "dob")
+    assert planned.planner_noise_hash == shipped.planner_noise_hash
+
+
+def test_a_subclass_flies_the_portable_path_and_says_so():
+    tell_portable.cache_clear()
+    system = quadrotor(predictor=PREDICTOR)
+    with pytest.warns(PortableNotice, match="Heavy"):
+        fly(system, PREDICTOR, HELD_OUT[:1])
+
+
+@pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
+    system = quadrotor(predictor=PREDICTOR, predictor_seed="1")
+    named, chosen = system.choices[PREDICTOR], system.choices["gru"]
+    assert (named.load_predictor(2).seed, chosen.load_predictor(2).seed) == (2, 1)
+    assert named.load_predictor(None).seed is None
+    assert named.load_predictor(2) is not named.load_predictor(2)
+
+
+BROKEN = {
+    "no file": ("", "nowhere.py:create", "there is no file"),
+    "no factory": ("", "create", "has no function 'create'"),
+    "no part": ("def create(seed):\n    return 3", "create", "returned a int for seed None"),
+    "raises": ("def create(seed):\n    1 / 0  # here", "create", "line 10: ZeroDivisionError"),
+    "syntax": ("def create(:", "create", "line 9: SyntaxError"),
+    "takes nothing": (
+        "def create():\n    return K()",
+        "create",
+        "cannot be called with a seed alone",
+    ),
+    "place": (
+        "class P(K):\n    reads = 0\n    def __init__(self):\n        super().__init__()\n"
+        "        self.reads |= {'sonar'}\ndef create(seed):\n    return P()",
+        "create",
+        "'sonar', which a predictor has not: there are initial_state (position, velocity,",
+    ),
+    "without a start": (
+        "def create(seed):\n    k = K()\n    k.reads = frozenset({'trim'})\n    return k",
+        "create",
+        "does not read at 'initial_state'",
+    ),
+    "history alone": (
+        "def create(seed):\n    k = K()\n    k.reads |= {'latent'}\n    return k",
+        "create",
+        "'history' and 'latent'",
+    ),
+    "channel": (
+        "def create(seed):\n    c = Constant()\n    c.reads = {('wind', 'head')}\n    return c",
+        "create",
+        "('wind', 'head'), a channel and a place that a reconstruction has not",
+    ),
+    "half a place": (
+        "def create(seed):\n    c = Constant()\n    c.reads = {('mass', 'head')}\n    return c",
+        "create",
+        "add ('thrust_scale', 'head')",
+    ),
+    "weights from nowhere": (
+        "def create(seed):\n    k = K()\n    k.net = torch.nn.Linear(1, 1)\n    return k",
+        "create",
+        "set its data_files",
+    ),
+    "missing data": (
+        "def create(seed):\n    k = K()\n    k.data_files = ['gone.pt']\n    return k",
+        "create",
+        "names among its data files",
+    ),
+}
+FLOWN = {
+    "wide state": (
+        "class P(K):\n    def step(self, state, command, memory):\n        return state, memory\n"
+        "def create(seed):\n    return P()",
+        "position of the state that step() returns is a tensor [3, 2, 1] of float32: it must be a "
+        "tensor [3, 2, 8]",
+    ),
+    "no memory": (
+        "class P(K):\n    def step(self, *given):\n        return super().step(*given)[0]\n"
+        "def create(seed):\n    return P()",
+        "returned a State: it returns a State and the memory",
+    ),
+    "fails in a step": (
+        "class P(K):\n    def step(self, state, command, memory):\n"
+        "        return {}['x'], memory  # here\ndef create(seed):\n    return P()",
+        "line 11: KeyError",
+    ),
+    "not a number": (
+        "class P(K):\n    def step(self, *given):\n        s, m = super().step(*given)\n"
+        "        return replace(s, rate=s.rate / 0), m\ndef create(seed):\n    return P()",
+        "rate of the state that step() returns is NaN or infinite",
+    ),
+    "flat wind": (
+        "class C(Constant):\n    def wind(self, memory):\n        return memory\n"
+        "def create(seed):\n    return C()",
+        "wind() is a tensor [32] of float64: it must be a tensor [3, 32]",
+    ),
+    "other kind": (
+        "def create(seed):\n    return K(drag=seed is None, wind=seed is None)",
+        "reads elsewhere than the one for None",
+    ),
+    "no weights": (
+        "def create(seed):\n    if seed is not None:\n        open('gone.pt')  # here\n"
+        "    return K()",
+        "line 11: FileNotFoundError",
+    ),
+    "horizon": (
+        "def create(seed):\n    p = planner(seed)\n"
+        "    p.sampler = AutoregressiveSampler(SamplerSettings(candidates=1024))\n    return p",
+        "the sampler's candidates is 1024, and the options ask for 512",
+    ),
+}
+
+
+def _file(folder: Path, code: str) -> Path:
+    head = f"""\
+        import sys
+        from dataclasses import replace
+        sys.path.append({str(PARTS.parent)!r})
+        import torch
+        from own_parts import Constant, planner
+        from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
+        from faultpath.quadrotor.predictors import KinematicIntegrator as K
+        """
+    path = folder / "mine.py"
+    path.write_text(dedent(head) + "\n" + code + "\n")
+    return path
+
+
+@pytest.mark.parametrize(("code", "name", "says"), BROKEN.values(), ids=BROKEN)
+def test_a_part_that_cannot_be_brought_is_refused_in_a_sentence(code, name, says, tmp_path):
+    path = _file(tmp_path, code)
+    named = name if ":" in name else f"{path}:{name}"
+    with pytest.raises(UserError) as refused:
+        system_code(quadrotor(bring=named), SystemSpec(name="quadrotor"))
+    assert says in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("code", "says"), FLOWN.values(), ids=FLOWN)
+def test_a_part_that_does_another_thing_than_it_should_is_refused_at_first_use(
+    code, says, tmp_path
+):
+    named = f"{_file(tmp_path, code)}:create"
+    system = quadrotor(bring=named)
+    with pytest.raises(UserError) as refused:
+        fly(system, f"dki-drag/{named}" if "Constant" in code else named)
+    assert says in str(refused.value)
+
+
+def test_an_unknown_predictor_is_told_how_to_bring_one():
+    with pytest.raises(UserError, match="or name your own as"):
+        quadrotor(predictor="my_model")
+
+
+def test_code_and_data_of_a_part_are_part_of_what_flies(tmp_path):
+    path = _file(
+        tmp_path,
+        "import helper_of_a_part\ndef create(seed):\n    k = K()\n    k.data_files = ['w.bin']\n"
+        "    return k",
+    )
+    helper, data = tmp_path / "helper_of_a_part.py", tmp_path / "w.bin"
+    helper.write_text("GAIN = 1\n")
+    data.write_bytes(b"1")
+    spec = SystemSpec(name="quadrotor", options={"bring": f"{path}:create"})
+
+    def digest() -> str:
+        return system_code(quadrotor(bring=f"{path}:create"), spec).state.digest
+
+    first = digest()
+    assert digest() == first
+    data.write_bytes(b"2")
+    second = digest()
+    path.write_text(path.read_text() + "\nMORE = 1\n")
+    third = digest()
+    assert len({first, second, third}) == 3
+    code = system_code(quadrotor(bring=f"{path}:create"), spec)
+    assert {"mine.py", "helper_of_a_part.py"} <= set(code.state.files)
+
+
+def test_variants_name_what_is_brought():
+    given = with_parts("quadrotor", {"wind": "L1"}, ("gru", "a/b.py:create/gru"))
+    assert given == {"wind": "L1", "bring": "a/b.py:create"}
+    given = with_parts("quadrotor", {"bring": "a.py:x"}, ("a.py:x/b.py:y", "zero-wind"))
+    assert given == {"bring": "a.py:x,b.py:y"}
+    assert with_parts("quadrotor", {}, ("gru", "gru+dcc")) == {}
+    with pytest.raises(UserError, match=r"'a\.py:create'"):
+        with_parts("quadrotor", {}, ("a.py", "gru"))
+    toy = f"{PARTS.parents[2] / 'examples' / 'toy.py'}:create"
+    assert with_parts(toy, {}, ("a.py:create", "blind")) == {}
+    assert quadrotor(bring=f"wm-a-wind/{os.path.relpath(WIND)}").parts == (os.path.relpath(WIND),)
