@@ -111,7 +111,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Fit the example's model.")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--episodes", type=int, default=1500)
-    parser.add_argument("--epochs", type=int, default=30)
+    parser.add_argument("--epochs", type=int, default=20)
     asked = parser.parse_args()
     torch.set_num_threads(1)
     started = time.monotonic()

@@ -1,6 +1,7 @@
 """Predictors, reconstructions and planners that a user brings."""
 
 import os
+import sys
 from pathlib import Path
 from textwrap import dedent
 
@@ -22,6 +23,7 @@ PREDICTOR, EXACT, WIND, PLANNER = (
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 6)
+    monkeypatch.setattr(sys, "path", list(sys.path))
 
 
 def test_what_a_user_brings_stands_beside_what_ships():

@@ -1,0 +1,89 @@
+"""A user's own predictor, reconstruction and planner, named where a variant is asked for."""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+from cli_runs import ROOT, audit, faultpath
+
+from faultpath.cli.records import read_record
+
+PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
+
+pytestmark = pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+
+
+@pytest.fixture(autouse=True)
+def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 3)
+    shutil.copy(PARTS, tmp_path / "mine.py")
+
+
+def _audit(baseline: str, repair: str, **options: object):
+    return audit(
+        system="quadrotor",
+        baseline=baseline,
+        repair=repair,
+        fault="calibration=0.1",
+        library="selection",
+        scenes=2,
+        environment="free-space",
+        out="run",
+        **options,
+    )
+
+
+@pytest.mark.parametrize(
+    ("baseline", "repair", "options", "bring"),
+    [
+        ("wm-a", "mine.py:predictor", {}, "mine.py:predictor"),
+        ("zero-wind", "mine.py:wind", {"predictor": "mine.py:exact"}, "mine.py:wind"),
+        ("dki/dob", "mine.py:planner/dob", {"predictor": "dki"}, "mine.py:planner"),
+        ("mine.py:exact", "mine.py:exact/mine.py:wind", {}, "mine.py:exact,mine.py:wind"),
+    ],
+)
+def test_a_part_is_audited_by_the_name_of_what_builds_it(baseline, repair, options, bring):
+    ended = _audit(baseline, repair, **options)
+    assert (ended.status, ended.err) == (0, "")
+    question = read_record(Path("run")).question
+    assert (question.baseline, question.repair) == (baseline, repair)
+    assert question.options == {"environment": "free-space", "bring": bring, **options}
+    files = json.loads(Path("run/manifest.json").read_text())["code"]["files"]
+    assert "mine.py" in files
+
+
+def test_workers_build_the_part_too():
+    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:exact", workers=1)
+    assert ended.status == 0, ended.err
+
+
+def test_an_edited_part_is_other_code():
+    assert _audit("wm-a", "mine.py:exact").status == 0
+    again = _audit("wm-a", "mine.py:exact")
+    assert "Kept 8 of 8" in again.out
+    Path("mine.py").write_text(Path("mine.py").read_text().replace("drag=True", "drag=False"))
+    assert "mine.py" in _audit("wm-a", "mine.py:exact").refused()
+
+
+@pytest.mark.parametrize(
+    ("repair", "says"),
+    [
+        ("mine.py", "'mine.py:create'"),
+        ("other.py:create", "there is no file 'other.py'"),
+        ("mine.py:absent", "mine.py has no function 'absent'"),
+        ("mine.py:OPTIONS", "mine.py has no function 'OPTIONS'"),
+        ("mine.py:exact/gur", "did you mean 'mine.py:exact/gru'"),
+    ],
+)
+def test_a_mistake_is_one_sentence(repair, says):
+    assert says in _audit("wm-a", repair).refused()
+
+
+def test_help_says_where_a_part_is_named():
+    shown = faultpath("audit", "quadrotor", "--help").out
+    assert "--bring" in shown
+    assert "file.py:factory" in shown
