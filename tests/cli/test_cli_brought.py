@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath.cli.records import read_record
+from faultpath.door.saved import read_record
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
 

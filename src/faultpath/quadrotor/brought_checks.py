@@ -11,7 +11,7 @@ from faultpath.interface.words import listed
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.planner import Planner, SamplerSettings, Scored
 from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor
-from faultpath.quadrotor.predictors.places import PLACES, history, told
+from faultpath.quadrotor.predictors.places import PLACES, history, predictor_inputs
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.rollout import rollout
 from faultpath.quadrotor.state import LANE_MULTIPLE, State
@@ -124,7 +124,7 @@ def _try_predictor(name: str, predictor: Predictor) -> None:
     if "history" in predictor.reads:
         code = predictor.encode(history(predictor.reads, past))
         _check(name, "encode()", code, _CODE, lanes)
-    inputs = told(predictor.reads, now)
+    inputs = predictor_inputs(predictor.reads, now)
     memory = predictor.begin(inputs)
     state = inputs.state
     hover = _spread(_READINGS["action"], lanes, _CANDIDATES)
@@ -168,7 +168,9 @@ def _try_planner(name: str, planner: Planner, settings: SamplerSettings) -> None
             )
     predictor = KinematicIntegrator(wind=False)
     scenes, horizon, candidates = 1, settings.horizon, settings.candidates
-    inputs = told(predictor.reads, lambda channel, place: _spread(_READINGS[channel], scenes))
+    inputs = predictor_inputs(
+        predictor.reads, lambda channel, place: _spread(_READINGS[channel], scenes)
+    )
     hover = torch.full((scenes,), GRAVITY_MPS2)
     search = planner.init(planner.initial_plan(hover), hover)
     for iteration in range(planner.iterations):

@@ -20,9 +20,9 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     """Return the code and data that `system`, built from `spec`, flies with, in their state.
 
     Its own modules and all that they import, faultpath's included, those of parts that the user
-    named, the data files that it names, and what its `fingerprint()` says. Of an object that nothing can build again, that is the file
-    of its class, or its source where it was typed into a notebook. `UserError` for a data file that
-    cannot be read.
+    named, the data files that it names, and what its `fingerprint()` says. Of an object that
+    nothing can build again, that is the file of its class, or its source where it was typed into a
+    notebook. `UserError` for a data file that cannot be read.
     """
     root = _class_root(system) if spec.is_object else factory_root(spec)
     code = read_code(
