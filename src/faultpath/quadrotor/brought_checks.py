@@ -168,9 +168,8 @@ def _try_planner(name: str, planner: Planner, settings: SamplerSettings) -> None
             )
     predictor = KinematicIntegrator(wind=False)
     scenes, horizon, candidates = 1, settings.horizon, settings.candidates
-    inputs = predictor_inputs(
-        predictor.reads, lambda channel, place: _spread(_READINGS[channel], scenes)
-    )
+    reads = predictor.reads
+    inputs = predictor_inputs(reads, lambda channel, _: _spread(_READINGS[channel], scenes))
     hover = torch.full((scenes,), GRAVITY_MPS2)
     search = planner.init(planner.initial_plan(hover), hover)
     for iteration in range(planner.iterations):
