@@ -60,8 +60,8 @@ class Run:
             return self.table().to_pandas()
         except ModuleNotFoundError:
             raise UserError(
-                "a DataFrame needs pandas, which is not installed: pip install pandas, or take "
-                "the same as an Arrow table from table()."
+                "a DataFrame needs pandas, which is not installed: pip install 'faultpath[pandas]', "
+                "or take the same as an Arrow table from table()."
             ) from None
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
