@@ -60,7 +60,7 @@ class Run:
             return self.table().to_pandas()
         except ModuleNotFoundError:
             raise UserError(
-                "a DataFrame needs pandas, which is not installed: pip install 'faultpath[pandas]', "
+                "a DataFrame needs pandas, not installed here: pip install 'faultpath[pandas]', "
                 "or take the same as an Arrow table from table()."
             ) from None
 
