@@ -6,6 +6,7 @@ from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import torch
+from typing_extensions import override
 
 from benchmarks.side import Side
 from faultpath.loop import Batch, Instant
@@ -74,8 +75,8 @@ class ClosedLoop(Side):
         next(self._steps)
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         replans = 0
         for _ in range(STEPS):
             world: World = next(self._steps).state.world

@@ -1,6 +1,7 @@
 """The planning core alone, as a flight computer would run it: one vehicle, one replan at a time."""
 
 import torch
+from typing_extensions import override
 
 from benchmarks import problem
 from benchmarks.replanning import replan
@@ -38,8 +39,8 @@ class Latency(Side):
         self._image = DepthRenderer([scene]).render(pose)
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._plan = replan(
             *(self._planner, self._roll, self._inputs, self._plan, self._goal),
             *(["scene/0"], self._step, self._along),

@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from benchmarks.side import Side
 from faultpath.quadrotor import so3
@@ -49,8 +50,8 @@ class FullPlant(Side):
         self._winds = torch.from_numpy(draws.uniform(-5.0, 5.0, shape))
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._fly()
 
     @torch.inference_mode()
@@ -86,12 +87,12 @@ class Rendering(Side):
         self._poses = camera_poses(chosen)
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._renderer.render(self._poses)
 
+    @override
     def answer(self) -> Sequence[float]:
-        """See `depths`."""
         return depths(self._renderer.render(self._poses))
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import torch
+from typing_extensions import override
 
 from benchmarks import problem
 from benchmarks.replanning import replan
@@ -28,8 +29,8 @@ class Rollout(Side):
         self._commands = problem.commands(scenes, candidates, steps)
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._roll(self._inputs, self._commands)
 
     @torch.inference_mode()
@@ -59,8 +60,8 @@ class Replan(Side):
         self._plan = problem.commands(scenes)[..., 0].clone()
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._plan = replan(
             *(self._planner, self._roll, self._inputs, self._plan, self._goal),
             *(self._scenes, self._step, lambda positions: self._clearance),
@@ -82,8 +83,8 @@ class MatrixProduct(Side):
         self._out = torch.empty(rows, columns)
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         torch.mm(self._a, self._b, out=self._out)
 
 

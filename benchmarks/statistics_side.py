@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import bootstrap
+from typing_extensions import override
 
 from benchmarks.side import Side
 from faultpath.statistics import Resamples, success_effect
@@ -25,8 +26,8 @@ class Ours(Side):
         self._arms = outcomes()
         self._kept = self._draw() if drawn else None
 
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._estimate()
 
     def answer(self) -> Sequence[float]:
@@ -54,8 +55,8 @@ class Scipy(Side):
         one, two = outcomes()
         self._difference = 100.0 * (one.astype(float) - two.astype(float)).mean(1)
 
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._interval()
 
     def answer(self) -> Sequence[float]:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import jax
 import jax.numpy as jnp
 import numpy as np
+from typing_extensions import override
 
 from benchmarks import problem
 from benchmarks.peers import rows
@@ -35,8 +36,8 @@ class Scan(Side):
         self._code = jnp.asarray(given.code.reshape(-1).numpy())
         self._rollout = jax.jit(_rollout(model, layout == "FK"))
 
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         jax.block_until_ready(self._rollout(self._start, self._code, self._commands))
 
     def answer(self) -> Sequence[float]:

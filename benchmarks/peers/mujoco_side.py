@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 import torch
+from typing_extensions import override
 
 from benchmarks import physics
 from benchmarks.side import Side
@@ -40,8 +41,8 @@ class Steps(Side):
             mujoco.mj_resetData(model, data)
             data.act[:] = hover / 4
 
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         if self._flown is not None:
             self._flown.work()
             return
@@ -71,8 +72,8 @@ class Rays(Side):
         self._geom = np.zeros((len(chosen), count), np.int32)
         self._distance = np.zeros((len(chosen), count))
 
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         count, reach = len(self._length), RANGE_M * float(self._length.max())
         for i, model in enumerate(self._models):
             mujoco.mj_multiRay(
@@ -80,8 +81,8 @@ class Rays(Side):
                 self._geom[i], self._distance[i], None, count, reach,
             )  # fmt: skip
 
+    @override
     def answer(self) -> Sequence[float]:
-        """See `physics.depths`."""
         found = np.where(self._geom >= 0, self._distance / self._length, RANGE_M).clip(0, RANGE_M)
         return physics.depths(torch.from_numpy(found).view(-1, HEIGHT, WIDTH))
 

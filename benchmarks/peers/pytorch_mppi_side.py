@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 import torch
 from pytorch_mppi import MPPI
 from torch import Tensor
+from typing_extensions import override
 
 from benchmarks import problem
 from benchmarks.peers import rows
@@ -65,8 +66,8 @@ class Command(Side):
                 planner.compile()
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         for planner in self._planners:
             planner.command(self._state)
 

@@ -7,6 +7,7 @@ speed is compared. The step is ours, 2 ms; `rk4` is the faster of its integrator
 import torch
 from rotorpy.vehicles.hummingbird_params import quad_params
 from rotorpy.vehicles.multirotor import BatchedMultirotor, BatchedMultirotorParams
+from typing_extensions import override
 
 from benchmarks.physics import VEHICLES
 from benchmarks.side import Side
@@ -42,8 +43,8 @@ class Hummingbirds(Side):
         )  # fmt: skip
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         state = self._start
         for _ in range(STEPS_PER_CONTROL):
             state = self._plant.step(state, self._control, PLANT_DT_S)

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 from torchrl.data import Bounded, Composite, Unbounded
 from torchrl.envs import ModelBasedEnvBase
 from torchrl.modules import MPPIPlanner, WorldModelWrapper
+from typing_extensions import override
 
 from benchmarks import problem
 from benchmarks.peers import rows
@@ -48,8 +49,8 @@ class Planning(Side):
         )
 
     @torch.inference_mode()
+    @override
     def work(self) -> None:
-        """See `Side.work`."""
         self._planner(self._given.clone())
 
     def answer(self) -> Sequence[float]:

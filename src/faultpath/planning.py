@@ -90,7 +90,7 @@ def plan_audit(
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
 
-    `scenes` takes the first so many of the library. `primary` is the path that leads the headline;
+    `scenes` takes the first N of the library. `primary` is the path that leads the headline;
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
     trained models too. Raises `UserError` for an unknown variant, a
     repair that is its own baseline, a number of scenes that the library does not have, no seed,

@@ -148,7 +148,7 @@ def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], Non
     monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.LOOK_EVERY", 5)
 
     def take() -> None:
-        monkeypatch.setattr(devices, "AT_HAND", frozenset())
+        monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
         _forget()
 
     yield take
@@ -200,7 +200,7 @@ def test_images_drawn_at_once_are_those_drawn_in_rounds(monkeypatch):
     )
     with native.using(native.PORTABLE):
         rounds = DepthRenderer(scenes).render(start)
-        monkeypatch.setattr(devices, "AT_HAND", frozenset())
+        monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
         assert torch.equal(DepthRenderer(scenes).render(start), rounds)
     assert rounds.min() < 2 < rounds.max()
 
@@ -211,7 +211,7 @@ def test_the_nearest_rotation_needs_no_singular_values(noise, monkeypatch):
     matrix = so3.exp(torch.randn(3, 256, generator=generator))
     matrix = 1.2 * (matrix + noise * torch.randn(3, 3, 256, generator=generator))
     expected = so3.project(matrix)
-    monkeypatch.setattr(devices, "AT_HAND", frozenset())
+    monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
     assert torch.allclose(so3.project(matrix), expected, atol=1e-5)
     nothing = so3.project(torch.zeros(3, 3, 2))
     assert torch.allclose(nothing, torch.eye(3)[..., None].expand(3, 3, 2)), "still a rotation"

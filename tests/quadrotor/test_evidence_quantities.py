@@ -14,7 +14,7 @@ from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import FlightSettings, fly
-from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows
+from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.quality_predictors import position_errors
 from faultpath.quadrotor.training.replay import CODE, correct
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
@@ -31,7 +31,9 @@ SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
 def recorded() -> Recorded:
     """Windows of five windy collection flights in place of closed-loop ones."""
     flights, episodes = fly("wind", range(5), 0, FlightSettings()), range(5)
-    flown = Flown.decode("test", encode_rows(episodes, flights), encode_episodes(episodes, flights))
+    flown = FlightData.decode(
+        "test", encode_rows(episodes, flights), encode_episodes(episodes, flights)
+    )
     place = places(flown, STRIDE)
     scenes = tuple(f"scene/{episode}" for episode in place[:, 0])
     return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)

@@ -11,7 +11,7 @@ from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay
 from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows
+from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
 
 torch.set_num_threads(1)
@@ -43,7 +43,9 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, monkeypatch):
     system = Quadrotor.parse(wind="L3", environment="free-space", clearance="true")
     scene = system.library("selection").scenes[0].id
     flights = record_flights(system, variant, (scene,), 0)
-    pool = Flown.decode("x", encode_rows(range(1), flights), encode_episodes(range(1), flights))
+    pool = FlightData.decode(
+        "x", encode_rows(range(1), flights), encode_episodes(range(1), flights)
+    )
     windows, presents = cut(pool, stride=2), places(pool, stride=2)[:, 2] + HISTORY
     subject = Subject.load(system, variant, 0)
     with torch.inference_mode():

@@ -31,7 +31,7 @@ def command(
         ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
-    scenes: Annotated[int | None, typer.Option(help="Run only the first so many scenes.")] = None,
+    scenes: Annotated[int | None, typer.Option(help="Run only the first N scenes.")] = None,
     seeds: Annotated[
         str, typer.Option(help="Seeds of the noise, and of trained models where there are any.")
     ] = "0",

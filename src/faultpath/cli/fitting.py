@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Wishes:
+class TrainRequest:
     """What the command line asked for."""
 
     names: tuple[str, ...]
@@ -48,7 +48,7 @@ def list_models() -> None:
     SafeConsole().print(drawn(Table(corner="model", columns=columns, words=columns, lines=lines)))
 
 
-def train(wishes: Wishes) -> int:
+def train(request: TrainRequest) -> int:
     """Collect what is missing, fit, print tables; return the number of models that failed.
 
     Models whose data are flown with other models come in a second stage, after those. Raises
@@ -61,16 +61,16 @@ def train(wishes: Wishes) -> int:
 
     console = SafeConsole()
     failed = 0
-    chosen = choose(wishes.names, wishes.seeds)
-    if wishes.tensorboard is not None:
+    chosen = choose(request.names, request.seeds)
+    if request.tensorboard is not None:
         require_tensorboard()
-    for place in (wishes.out, wishes.tensorboard, wishes.data):
+    for place in (request.out, request.tensorboard, request.data):
         if place is not None:
             make_folder(place)  # before the flights: what cannot be kept need not be collected
     for jobs in stages(chosen):
-        _collect(console, jobs, wishes)
-        report = _fit(console, jobs, wishes)
-        _tell(console, report, wishes.out)
+        _collect(console, jobs, request)
+        report = _fit(console, jobs, request)
+        _tell(console, report, request.out)
         failed += len(report.failures)
     return failed
 
@@ -104,15 +104,15 @@ def _tell(console: SafeConsole, report: Report, out: Path) -> None:
         console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
 
 
-def _collect(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> None:
+def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> None:
     from faultpath.quadrotor.training.job_pools import (
         check_pools,
         collect_missing,
         missing_pools,
     )
 
-    check_pools(jobs, wishes.data)
-    missing = missing_pools(jobs, wishes.data)
+    check_pools(jobs, request.data)
+    missing = missing_pools(jobs, request.data)
     if not missing:
         return
     with _progress(console) as bar:
@@ -126,15 +126,15 @@ def _collect(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> None:
             bar.update(tasks[pool], total=asked, completed=done, news=news)
 
         try:
-            collect_missing(jobs, wishes.data, wishes.workers, show)
+            collect_missing(jobs, request.data, request.workers, show)
         except KeyboardInterrupt:
             raise Stopped(
-                f"interrupted while collecting; what was flown is kept in {wishes.data}; run the "
+                f"interrupted while collecting; what was flown is kept in {request.data}; run the "
                 "same command again to resume."
             ) from None
 
 
-def _fit(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> Report:
+def _fit(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> Report:
     from faultpath.quadrotor.training.jobs import Interrupted, Places, run_jobs
 
     with _progress(console) as bar:
@@ -146,18 +146,18 @@ def _fit(console: SafeConsole, jobs: Sequence[Job], wishes: Wishes) -> Report:
         try:
             return run_jobs(
                 jobs,
-                Places(wishes.data, wishes.out, wishes.tensorboard),
-                wishes.workers,
+                Places(request.data, request.out, request.tensorboard),
+                request.workers,
                 board.show,
                 notice,
-                shipped=wishes.ship,
-                force=wishes.force,
+                shipped=request.ship,
+                force=request.force,
             )
         except Interrupted as stop:
-            again = "without --force " if wishes.force else ""
+            again = "without --force " if request.force else ""
             raise Stopped(
                 f"interrupted with {stop.done} of {stop.total} models finished; they and the "
-                f"finished epochs of the others are kept in {wishes.out}; run the same command "
+                f"finished epochs of the others are kept in {request.out}; run the same command "
                 f"{again}again to resume."
             ) from None
 

@@ -29,9 +29,7 @@ def command(
         ),
     ] = None,
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
-    scenes: Annotated[
-        int | None, typer.Option(help="Record only the first so many scenes.")
-    ] = None,
+    scenes: Annotated[int | None, typer.Option(help="Record only the first N scenes.")] = None,
     recorded_with: Annotated[
         str, typer.Option(help="Variant whose flights, under correct inputs, give the windows.")
     ] = "true-parameter",

@@ -53,7 +53,7 @@ def command(
     list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
 ) -> int:
     """Fit models from wherever an earlier call left them; missing flights are collected first."""
-    from faultpath.cli.fitting import Wishes, list_models, train
+    from faultpath.cli.fitting import TrainRequest, list_models, train
 
     if list_:
         refuse_with(
@@ -69,7 +69,7 @@ def command(
         )
         list_models()
         return 0
-    wishes = Wishes(
+    request = TrainRequest(
         names=tuple(names or ()),
         seeds=tuple(seeds or ()),
         data=data or Path("data"),
@@ -79,4 +79,4 @@ def command(
         ship=ship,
         force=force,
     )
-    return FAILED_MODELS if train(wishes) else 0
+    return FAILED_MODELS if train(request) else 0

@@ -30,7 +30,7 @@ class _Frozen(BaseModel):
 class Recording(_Frozen):
     """Closed-loop flights under correct inputs, whose windows are measured.
 
-    Which scenes of the library fly is said when they are measured: the first so many.
+    Which scenes of the library fly is said when they are measured: the first N.
     """
 
     library: str

@@ -73,7 +73,7 @@ class Measurer(Protocol):
 
         Args:
             measurements: What to measure; one that stands there twice is measured once.
-            scenes: The first so many scenes of each library; `None`: all.
+            scenes: The first N scenes of each library; `None`: all.
             folder: Where recordings and measurements are kept, so that the next call goes on.
             workers: Processes; 0: everything is done in this one.
             progress: Is told how far it is.

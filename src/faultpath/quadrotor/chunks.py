@@ -7,7 +7,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand, send
+from faultpath.quadrotor.device import host_readable, send
 
 CHUNK = 13
 """Most scenes planned at once on the CPU: they share the cost of each kernel's start, and their
@@ -33,7 +33,7 @@ class Chunk:
 
 def chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
     """Split scenes into as few chunks as may be, of nearly equal size; an accelerator takes all."""
-    count = -(-len(running) // CHUNK) if at_hand(device) else 1
+    count = -(-len(running) // CHUNK) if host_readable(device) else 1
     ends = [len(running) * i // count for i in range(count + 1)]
     parts = (tuple(running[a:b]) for a, b in pairwise(ends))
     return tuple(Chunk(part, send(torch.tensor(part), device)) for part in parts)

@@ -12,7 +12,7 @@ from faultpath.quadrotor.choices import DeviceName
 
 CPU = torch.device("cpu")
 
-AT_HAND = frozenset({"cpu"})
+HOST_READABLE = frozenset({"cpu"})
 """Types of device whose values the host reads without waiting for queued work."""
 
 
@@ -21,12 +21,12 @@ def device_of(name: DeviceName) -> torch.device:
     return CPU if name is DeviceName.CPU else torch.device("cuda", 0)
 
 
-def at_hand(device: torch.device) -> bool:
+def host_readable(device: torch.device) -> bool:
     """Return whether the host may look at values on `device` during a control step.
 
     What is done in one way on the CPU and in another on an accelerator asks this and nothing else.
     """
-    return device.type in AT_HAND
+    return device.type in HOST_READABLE
 
 
 def send(host: Tensor, device: torch.device) -> Tensor:

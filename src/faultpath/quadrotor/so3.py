@@ -8,7 +8,7 @@ is differentiable, also at the identity.
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 
 # Added to a squared angle before its root: far below what either dtype can resolve next to an
 # angle that matters, it keeps 0/0 and the root's infinite slope out of the identity.
@@ -102,7 +102,7 @@ def project(matrix: Tensor) -> Tensor:
     Off the CPU by another way: the singular value decomposition makes the host wait for the device
     to know whether it converged.
     """
-    if not at_hand(matrix.device):
+    if not host_readable(matrix.device):
         return _project_by_squaring(matrix)
     u, _, vh = torch.linalg.svd(matrix.movedim((0, 1), (-2, -1)))
     sign = torch.linalg.det(u @ vh)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Self
 
 import torch
+from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
@@ -70,8 +71,8 @@ class Quadrotor(LoopSystem):
         )
 
     @property
+    @override
     def fault_presets(self) -> Mapping[str, FaultPreset]:
-        """See `System.fault_presets`."""
         return {"calibration": calibration, "noisy_state": noisy_state}
 
     def library(self, name: str) -> Library:
@@ -81,13 +82,13 @@ class Quadrotor(LoopSystem):
         refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
         return Library(name, refs, library.content_hash)
 
+    @override
     def floor_plan(self, scene: str) -> FloorPlan:
-        """See `System.floor_plan`."""
         return floor_plan(self.scene(scene), free_space=self.options.free_space)
 
     @property
+    @override
     def backend(self) -> str:
-        """See `System.backend`."""
         options = self.options
         computes = (
             native.describe() if options.device is DeviceName.CPU else describe(options.device)
@@ -107,17 +108,17 @@ class Quadrotor(LoopSystem):
         return (*_weights(), Path("interface.yaml"), Path("native/source"), *own)
 
     @property
+    @override
     def parts(self) -> Sequence[str]:
-        """See `System.parts`."""
         return tuple(self.brought)
 
     @property
+    @override
     def wirings(self) -> Mapping[str, Wiring]:
-        """See `LoopSystem.wirings` and `faultpath.quadrotor.variants`."""
         return {name: choice.wiring(self.options) for name, choice in self.choices.items()}
 
+    @override
     def plant(self) -> Plant:
-        """See `LoopSystem.plant`."""
         options, free, place = self.options, self.options.free_space, self.options.place
 
         def world(scenes: Sequence[str]) -> World:
@@ -133,8 +134,8 @@ class Quadrotor(LoopSystem):
             return VehiclePlant(world, camera=None, field=field)
         return VehiclePlant(world, camera=camera, field=None)
 
+    @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
-        """See `LoopSystem.modules`."""
         choice, place = self.choices[variant], self.options.place
         predictor = choice.load_predictor(seed, place)
         reconstruction = choice.load_reconstruction(seed, place)
@@ -153,8 +154,8 @@ class Quadrotor(LoopSystem):
 
     @arithmetic()
     @torch.inference_mode()
+    @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        """See `LoopSystem.run`."""
         return super().run(variant, scenes, taps, seed)
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:

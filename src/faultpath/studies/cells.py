@@ -70,7 +70,7 @@ class Profile:
 
     name: str
     scenes: int | None
-    """The first so many scenes of each library; `None`: all of them."""
+    """The first N scenes of each library; `None`: all of them."""
     seeds: tuple[int, ...]
 
     def cells(self, cells: Iterable[Cell]) -> tuple[Cell, ...]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from typing_extensions import override
 
 from faultpath.arrays import Array, HostArray, namespace, to_numpy
 from faultpath.interface import Interface, Provenance
@@ -64,8 +65,8 @@ class LoopSystem(System):
         """
         return Loop(self.interface, self._graph(variant, seed), trace)
 
+    @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        """See `System.run`."""
         loop = self.loop(variant, seed)
         plant, batch = loop.graph.plant, Batch(tuple(scenes), seed, self.control_dt_s)
         path: list[Array] = []

@@ -12,7 +12,7 @@ from faultpath.errors import UserError
 from faultpath.evidence import Recording
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.pool import Flown, encode_episodes, encode_rows, join
+from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows, join
 from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
 from faultpath.store import atomic
@@ -115,7 +115,7 @@ def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
     rows = join((folder / f"{block.stem}.rows").read_bytes() for block in blocks)
     episodes = join((folder / f"{block.stem}.episodes").read_bytes() for block in blocks)
     recording = blocks[0].recording
-    flown = Flown.decode(recording.name, rows, episodes)
+    flown = FlightData.decode(recording.name, rows, episodes)
     place = places(flown, STRIDE)
     if not len(place):
         raise UserError(

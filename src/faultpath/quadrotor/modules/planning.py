@@ -10,7 +10,7 @@ from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.quadrotor.chunks import Chunk, chunks
-from faultpath.quadrotor.device import at_hand, send
+from faultpath.quadrotor.device import host_readable, send
 from faultpath.quadrotor.modules.candidates import Candidates, Predicted
 from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of
 from faultpath.quadrotor.planner import Planner, Scored, shift
@@ -113,6 +113,6 @@ def _planned(inputs: Inputs) -> Sequence[int]:
     longer counts once its trial has ended.
     """
     running = inputs.running
-    if at_hand(running.device):
+    if host_readable(running.device):
         return running.nonzero()[:, 0].tolist()
     return range(len(running))

@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.modules.clearance import geometric_clearance
 from faultpath.quadrotor.modules.lanes import lanes_last, scenes_first
 from faultpath.quadrotor.perception import DepthRenderer, mounted
@@ -93,8 +94,8 @@ class VehiclePlant(Plant):
         state.world.advance(commanded(inputs, state.world.lanes))
         return state
 
+    @override
     def progress(self, state: Flying) -> Progress:
-        """See `Plant.progress`."""
         now, count = state.world.progress, state.world.count
         return Progress(
             running=now.running[:count],
@@ -108,16 +109,16 @@ class VehiclePlant(Plant):
     def over(self, state: Flying, step: int) -> bool:
         """See `Plant.over`: only the device knows which trials run there."""
         running = state.world.progress.running
-        if not at_hand(running.device) and (step + 1) % LOOK_EVERY:
+        if not host_readable(running.device) and (step + 1) % LOOK_EVERY:
             return False
         return not bool(running[: state.world.count].any())
 
+    @override
     def conditions(self, state: Flying) -> tuple[Sequence[str], Sequence[str]]:
-        """See `Plant.conditions`."""
         return state.world.initial_hashes, state.world.wind_hashes
 
+    @override
     def position(self, state: Flying) -> Tensor:
-        """See `Plant.position`."""
         return scenes_first(state.world.state.position, state.world.count)
 
 

@@ -13,7 +13,7 @@ from typing import TypeGuard, TypeVar
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 
 T = TypeVar("T")
 
@@ -57,7 +57,7 @@ def lend(name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.floa
         else f"is {_short(tensor.dtype)}, not {_short(dtype)}: convert it"
         if tensor.dtype != dtype
         else f"is on {tensor.device}, not on the CPU: move it"
-        if not at_hand(tensor.device)
+        if not host_readable(tensor.device)
         else "is not contiguous: call `contiguous()`"
         if tensor.layout is not torch.strided or not tensor.is_contiguous() or tensor.is_neg()
         else "should have a gradient, which no kernel passes on: detach it, or roll out in torch"

@@ -14,7 +14,7 @@ import torch
 from torch import Tensor
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.native.lending import Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
@@ -100,7 +100,7 @@ def _chosen(wanted: str) -> Kernels | None:
 
 def kernels_on(device: torch.device) -> Kernels | None:
     """Return the kernels for tensors on `device`: off the CPU the portable path runs."""
-    return kernels() if at_hand(device) else None
+    return kernels() if host_readable(device) else None
 
 
 def kernels_for(*tensors: Tensor) -> Kernels | None:
@@ -113,7 +113,7 @@ def kernels_for(*tensors: Tensor) -> Kernels | None:
     for tensor in tensors:
         if tensor.dtype != torch.float32 or (learning and tensor.requires_grad):
             return None
-        if not at_hand(tensor.device):
+        if not host_readable(tensor.device):
             return None
     return kernels()
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.native.lending import Lent, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
@@ -132,7 +132,7 @@ def misfit(kind: Kind, layers: Mapping[str, Tensor]) -> str:
     """
     if kind is Kind.KINEMATIC:
         return "an integrator has no layers" if layers else ""
-    if any(w.dtype != torch.float32 or not at_hand(w.device) for w in layers.values()):
+    if any(w.dtype != torch.float32 or not host_readable(w.device) for w in layers.values()):
         return "its weights are not float32 on the CPU"
     first, second = len(layers["first"]), len(layers["second"])
     if max(first, second) > MOST_HIDDEN:

@@ -12,7 +12,7 @@ from itertools import pairwise
 import torch
 from torch import Tensor, nn
 
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.perception.camera import RANGE_M
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
@@ -127,7 +127,7 @@ class ClearanceModel(nn.Module):
         Returns:
             `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
         """
-        if not at_hand(points.device):
+        if not host_readable(points.device):
             return self.estimate(code.T, points.movedim(0, 1)).clamp_(LOWEST_M, HIGHEST_M)
         weights = [_with_constant(layer) for layer in self._networks(code)]
         clearance = points.new_empty(points.shape[1:])

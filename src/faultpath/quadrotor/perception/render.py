@@ -20,7 +20,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.device import CPU, at_hand
+from faultpath.quadrotor.device import CPU, host_readable
 from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.native.render import CompiledRenderer
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
@@ -120,7 +120,7 @@ class DepthRenderer:
         left, up = (slope.to(device) for slope in slopes())
         self._left, self._up = left.float(), up.float()[:, None]
         self._planes, self._offsets = _PLANES.to(device), _OFFSETS.to(device)
-        most = _GROUP if at_hand(device) else geometry.sign.numel()
+        most = _GROUP if host_readable(device) else geometry.sign.numel()
         self._scratch = torch.empty(3, 3, most, HEIGHT, WIDTH, device=device)
         kernels = native.kernels_on(device)
         self._compiled: CompiledRenderer | None = None
@@ -150,7 +150,7 @@ class DepthRenderer:
         if self._compiled is not None:
             return self._compiled.render(position, rotation)
         view = self._view(position, rotation)
-        if not at_hand(position.device):
+        if not host_readable(position.device):
             return self._draw_at_once(view)
         image = torch.empty(count, HEIGHT, WIDTH)
         for first in range(0, len(image), _GROUP):

@@ -6,7 +6,7 @@ import torch
 from torch import Tensor, nn
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.device import CPU, at_hand
+from faultpath.quadrotor.device import CPU, host_readable
 from faultpath.quadrotor.native.clearance import Bounds, CompiledClearance
 from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.lending import covered, is_exactly, tell_portable, unlike
@@ -105,7 +105,7 @@ def _misfit(model: ClearanceModel) -> str:
     theirs = {name: part.shape for name, part in known.state_dict().items()}
     if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
         return "its layers have other sizes"
-    if any(p.dtype != torch.float32 or not at_hand(p.device) for p in model.parameters()):
+    if any(p.dtype != torch.float32 or not host_readable(p.device) for p in model.parameters()):
         return "its weights are not float32 on the CPU"
     return ""
 

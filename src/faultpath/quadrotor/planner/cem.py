@@ -5,6 +5,7 @@ from dataclasses import replace
 import torch
 from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor.planner.costs import NavigationCost, Scored
 from faultpath.quadrotor.planner.protocol import Planner, Search
@@ -44,13 +45,13 @@ class CEM(Planner):
         self.iterations = self.settings.iterations
         self._cost = cost
 
+    @override
     def init(self, plan: Tensor, hover: Tensor) -> Search:
-        """See `Planner.init`."""
         spread = scales(self.sampler.settings, hover)[..., 0].expand(plan.shape)
         return Search(plan, hover, spread)
 
+    @override
     def propose(self, search: Search, noise: Tensor) -> Tensor:
-        """See `Planner.propose`."""
         assert search.spread is not None
         commands = noise.mul_(search.spread[..., None]).add_(search.plan[..., None])
         return bound(commands, search.hover)

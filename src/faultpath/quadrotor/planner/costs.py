@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native import costs
@@ -69,16 +70,16 @@ class TerminalGoal(GoalCost):
     way, so a thrust error settles into an altitude offset. This is where calibration hurts.
     """
 
+    @override
     def distance(self, scored: Scored) -> Tensor:
-        """See `GoalCost.distance`."""
         return _norm(scored.rollout.final.position - scored.goal[..., None])
 
 
 class RunningGoal(GoalCost):
     """Mean distance along the horizon: stiff in height, so it hides a thrust error."""
 
+    @override
     def distance(self, scored: Scored) -> Tensor:
-        """See `GoalCost.distance`."""
         return _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
 
 

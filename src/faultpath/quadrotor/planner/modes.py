@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor.planner.mppi import Temperature
 from faultpath.quadrotor.planner.sampler import Sampler
@@ -31,15 +32,15 @@ class BundledSampler(Sampler):
         self.settings = sampler.settings
         self._sampler = sampler
 
+    @override
     def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
-        """See `Sampler.noise`."""
         noise = self._sampler.noise(scenes, seed, step, iteration)
         bundled = noise.unflatten(-1, (BUNDLES, -1))
         bundled[..., 1:].mul_(math.sqrt(1 - SHARED)).add_(bundled[..., :1], alpha=math.sqrt(SHARED))
         return noise
 
+    @override
     def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
-        """See `Sampler.candidates`."""
         return self._sampler.candidates(plan, hover, noise)
 
 
@@ -49,12 +50,12 @@ class WithinBundle(Temperature):
     def __init__(self, temperature: Temperature) -> None:
         self._temperature = temperature
 
+    @override
     def of(self, cost: Tensor) -> Tensor:
-        """See `Temperature.of`."""
         return self._temperature.of(cost)
 
+    @override
     def weights(self, cost: Tensor) -> Tensor:
-        """See `Temperature.weights`."""
         weights = self._temperature.weights(cost).unflatten(1, (BUNDLES, -1))
         total = weights.sum(2, keepdim=True)
         best = torch.zeros_like(total).scatter_(1, total.argmax(1, keepdim=True), 1.0)

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native import costs
@@ -33,8 +34,8 @@ class FixedTemperature(Temperature):
 
     value: float
 
+    @override
     def of(self, cost: Tensor) -> Tensor:
-        """See `Temperature.of`."""
         return torch.full_like(cost[:, :1], self.value)
 
 
@@ -48,8 +49,8 @@ class ScaledTemperature(Temperature):
     fraction: float
     least: ClassVar[float] = 1e-3
 
+    @override
     def of(self, cost: Tensor) -> Tensor:
-        """See `Temperature.of`."""
         half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
         return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=self.least)
 
@@ -84,11 +85,11 @@ class MPPI(Planner):
         self._cost = cost
         self._temperature = temperature
 
+    @override
     def propose(self, search: Search, noise: Tensor) -> Tensor:
-        """See `Planner.propose`."""
         return self.sampler.candidates(search.plan, search.hover, noise)
 
+    @override
     def update(self, search: Search, scored: Scored) -> Search:
-        """See `Planner.update`."""
         weights = self._temperature.weights(self._cost(scored))
         return replace(search, plan=weighted_mean(scored.commands, weights))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor.predictors.base import History, Memory, Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
@@ -44,8 +45,8 @@ class AnchoredPredictor(Predictor):
         """Return a network of the right shape."""
         return LatentNetwork(HIDDEN, outputs=6)
 
+    @override
     def encode(self, history: History) -> Tensor:
-        """See `Predictor.encode`."""
         return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:

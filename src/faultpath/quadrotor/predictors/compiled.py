@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.native.lending import is_exactly, unlike
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step, misfit
@@ -93,7 +93,7 @@ def _network(network: LatentNetwork, exactly: type[LatentNetwork], kind: Kind) -
     if not is_exactly(network, exactly):
         return unlike(exactly, network)
     tensors = (*network.parameters(), *network.buffers())
-    if any(part.dtype != torch.float32 or not at_hand(part.device) for part in tensors):
+    if any(part.dtype != torch.float32 or not host_readable(part.device) for part in tensors):
         return "its weights are not float32 on the CPU"
     if isinstance(network, UnanchoredNetwork) and network.increment_std.shape != (OUTPUTS, 1):
         return "the size of its layer 'increment_std' is another"

@@ -11,7 +11,7 @@ from torch import Tensor
 
 from faultpath.loop import Port
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.device import at_hand
+from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.predictors.base import Calibration, History, Physics, PredictorInputs
 from faultpath.quadrotor.state import State
 
@@ -97,7 +97,7 @@ def _start(state: State) -> State:
     off = (off - torch.eye(3, device=off.device).view(3, 3, *(1 for _ in state.batch))).abs().amax(
         (0, 1)
     ) > 1e-4
-    if not at_hand(off.device) or off.any():
+    if not host_readable(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
     parts = (state.position, state.velocity, rotation, state.rate)
     return State(*(part[..., None] for part in parts))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.base import (
@@ -61,8 +62,8 @@ class UnanchoredPredictor(Predictor):
         """Return a network of the right shape."""
         return UnanchoredNetwork()
 
+    @override
     def encode(self, history: History) -> Tensor:
-        """See `Predictor.encode`."""
         return self.network.encode(history)
 
     def begin(self, inputs: PredictorInputs) -> Memory:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors import Calibration
@@ -92,8 +93,8 @@ class DisturbanceObserver(Reconstruction):
             before=first,
         )
 
+    @override
     def update(self, memory: Memory, delivered: Delivered) -> Memory:
-        """See `Reconstruction.update`."""
         now: ObserverMemory = memory
         sensed = Sensed.of(delivered)
         middle = _halfway(now.before.rotation, sensed.rotation)
@@ -106,8 +107,8 @@ class DisturbanceObserver(Reconstruction):
             before=sensed,
         )
 
+    @override
     def wind(self, memory: Memory) -> Tensor:
-        """See `Reconstruction.wind`."""
         return memory.wind_mps
 
     def observed(self, memory: ObserverMemory, sensed: Sensed) -> Tensor:

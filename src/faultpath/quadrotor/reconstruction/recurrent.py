@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
@@ -48,8 +49,8 @@ class RecurrentReconstruction(Reconstruction):
         none = state.new_zeros(4, 0, *state.shape[2:])
         return RecurrentMemory(state, none, self._calibration(delivered))
 
+    @override
     def update(self, memory: Memory, delivered: Delivered) -> Memory:
-        """See `Reconstruction.update`."""
         past: RecurrentMemory = memory
         command = delivered["action", "history"].float()[:, None]
         return RecurrentMemory(

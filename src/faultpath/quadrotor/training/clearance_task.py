@@ -8,6 +8,7 @@ from typing import Any
 import torch
 from torch import LongTensor, Tensor, nn
 from torch.nn import functional
+from typing_extensions import override
 
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
@@ -59,17 +60,17 @@ class ClearanceTask(Task):
         self._chosen = torch.empty(0)
 
     @property
+    @override
     def count(self) -> int:
-        """See `Task.count`."""
         return len(self._training)
 
     @property
+    @override
     def order_key(self) -> str:
-        """See `Task.order_key`."""
         return self.name
 
+    @override
     def module(self) -> nn.Module:
-        """See `Task.module`."""
         model = ClearanceModel()
         stream = generator("initial weights", self.name, self.seed)
         model.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
@@ -82,8 +83,8 @@ class ClearanceTask(Task):
         self._mirrored = torch.from_numpy(random.random(self.count) < 0.5)
         self._chosen = torch.from_numpy(random.integers(0, self._recipe.points, shape))
 
+    @override
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
-        """See `Task.loss`."""
         assert isinstance(module, ClearanceModel)
         batch, chosen = self._training.take(index), self._chosen[index]
         depth, points = _mirror(
@@ -108,8 +109,8 @@ class ClearanceTask(Task):
             "wrong_sign": float(wrong.float().mean()),
         }
 
+    @override
     def describe(self) -> Mapping[str, Any]:
-        """See `Task.describe`."""
         return {
             "description": "Clearance at points from one depth image.",
             "data_sha256": {"clearance": self._sha256},

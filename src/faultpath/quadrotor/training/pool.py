@@ -26,7 +26,7 @@ _AXES = ("x", "y", "z")
 
 
 @dataclass(frozen=True)
-class Flown:
+class FlightData:
     """Recorded episodes in memory, wherever they were flown."""
 
     name: str
@@ -43,7 +43,7 @@ class Flown:
         return np.concatenate(([0], np.cumsum(self.steps + 1)[:-1]))
 
     @classmethod
-    def decode(cls, name: str, rows: bytes, episodes: bytes) -> Flown:
+    def decode(cls, name: str, rows: bytes, episodes: bytes) -> FlightData:
         """Read what `encode_rows` and `encode_episodes` wrote."""
         table, flights = read_table(rows), read_table(episodes)
         return cls(
@@ -55,7 +55,7 @@ class Flown:
 
 
 @dataclass(frozen=True)
-class Pool(Flown):
+class Pool(FlightData):
     """A pool in memory."""
 
     provenance: Provenance
@@ -114,7 +114,7 @@ def read_pool(path: Path) -> Pool:
         raise UserError(f"there is no finished pool at {path}: collect it first.")
     rows = _read(path, provenance.rows_sha256)
     episodes = _read(episodes_path(path), provenance.episodes_sha256)
-    flown = Flown.decode(provenance.pool, rows, episodes)
+    flown = FlightData.decode(provenance.pool, rows, episodes)
     return Pool(**vars(flown), provenance=provenance)
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import torch
 from torch import LongTensor, Tensor, nn
+from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
@@ -110,17 +111,17 @@ class PredictorTask(Task):
         return self.name.endswith(DCC)
 
     @property
+    @override
     def count(self) -> int:
-        """See `Task.count`."""
         return len(self._train)
 
     @property
+    @override
     def order_key(self) -> str:
-        """See `Task.order_key`."""
         return self._base
 
+    @override
     def module(self) -> nn.Module:
-        """See `Task.module`."""
         network = self._recipe.network()
         stream = generator("training/weights", self._base, self.seed)
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
@@ -131,8 +132,8 @@ class PredictorTask(Task):
         """Draw what each window's consumers get of the calibration in this epoch."""
         self._delivered = self._corruption.deliver(epoch, self._train.calibration)
 
+    @override
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
-        """See `Task.loss`."""
         batch = _pick(self._train, index)
         delivered = {tap: value[index] for tap, value in self._delivered.items()}
         predicted = list(predict(self._recipe.predictor(module), batch, delivered))
@@ -149,8 +150,8 @@ class PredictorTask(Task):
             "loss": float(error(predicted, windows, self._scales)),
         }
 
+    @override
     def describe(self) -> Mapping[str, Any]:
-        """See `Task.describe`."""
         return {
             "description": f"{self._recipe.description} predictor"
             + (", fitted with calibration noise" if self.is_dcc else ""),

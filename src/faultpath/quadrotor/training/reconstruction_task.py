@@ -12,6 +12,7 @@ from typing import Any
 import torch
 from torch import LongTensor, Tensor, nn
 from torch.nn import functional
+from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.interface import quadrotor_interface
@@ -98,8 +99,8 @@ class ReconstructionTask(Task):
         self._base = name.removesuffix("+dcc")
         self._scaled = WindNetwork(self._model.calibrated)
 
+    @override
     def load(self) -> None:
-        """See `Task.load`."""
         self.use(*windows_of(self._path).split())
 
     def use(self, training: Windows, validation: Windows) -> None:
@@ -112,17 +113,17 @@ class ReconstructionTask(Task):
         self._known = self._delivered = torch.empty(0)
 
     @property
+    @override
     def count(self) -> int:
-        """See `Task.count`."""
         return len(self._training.ids)
 
     @property
+    @override
     def order_key(self) -> str:
-        """See `Task.order_key`."""
         return self._base
 
+    @override
     def module(self) -> nn.Module:
-        """See `Task.module`."""
         network = copy.deepcopy(self._scaled)
         stream = generator("initial weights", self._base, self.seed)
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**63))))
@@ -140,8 +141,8 @@ class ReconstructionTask(Task):
             got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
             self._delivered = self._scaled.calibration(got)
 
+    @override
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
-        """See `Task.loss`."""
         samples = self._training
         estimate = module(
             samples.intervals.index_select(2, index),
@@ -173,8 +174,8 @@ class ReconstructionTask(Task):
             metrics["calibration_shift_mps"] = float(shift.mean())
         return metrics
 
+    @override
     def describe(self) -> Mapping[str, Any]:
-        """See `Task.describe`."""
         provenance = read_provenance(self._path)
         return {
             "description": _DESCRIPTIONS[self.name],

@@ -13,7 +13,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS
-from faultpath.quadrotor.training.pool import Flown, read_pool
+from faultpath.quadrotor.training.pool import FlightData, read_pool
 
 HISTORY = 12  # paper, Section IV-A
 HORIZON = 20  # paper, Section IV-A
@@ -127,7 +127,7 @@ def starts(steps: int, stride: int = STRIDE) -> list[int]:
     return [room * i // gaps for i in range(gaps + 1)] if gaps else [room // 2]
 
 
-def places(pool: Flown, stride: int = STRIDE) -> np.ndarray:
+def places(pool: FlightData, stride: int = STRIDE) -> np.ndarray:
     """Return where the windows of a pool stand, [W, 3]: episode, number in it, first step."""
     found = [
         (episode, i, first)
@@ -137,7 +137,7 @@ def places(pool: Flown, stride: int = STRIDE) -> np.ndarray:
     return np.array(found, dtype=np.int64).reshape(-1, 3)
 
 
-def cut(pool: Flown, stride: int = STRIDE) -> Windows:
+def cut(pool: FlightData, stride: int = STRIDE) -> Windows:
     """Return the windows of a pool in memory."""
     table = places(pool, stride)
     episode, first = table[:, 0].copy(), table[:, 2]
