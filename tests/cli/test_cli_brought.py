@@ -24,17 +24,15 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _audit(baseline: str, repair: str, **options: object):
-    return audit(
-        system="quadrotor",
-        baseline=baseline,
-        repair=repair,
-        fault="calibration=0.1",
-        library="selection",
-        scenes=2,
-        environment="free-space",
-        out="run",
-        **options,
-    )
+    chosen: dict[str, object] = {
+        "system": "quadrotor",
+        "fault": "calibration=0.1",
+        "library": "selection",
+        "scenes": 2,
+        "environment": "free-space",
+        "out": "run",
+    }
+    return audit(**chosen | {"baseline": baseline, "repair": repair} | options)
 
 
 @pytest.mark.parametrize(
@@ -56,8 +54,9 @@ def test_a_part_is_audited_by_the_name_of_what_builds_it(baseline, repair, optio
     assert "mine.py" in files
 
 
+@pytest.mark.slow
 def test_workers_build_the_part_too():
-    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:exact", workers=1)
+    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:exact", workers=1, scenes=1)
     assert ended.status == 0, ended.err
 
 
