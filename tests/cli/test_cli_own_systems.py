@@ -152,6 +152,30 @@ def test_a_system_that_flies_wrongly(code, says, workers, tmp_path):
     assert "faultpath: " in told.err.splitlines()[-1]
 
 
+LOOPED = {
+    "undeclared port": ("inputs['position', 'x']  # here", "a port that it does not declare: add"),
+    "undeclared truth": ("inputs.truth('gain')  # here", "add it to its truths"),
+    "forgotten source": ("return {}, memory", "'observer' writes source 'observed_slope', but at"),
+}
+
+
+@pytest.mark.parametrize(("code", "says"), LOOPED.values(), ids=LOOPED)
+def test_a_module_that_does_what_it_does_not_declare(code, says, tmp_path):
+    module = f"""
+        from toy import Controller, Observer
+        class Mine(Observer):
+            def step(self, inputs, memory):
+                {code}
+        class Looped(Toy):
+            def modules(self, variant, seed):
+                return Mine(variant == "calibrated"), Controller()
+        def create():
+            return Looped()
+        """
+    system, place = _system(tmp_path, dedent(module))
+    _check(audit(system=system, out=tmp_path / "run").refused(), place, says)
+
+
 def test_an_error_of_ours_keeps_its_traceback(monkeypatch, tmp_path):
     broken = Mock(side_effect=AssertionError("a bug of faultpath"))
     monkeypatch.setattr("faultpath.door.run.write_report", broken)

@@ -168,7 +168,9 @@ def test_a_module_that_forgets_its_source_is_named() -> None:
         def step(self, inputs, memory):
             return {}, memory
 
-    with pytest.raises(SystemMistake, match="'observer' writes source 'guess', but gave none"):
+    with pytest.raises(
+        SystemMistake, match="'observer' writes source 'guess', but at step 0 it returned no such"
+    ):
         execute((Mute(), Planner()))
 
 

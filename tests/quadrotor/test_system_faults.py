@@ -6,7 +6,7 @@ from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
 from faultpath.faults import Fault
 from faultpath.faults.values import Erase
-from faultpath.quadrotor.planner import MPPI
+from faultpath.quadrotor.modules import prediction
 from faultpath.taps import Receipts
 from faultpath.trials import Outcome
 
@@ -160,18 +160,24 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
 
 def test_a_noisy_attitude_is_a_rotation_again_before_it_is_rolled_out(monkeypatch):
     seen = []
-    propose = MPPI.propose
+    rolling = prediction.rolling
 
-    def watched(self, inputs, plan, noise):
-        seen.append(inputs.state.rotation[..., 0].double())
-        return propose(self, inputs, plan, noise)
+    def watched(predictor, place):
+        roll = rolling(predictor, place)
 
-    monkeypatch.setattr(MPPI, "propose", watched)
+        def rolled(inputs, commands):
+            seen.append(inputs.state.rotation[..., 0].double())
+            return roll(inputs, commands)
+
+        return rolled
+
+    monkeypatch.setattr(prediction, "rolling", watched)
     system = quadrotor()
     (outcome,), taps = fly(system, faults=[fault("attitude:noise=0.1", system)])
     delivered = taps.delivered("attitude", "predictor.initial_state")[:, 0]
     gram = delivered.swapaxes(-1, -2) @ delivered
     assert np.abs(gram - np.eye(3)).max() > 0.05
+    assert len(seen) == len(delivered)
     for step, rotations in enumerate(seen):
         matrix = rotations.movedim(-1, 0).numpy()
         assert np.allclose(matrix.swapaxes(-1, -2) @ matrix, np.eye(3), atol=1e-5)

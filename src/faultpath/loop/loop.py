@@ -117,8 +117,8 @@ class _Execution:
                 self._now[name] = arrived
             elif not first:
                 raise SystemMistake(
-                    f"module '{part.name}' writes source '{name}', but gave none at step {step}: "
-                    f"it gave {listed(outputs)}"
+                    f"module '{part.name}' writes source '{name}', but at step {step} it returned "
+                    f"no such entry; it returned: {listed(outputs)}"
                 )
 
     def _inputs(self, part: Module | Any, step: int, running: Array) -> Inputs:
