@@ -17,7 +17,6 @@ from faultpath.statistics import (
     compare,
     decide_family,
     difference_of_effects,
-    distinct_seeds,
     fewest_scenes,
     mean_effect,
     success_effect,
@@ -148,16 +147,6 @@ def test_few_scenes_detect_nothing_however_one_sided(n):
     found = compare(success_effect(ones, 0 * ones, resamples))
     assert found.side == 0
     assert decide_family({"only": found})["only"].sign == 0
-
-
-def test_seeds_that_change_nothing_are_counted():
-    rng = np.random.default_rng(2)
-    first, second = rng.random((2, N, 1)) < 0.5
-    copied = [np.repeat(arm, 3, axis=1) for arm in (first, second)]
-    assert distinct_seeds(*copied) == 1
-    copied[1][5, 2] ^= True
-    assert distinct_seeds(*copied) == 2
-    assert distinct_seeds(np.zeros((N, 4)), np.zeros((N, 4))) == 1
 
 
 def test_newly_trained_models_are_tested_by_the_seeds_effects():

@@ -32,7 +32,7 @@ class World:
     """Plant, wind and geometry of a block of scenes, padded to whole groups of lanes.
 
     Evaluation code: it knows the truth and passes through no tap. What modules get of it are the
-    readings that the navigator takes from `state`, `wind_mps` and `vehicle`.
+    readings that `modules/vehicle.py` makes of `state`, `wind_mps` and `vehicle`.
     """
 
     def __init__(

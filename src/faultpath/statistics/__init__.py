@@ -38,7 +38,6 @@ from faultpath.statistics.medians import median_effect
 from faultpath.statistics.paired import (
     discordant,
     discordant_by_seed,
-    distinct_seeds,
     mcnemar_exact,
     mcnemar_mid_p,
     sign_counts,
@@ -72,7 +71,6 @@ __all__ = [
     "difference_of_effects",
     "discordant",
     "discordant_by_seed",
-    "distinct_seeds",
     "fewest_scenes",
     "mcnemar_exact",
     "mcnemar_mid_p",

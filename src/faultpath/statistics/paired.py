@@ -106,12 +106,3 @@ def success_test(first: Numbers, second: Numbers) -> TestResult:
     """Apply the paper's test to binary arms: exact McNemar for one seed, else the sign test."""
     one, two = paired_binary(first, second)
     return mcnemar_exact(discordant(one, two)) if one.shape[1] == 1 else sign_test(one, two)
-
-
-def distinct_seeds(first: Numbers, second: Numbers) -> int:
-    """Return how many seeds of two binary arms [scenes, seeds] differ from all seeds before them.
-
-    1 says that the seeds change nothing: they are one execution, written down several times.
-    """
-    one, two = paired_binary(first, second)
-    return np.unique(np.concatenate([one, two]), axis=1).shape[1]
