@@ -103,7 +103,7 @@ def _origin(found: Reproduction, origin: RunProvenance) -> str:
     first, last = found.flown or ("", "")
     commit = origin.commit[:12] if origin.commit else "unknown"
     return (
-        f"FlightData between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "
+        f"Flown between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "
         f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded by "
         f"commit `{commit}`; concluded anew by the code that is here, which a test repeats. "
         "Everything is in "
