@@ -12,7 +12,8 @@ from faultpath.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.door.audit import audit
-    from faultpath.door.reproduction import ReproductionRun, reproduce
+    from faultpath.door.reproduced import ReproductionRun
+    from faultpath.door.reproduction import reproduce
     from faultpath.door.run import Run, open_run
     from faultpath.door.systems import load_system
     from faultpath.errors import Stopped, UserError
@@ -32,7 +33,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ReproductionRun": "faultpath.door.reproduction",
+    "ReproductionRun": "faultpath.door.reproduced",
     "Run": "faultpath.door.run",
     "Stopped": "faultpath.errors",
     "System": "faultpath.trials.system",

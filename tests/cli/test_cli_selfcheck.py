@@ -1,7 +1,6 @@
 """`faultpath selfcheck statistics`: numbers to a file, tables to the terminal, 1 for a failure."""
 
 import re
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
@@ -9,6 +8,7 @@ from faultpath.cli.main import main
 from faultpath.selfcheck import PROFILES, Report
 from faultpath.selfcheck.run import Profile
 from faultpath.statistics import score
+from faultpath.work import local
 
 SMALL = Profile((10,), 20, 10, 1, 1, 1, 1)
 
@@ -19,7 +19,8 @@ def check(monkeypatch, capsys):
     monkeypatch.setitem(PROFILES, "quick", SMALL)
 
     def run(*options):
-        command = ["faultpath", "selfcheck", "statistics", "--quick", "--processes", "1", *options]
+        alone = () if "--processes" in options else ("--processes", "1")
+        command = ["faultpath", "selfcheck", "statistics", "--quick", *alone, *options]
         monkeypatch.setattr("sys.argv", command)
         with pytest.raises(SystemExit) as ended:
             main()
@@ -54,12 +55,11 @@ def test_no_more_processes_are_started_than_there_is_work_for(check, monkeypatch
     """As many as asked ended in an error of the operating system's, with its traceback."""
     started = []
 
-    class Pool(ThreadPoolExecutor):
-        def __init__(self, count):
-            started.append(count)
-            super().__init__(1)
+    def few(count):
+        started.append(count)
+        return local(0)
 
-    monkeypatch.setattr("faultpath.selfcheck.run.ProcessPoolExecutor", Pool)
+    monkeypatch.setattr("faultpath.selfcheck.run.local", few)
     status, said = check("--processes", "9" * 30)
     assert status == 0, said
     (count,) = started

@@ -36,7 +36,7 @@ def test_everything_is_fitted_and_ends_in_a_table() -> None:
     assert names == {"one-0.safetensors", "one+dcc-0.safetensors", "one+dcc-1.safetensors"}
     rows = [line.split() for line in ended.out.splitlines()]
     (head,) = (row for row in rows if row[:2] == ["model", "seed"])
-    assert head[2:] == ["parameters", "training", "loss", "validation", "time"]
+    assert head[2:] == ["parameters", "loss", "validation", "time"]
     card = read_card(Path("runs/train/one+dcc-1.safetensors"))
     (row,) = (row for row in rows if row[:2] == ["one+dcc", "1"])
     assert row[2:4] == ["32", f"{card.training_loss[-1]:.4g}"]

@@ -51,7 +51,7 @@ def test_an_option_that_takes_several_may_be_given_several_times(tmp_path):
 
 @pytest.mark.parametrize("given", ["--wind L0 --seeds 0,1", "--wind=L0", "--scenes 20"])
 def test_make_audit_gives_what_its_user_does_not(given):
-    made = ["make", "--dry-run", "--always-make", "audit", f"ARGS={given}"]
+    made = ["make", "--no-print-directory", "--dry-run", "--always-make", "audit", f"ARGS={given}"]
     shown = subprocess.run(made, cwd=ROOT, capture_output=True, text=True, check=True).stdout
     words = shown.replace("\\\n", " ").partition("faultpath audit quadrotor ")[2].split()
     assert " ".join(words).endswith(given)

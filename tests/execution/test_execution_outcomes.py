@@ -94,7 +94,7 @@ def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
         result = run_study(audit.study, tmp_path, workers=0)
     failed = {(row.variant, row.path) for row in result.outcomes.failed()}
     assert failed == {(v, p) for v in ("calibrated", "blind") for p in ("controller", "shared")}
-    assert "terminal_distance_m is nan" in result.failures[0].error
+    assert "push -> cart.motor: the first reading is not finite" in result.failures[0].error
 
 
 class Holey(ToySystem):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from faultpath.door.display import Display
-from faultpath.door.reproduction import ReproductionRun
+from faultpath.door.reproduced import ReproductionRun
 from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance

@@ -1,35 +1,13 @@
 """`faultpath.reproduce`: the paper's tables, figures and claims, flown again."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 
 from faultpath.door.display import Display, display
+from faultpath.door.reproduced import ReproductionRun
 from faultpath.door.systems import worker_count
-from faultpath.record import Reproduction
 from faultpath.studies.run import plan, standing
-
-
-@dataclass(frozen=True, repr=False, eq=False)
-class ReproductionRun:
-    """A finished reproduction: what was found, and where its files are.
-
-    A notebook shows the tables, with the paper's numbers beside our own.
-    """
-
-    folder: Path
-    record: Reproduction
-    """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
-
-    def __repr__(self) -> str:
-        """Return folder and size."""
-        return f"<ReproductionRun in {self.folder}: {self.record.trials} trials>"
-
-    def _repr_markdown_(self) -> str:
-        from faultpath.tables import markdown
-
-        return "\n\n".join(map(markdown.block, self.record.tables))
 
 
 def reproduce(

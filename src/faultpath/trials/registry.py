@@ -10,17 +10,20 @@ from hashlib import sha256
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from faultpath.blame import note_system
 from faultpath.blame import place as where
 from faultpath.code import Root, shadowed
 from faultpath.code.places import Kind, kind_of
 from faultpath.errors import SystemMistake, UserError
-from faultpath.evidence import Measurer
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
+
+if TYPE_CHECKING:
+    from faultpath.evidence import Measurer
 
 BUILT_IN = {"quadrotor": "faultpath.quadrotor.factory:create"}
 """Names that stand for a factory. They are strings, so that naming one imports nothing."""
@@ -123,7 +126,7 @@ def factory_root(spec: SystemSpec) -> Root:
     return Root(_module_name(path), path)
 
 
-def load_measurer(name: str) -> Measurer:
+def load_measurer(name: str) -> "Measurer":
     """Return what measures evidence of the system `name` on recorded windows.
 
     It stands beside the system, not in it: a system object has one set of options, and recordings
