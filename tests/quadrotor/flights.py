@@ -20,18 +20,17 @@ STEPS = 12
 HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
 
 
-class LoggingTaps(Taps):
-    """Taps that keep each reading and what was delivered of it; of a query, every answer."""
+class WatchedTaps(Taps):
+    """Taps that hand `noted` each reading or answer of a query, and what was delivered of it."""
 
-    def __init__(self, *args, **kwargs) -> None:
-        super().__init__(*args, **kwargs)
-        self.log: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
+    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
+        """Take note of one delivery at a tap; `query` is what was asked, if anything was."""
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
         query = reading.value
         if not isinstance(query, Query):
             value = super().deliver(channel, consumer, reading, step)
-            self._keep(channel, consumer, query, value)
+            self.noted((channel, consumer), query, value, None)
             return value
         made: list[Any] = []
 
@@ -44,14 +43,23 @@ class LoggingTaps(Taps):
 
         def asking(request: Any) -> Any:
             answer = ask(request)
-            self._keep(channel, consumer, query.value(made[-1]), query.value(answer))
+            self.noted((channel, consumer), made[-1], answer, query)
             return answer
 
         return asking
 
-    def _keep(self, channel: str, consumer: str, made: Array, delivered: Array) -> None:
-        pair = (made.numpy().copy(), delivered.numpy().copy())
-        self.log.setdefault((channel, consumer), []).append(pair)
+
+class LoggingTaps(WatchedTaps):
+    """Taps that keep each reading and what was delivered of it."""
+
+    def __init__(self, *args, **kwargs) -> None:
+        super().__init__(*args, **kwargs)
+        self.log: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
+
+    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
+        if query is not None:
+            made, delivered = query.value(made), query.value(delivered)
+        self.log.setdefault(tap, []).append((made.numpy().copy(), delivered.numpy().copy()))
 
     def delivered(self, channel: str, consumer: str) -> np.ndarray:
         """Return `[steps, scenes, ...]`."""

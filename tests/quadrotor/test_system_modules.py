@@ -1,12 +1,11 @@
 """The parts of the quadrotor: their ports are the interface, and what flies reads them all."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import torch
-from flights import HELD_OUT, STEPS, fault, fly, quadrotor, wire
+from flights import HELD_OUT, STEPS, WatchedTaps, fault, fly, quadrotor, wire
 
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Graph, Trace, consumers
@@ -14,7 +13,7 @@ from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.modules.estimator import ExactEstimator
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Query, Reading, Taps
+from faultpath.taps import Query
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 FLOWN = [
@@ -100,30 +99,14 @@ def test_what_flies_looks_at_every_port_and_takes_truth_at_the_door_only(options
     assert late == {(module, "action") for module in taught}
 
 
-class _Watching(Taps):
+class _Watching(WatchedTaps):
     """Taps that note whether an answer of a query is what the source gave."""
 
     untouched: list[bool]
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        query = reading.value
-        if not isinstance(query, Query):
-            return super().deliver(channel, consumer, reading, step)
-        made: list[Any] = []
-
-        def noting(request: Any) -> Any:
-            made.append(query.answer(request))
-            return made[-1]
-
-        watched = replace(reading, value=replace(query, answer=noting))
-        ask = super().deliver(channel, consumer, watched, step)
-
-        def asking(request: Any) -> Any:
-            answer = ask(request)
-            self.untouched.append(answer is made[-1])
-            return answer
-
-        return asking
+    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
+        if query is not None:
+            self.untouched.append(delivered is made)
 
 
 @pytest.mark.parametrize(("text", "touched"), [(None, 0), ("rollout:offset=0.1", STEPS)])

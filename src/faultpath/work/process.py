@@ -32,7 +32,7 @@ def main(channel: int, lifeline: int) -> None:
 def _served(parent: "Connection[Any, Any]", packed: bytes) -> memoryview:
     """Run a call and return its end, packed."""
     try:
-        call = pickle.loads(packed)
+        call = pickle.loads(packed)  # of the parent, over a socket that nobody else has: no file
     except Exception as error:
         return _packed(Failed(error))
     return _packed(ended(call, lambda message: parent.send((message,))))

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of, scenes_first
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
+from faultpath.quadrotor.modules.lanes import lanes_of, scenes_first, taking
 from faultpath.quadrotor.predictors import Predictor
-from faultpath.quadrotor.predictors.places import calibration, history, ports
+from faultpath.quadrotor.predictors.places import Take, calibration, history, ports
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 STEPS = 12  # paper, Section IV-A
@@ -52,11 +52,8 @@ class HistoryEncoder(Module):
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Take the step's readings in and return the code `[B, 32]`."""
         past: _Past = memory
-
-        def take(channel: str, place: str) -> Tensor:
-            return lanes_last(inputs[Port(channel, place)], past.lanes).float()
-
-        now = self._recall(past, take("action", "history"), inputs)
+        take = taking(inputs, past.lanes)
+        now = _recall(past, take)
         motions, commands = zip(*now.intervals, strict=True)
 
         def recalled(channel: str, place: str) -> Tensor:
@@ -72,15 +69,15 @@ class HistoryEncoder(Module):
         assert code is not None
         return {"history_encoding": scenes_first(code, past.count)}, now
 
-    def _recall(self, past: _Past, command: Tensor, inputs: Inputs) -> _Past:
-        def take(channel: str, place: str) -> Tensor:
-            return lanes_last(inputs[Port(channel, place)], past.lanes).float()
 
-        motion = {name: take(name, "history") for name in MOTION}
-        if past.latest is None:
-            hover = torch.zeros_like(command)
-            hover[0] = calibration(take, "trim").hover_thrust(GRAVITY_MPS2)
-            intervals = ((motion, hover),) * STEPS
-        else:
-            intervals = (*past.intervals[1:], (past.latest, command))
-        return _Past(past.lanes, past.count, intervals, motion)
+def _recall(past: _Past, take: Take) -> _Past:
+    """Return the past with the interval that has just ended."""
+    motion = {name: take(name, "history") for name in MOTION}
+    command = take("action", "history")
+    if past.latest is None:
+        hover = torch.zeros_like(command)
+        hover[0] = calibration(take, "trim").hover_thrust(GRAVITY_MPS2)
+        intervals = ((motion, hover),) * STEPS
+    else:
+        intervals = (*past.intervals[1:], (past.latest, command))
+    return _Past(past.lanes, past.count, intervals, motion)

@@ -3,7 +3,8 @@
 import torch
 from torch import Tensor
 
-from faultpath.loop import Batch
+from faultpath.loop import Batch, Inputs, Port
+from faultpath.quadrotor.predictors.places import Take
 from faultpath.quadrotor.state import padded_lanes
 
 
@@ -20,3 +21,12 @@ def scenes_first(value: Tensor, count: int) -> Tensor:
 def lanes_last(value: Tensor, lanes: Tensor) -> Tensor:
     """Turn `[B, ...]` scenes into contiguous `[..., L]` lanes."""
     return value.movedim(0, -1)[..., lanes]
+
+
+def taking(inputs: Inputs, lanes: Tensor) -> Take:
+    """Return what gives a predictor the readings of a step, lanes last, single precision."""
+
+    def take(channel: str, place: str) -> Tensor:
+        return lanes_last(inputs[Port(channel, place)], lanes).float()
+
+    return take

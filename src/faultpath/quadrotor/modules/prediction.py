@@ -1,11 +1,10 @@
 """The predictor as a module of the loop: a query from commands to motion."""
 
 import torch
-from torch import Tensor
 
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
 from faultpath.quadrotor.modules.candidates import Candidates, Predicted
-from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of, scenes_first
+from faultpath.quadrotor.modules.lanes import lanes_of, scenes_first, taking
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.predictors.places import ports, predictor_inputs
 from faultpath.quadrotor.rollout import rolling
@@ -34,11 +33,7 @@ class Prediction(Module):
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Take in what the predictor is told; its answers follow from that."""
         lanes, count, roll = memory
-
-        def take(channel: str, place: str) -> Tensor:
-            return lanes_last(inputs[Port(channel, place)], lanes).float()
-
-        known = predictor_inputs(self._predictor.reads, take)
+        known = predictor_inputs(self._predictor.reads, taking(inputs, lanes))
         hover = known.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
 
         def predict(asked: Candidates) -> Predicted:
