@@ -41,11 +41,7 @@ class Audit:
     study: Study
 
     def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
-        """Return the decision record of a run, or of what its folder holds.
-
-        `read_outcomes` and `read_deliveries` of `faultpath.store` read a folder. Raises as
-        `faultpath.record.decide`.
-        """
+        """Return the decision record of a run; raises as `faultpath.record.decide`."""
         asked = self.question
         paths = [
             path.model_copy(

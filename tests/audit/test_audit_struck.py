@@ -8,8 +8,8 @@ from faultpath.execution import run_study
 from faultpath.faults import parse_fault
 from faultpath.planning import Audit, plan_audit
 from faultpath.record import DecisionRecord, StruckTap
-from faultpath.store import read_deliveries, read_outcomes
-from faultpath.trials import SystemSpec, load_system
+from faultpath.store import read_outcomes
+from faultpath.trials import Deliveries, SystemSpec, load_system
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 STEPS = 100
@@ -75,6 +75,7 @@ def test_a_stored_run_is_concluded_without_flying(tmp_path):
     audit = asked("gain:scale=0.6")
     result = run_study(audit.study, tmp_path, workers=0)
     stored = audit.conclude(
-        read_outcomes(tmp_path / "outcomes.parquet"), read_deliveries(tmp_path / "deliveries.json")
+        read_outcomes(tmp_path / "outcomes.parquet"),
+        Deliveries.model_validate_json((tmp_path / "deliveries.json").read_bytes()),
     )
     assert stored == audit.conclude(result.outcomes, result.deliveries)

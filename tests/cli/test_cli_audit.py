@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
 
-from faultpath.door.saved import read_record
+from faultpath.door.run import open_run
 from faultpath.interface import read_interface
 from faultpath.record import SHARED
 
@@ -60,7 +60,7 @@ def _again(folder: Path, **options: object):
 
 def test_the_toy_shows_the_reversal(toy_run):
     assert {path.name for path in toy_run.iterdir()} >= FILES
-    record = read_record(toy_run)
+    record = open_run(toy_run).record
     assert [path.name for path in record.paths] == ["correct", "controller", "observer", SHARED]
     turns = {change.isolated: change.turn for change in record.changes}
     assert turns == {"controller": "interaction", "observer": "reversal"}
@@ -73,7 +73,7 @@ def test_the_toy_shows_the_reversal(toy_run):
 
 
 def test_files_of_a_run_agree_with_each_other(toy_run):
-    record = read_record(toy_run)
+    record = open_run(toy_run).record
     rows = pq.read_table(toy_run / "outcomes.parquet").to_pylist()
     assert len(rows) == 2 * 4 * 100
     for cell in record.cells:
@@ -192,7 +192,7 @@ def test_a_quick_look_grows_into_the_whole(toy_run, tmp_path, monkeypatch):
     monkeypatch.chdir(ROOT)
     out = tmp_path / "look"
     assert audit(scenes=20, out=out, system="examples/toy.py:create").status == 0
-    assert read_record(out).question.n_scenes == 20
+    assert open_run(out).record.question.n_scenes == 20
     assert _again(out).status == 0
     assert (out / "outcomes.parquet").read_bytes() == (toy_run / "outcomes.parquet").read_bytes()
     assert json.loads((out / "provenance.json").read_text())["blocks_kept"] > 0
@@ -245,7 +245,7 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     assert f"The code has changed since runs/{before.name} (toy.py): that run is kept" in ended.out
     assert (before / "outcomes.parquet").read_bytes() == outcomes
     assert (after / "outcomes.parquet").read_bytes() != outcomes
-    assert read_record(after).cells != read_record(before).cells
+    assert open_run(after).record.cells != open_run(before).record.cells
 
 
 def test_brackets_in_names_are_no_markup(tmp_path):
@@ -263,7 +263,7 @@ def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):
         assert re.search(r"cart/003 .*ZeroDivisionError: the \[cart\] has no wheels", ended.out)
         (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
         assert "has no wheels" in Path(place).read_text()
-    effect = read_record(tmp_path / "run").effects[0]
+    effect = open_run(tmp_path / "run").record.effects[0]
     assert (effect.void_pairs, effect.scenes) == (1, 5)
     assert re.search(r"^Shared fault .* 5 +1 ", ended.out, re.MULTILINE), "scenes, then void pairs"
 

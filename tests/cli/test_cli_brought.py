@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath.door.saved import read_record
+from faultpath.door.run import open_run
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
 
@@ -47,7 +47,7 @@ def _audit(baseline: str, repair: str, **options: object):
 def test_a_part_is_audited_by_the_name_of_what_builds_it(baseline, repair, options, bring):
     ended = _audit(baseline, repair, **options)
     assert (ended.status, ended.err) == (0, "")
-    question = read_record(Path("run")).question
+    question = open_run(Path("run")).record.question
     assert (question.baseline, question.repair) == (baseline, repair)
     assert question.options == {"environment": "free-space", "bring": bring, **options}
     files = json.loads(Path("run/manifest.json").read_text())["code"]["files"]

@@ -4,7 +4,7 @@ import json
 
 from cli_runs import audit, faultpath
 
-from faultpath.door.saved import read_record
+from faultpath.door.run import open_run
 from faultpath.quadrotor import native
 from faultpath.quadrotor.scenes.library import write_library
 from faultpath.trials import SystemSpec, load_system
@@ -34,11 +34,11 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
         out="run",
     )
     assert (ended.status, ended.err) == (0, "")
-    question = read_record(tmp_path / "run").question
+    question = open_run(tmp_path / "run").record.question
     assert question.n_scenes == 2
     assert question.options == {"wind": "L1"}
     assert question.library_hash == json.loads((tmp_path / "mine.json").read_text())["content_hash"]
-    assert [path.name for path in read_record(tmp_path / "run").paths] == [
+    assert [path.name for path in open_run(tmp_path / "run").record.paths] == [
         "correct",
         "predictor",
         "reconstruction",

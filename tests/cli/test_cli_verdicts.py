@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from cli_runs import audit
 
-from faultpath.door.saved import read_record
+from faultpath.door.run import open_run
 from faultpath.record import DecisionRecord
 
 
@@ -19,7 +19,7 @@ def audited(**options: object) -> tuple[DecisionRecord, str]:
     """Return the record of an audit of the toy, and all that was printed."""
     ended = audit(**{"out": "run", "scenes": 20} | options)
     assert (ended.status, ended.err) == (0, "")
-    return read_record(Path("run")), " ".join(ended.out.split())
+    return open_run(Path("run")).record, " ".join(ended.out.split())
 
 
 def seen() -> str:

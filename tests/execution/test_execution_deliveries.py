@@ -4,10 +4,10 @@ import pytest
 from toy_study import FAULT, SCENES, study
 from toy_system import STEPS
 
-from faultpath.errors import UserError
 from faultpath.execution import run_study
-from faultpath.store import parquet, read_deliveries, tables
+from faultpath.store import parquet, tables
 from faultpath.taps import TapCount
+from faultpath.trials import Deliveries
 
 STRUCK = (STEPS - FAULT.onset_step) * len(SCENES)
 EACH = STEPS * len(SCENES)
@@ -36,7 +36,8 @@ def test_kept_blocks_bring_them_too_and_the_folder_holds_them(tmp_path):
     again = run_study(study(), tmp_path, workers=0)
     assert (again.blocks_computed, again.deliveries) == (0, grown.deliveries)
     assert first.deliveries != grown.deliveries
-    assert read_deliveries(tmp_path / "deliveries.json") == grown.deliveries
+    stored = (tmp_path / "deliveries.json").read_bytes()
+    assert Deliveries.model_validate_json(stored) == grown.deliveries
 
 
 def test_a_scene_that_failed_brings_nothing(tmp_path):
@@ -57,11 +58,3 @@ def test_a_shard_of_before_is_named_and_run_again(tmp_path, monkeypatch):
     assert len(notices) == after.blocks_computed
     assert all("kept no receipts" in notice for notice in notices)
     assert after.deliveries == before.deliveries
-
-
-def test_a_folder_without_them_says_what_to_do(tmp_path):
-    with pytest.raises(UserError, match="run the study again"):
-        read_deliveries(tmp_path / "deliveries.json")
-    (tmp_path / "deliveries.json").write_text('{"rows": [{}]}')
-    with pytest.raises(UserError, match="is damaged"):
-        read_deliveries(tmp_path / "deliveries.json")

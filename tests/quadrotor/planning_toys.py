@@ -1,14 +1,25 @@
 """One replan outside the loop: what tests of planners share."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.planner import Planner, Scored
+from faultpath.quadrotor.planner import Planner, Scored, Temperature
 from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+
+
+@dataclass(frozen=True)
+class Even(Temperature):
+    """The same temperature, whatever the candidates cost."""
+
+    value: float
+
+    def of(self, cost: Tensor) -> Tensor:
+        return torch.full_like(cost[:, :1], self.value)
 
 
 def replan(

@@ -173,7 +173,7 @@ def test_clearance_is_the_portable_one(isa: str, stream: torch.Generator) -> Non
     ahead[0] = 3 * ahead[0].abs()  # most of them in view
     chosen = [2, 0]
     frame = CaptureFrame(position[chosen].T, rotation[chosen].movedim(0, -1))
-    points = frame.to_world(ahead)
+    points = so3.rotate(frame.rotation[..., None], ahead) + frame.position[..., None]
     for clearance in (portable, compiled):
         clearance.capture(depth, position, rotation)
     mine, reference = (c.query(points, chosen) for c in (compiled, portable))

@@ -9,7 +9,6 @@ from scipy import stats
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planner import (
     AutoregressiveSampler,
-    FixedTemperature,
     RunningGoal,
     SamplerSettings,
     ScaledTemperature,
@@ -101,7 +100,6 @@ def test_goal_costs_differ_in_the_way_that_matters():
 
 def test_temperatures():
     cost = torch.tensor([[0.0, 1.0, 2.0, 3.0, 100.0, 100.0, 100.0, 100.0]])
-    assert FixedTemperature(2.0).of(cost).item() == 2
     assert ScaledTemperature(0.5).of(cost).item() == pytest.approx(0.5 * cost[0, :4].std().item())
     # What hits something does not change how the rest is weighed.
     worse = cost.clone()

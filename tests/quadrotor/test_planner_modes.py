@@ -1,11 +1,11 @@
 """The planner that keeps its modes apart."""
 
 import torch
+from planning_toys import Even
 
 from faultpath.quadrotor.planner import (
     AutoregressiveSampler,
     BundledSampler,
-    FixedTemperature,
     SamplerSettings,
     WithinBundle,
     weighted_mean,
@@ -47,8 +47,8 @@ def test_the_plan_is_the_mean_of_one_bundle() -> None:
     cost[0, 64:128], cost[0, 192:256] = 1.0, 1.1  # two ways round, the first a little better
     commands = torch.zeros(1, 4, 1, 512)
     commands[..., 64:128], commands[..., 192:256] = 1.0, -1.0
-    weights = WithinBundle(FixedTemperature(0.5)).weights(cost)
+    weights = WithinBundle(Even(0.5)).weights(cost)
     torch.testing.assert_close(weights.sum(), torch.tensor(1.0))
     torch.testing.assert_close(weighted_mean(commands, weights), torch.ones(1, 4, 1))
-    everyone = weighted_mean(commands, FixedTemperature(0.5).weights(cost))
+    everyone = weighted_mean(commands, Even(0.5).weights(cost))
     assert abs(float(everyone[0, 0, 0])) < 0.2  # the mean over all lies between the two

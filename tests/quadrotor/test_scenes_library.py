@@ -20,7 +20,6 @@ from faultpath.quadrotor.scenes.generate import (
 )
 from faultpath.quadrotor.scenes.layout import MIN_GAP_M, Door, Layout, plan_gap
 from faultpath.quadrotor.scenes.library import (
-    FROZEN_COUNT,
     FROZEN_SEEDS,
     Library,
     as_text,
@@ -50,14 +49,14 @@ def test_every_frozen_scene_is_feasible(libraries, name):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_frozen_library_has_its_mix_in_any_twenty(libraries, name):
     library = libraries[name]
-    assert [scene.id for scene in library] == [f"{name}/{i:03d}" for i in range(FROZEN_COUNT)]
+    assert [scene.id for scene in library] == [f"{name}/{i:03d}" for i in range(100)]
     assert all(scene.topology == list(Topology)[scene.index % 5] for scene in library)
     assert Counter(scene.occluded for scene in library) == {True: 25, False: 75}
     assert Counter(scene.topology for scene in library if scene.occluded) == dict.fromkeys(
         Topology, 5
     )
     assert 0.5 <= sum(scene.obstacles for scene in library) / len(library) <= 0.7
-    for first in range(0, FROZEN_COUNT, 20):
+    for first in range(0, 100, 20):
         part = library.scenes[first : first + 20]
         assert Counter(scene.occluded for scene in part)[True] == 5
         assert {scene.obstacles for scene in part} == {True, False}
@@ -79,7 +78,7 @@ def test_libraries_share_no_geometry_and_no_vehicle(libraries):
 @pytest.mark.parametrize("name", NAMES)
 def test_frozen_files_come_from_their_seeds_to_the_byte(libraries, name):
     lines = frozen_file(name).read_text(encoding="utf-8").splitlines()[1:-1]
-    assert len(lines) == FROZEN_COUNT
+    assert len(lines) == 100
     for index in (0, 1, 2, 3, 4, 52):
         scene = generate_scene(name, index, FROZEN_SEEDS[name])
         assert scene == libraries[name][index]

@@ -7,7 +7,6 @@ from faultpath.statistics import (
     Resamples,
     WindowQuantiles,
     difference_of_effects,
-    quantile_log_ratio,
 )
 from faultpath.streams import generator
 
@@ -89,10 +88,11 @@ def test_a_difference_is_paired_and_mirrors_when_the_arms_are_swapped():
 def test_a_logarithm_of_a_ratio_is_scale_free():
     values, scenes = windows(seeds=2)
     other = values[::-1].copy()
-    log = quantile_log_ratio(values, other, scenes, **FEW)
-    scaled = quantile_log_ratio(3 * values, 3 * other, scenes, **FEW)
+    drawn = WindowQuantiles(scenes, **FEW)
+    log = drawn.log_ratio(values, other, 0.5).estimate()
+    scaled = drawn.log_ratio(3 * values, 3 * other, 0.5).estimate()
     assert scaled.value == pytest.approx(log.value)
-    tripled = quantile_log_ratio(3 * values, values, scenes, **FEW)
+    tripled = drawn.log_ratio(3 * values, values, 0.5).estimate()
     assert tripled.value == pytest.approx(np.log(3))
     assert tripled.detected_sign == 1
 
@@ -115,7 +115,7 @@ def test_effects_of_the_same_windows_are_joint():
         lambda values, scenes: quantile_estimate(values[:-1], scenes),
         lambda values, scenes: quantile_estimate(np.full_like(values, np.nan), scenes),
         lambda values, scenes: quantile_difference(values, values[:-1], scenes),
-        lambda values, scenes: quantile_log_ratio(values, values * 0, scenes),
+        lambda values, scenes: WindowQuantiles(scenes).log_ratio(values, values * 0, 0.5),
         lambda values, scenes: WindowQuantiles([]),
     ],
 )

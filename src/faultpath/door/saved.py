@@ -31,12 +31,6 @@ _Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")
 
 
-def read_record(folder: Path) -> DecisionRecord:
-    """Read `record.json`; `UserError` when it is missing, damaged or of another version."""
-    path = folder / RECORD
-    return _parsed(read_regular(path), path, DecisionRecord)
-
-
 def read_run(folder: Path) -> ReportInput:
     """Read all that the pages of a run are made from.
 

@@ -2,7 +2,7 @@
 
 from faultpath.faults.base import Intervention, Moment
 from faultpath.faults.draws import Draws
-from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault, fault_from_json
+from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault
 from faultpath.faults.noise import Drift, Noise
 from faultpath.faults.parse import FaultPreset, parse_fault
 from faultpath.faults.probes import Replace, Shuffle
@@ -37,6 +37,5 @@ __all__ = [
     "Shuffle",
     "UniformScale",
     "Window",
-    "fault_from_json",
     "parse_fault",
 ]

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from faultpath.errors import UserError
 from faultpath.faults.registry import AnyIntervention
@@ -193,13 +193,6 @@ class Coupled(_Frozen):
 
 AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
 """A fault as arms carry it, told apart in JSON by its `kind`."""
-
-_ADAPTER: TypeAdapter[Fault | Coupled] = TypeAdapter(AnyFault)
-
-
-def fault_from_json(text: str | bytes) -> Fault | Coupled:
-    """Return the fault that `model_dump_json` wrote; raises `pydantic.ValidationError`."""
-    return _ADAPTER.validate_json(text)
 
 
 def _matching(name: str, consumers: Collection[str]) -> bool:

@@ -4,7 +4,6 @@ from faultpath.statistics.bootstrap import mean_effect, success_effect, success_
 from faultpath.statistics.breakeven import break_even, break_even_point, mixture_curve
 from faultpath.statistics.clustered import (
     WindowQuantiles,
-    quantile_log_ratio,
 )
 from faultpath.statistics.correlation import spearman
 from faultpath.statistics.decisions import (
@@ -78,7 +77,6 @@ __all__ = [
     "median_effect",
     "mixture_curve",
     "percentile_interval",
-    "quantile_log_ratio",
     "rule_power",
     "sign_counts",
     "sign_test",

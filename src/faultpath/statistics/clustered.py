@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics.effect import Effect
-from faultpath.statistics.estimate import SCENES, Estimate
+from faultpath.statistics.estimate import SCENES
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.statistics.resamples import Resamples
 
@@ -114,21 +114,6 @@ class WindowQuantiles:
             n_seeds=quantiles.shape[1],
             resamples=self.resamples,
         )
-
-
-def quantile_log_ratio(
-    first: Numbers,
-    second: Numbers,
-    scenes: Sequence[str],
-    q: float = 0.5,
-    *,
-    level: float = 0.95,
-    seed: int = 0,
-    n_resamples: int = N_RESAMPLES,
-) -> Estimate:
-    """Return the logarithm of first over second; 0 is no difference."""
-    drawn = WindowQuantiles(scenes, seed=seed, n_resamples=n_resamples)
-    return drawn.log_ratio(first, second, q).estimate(level)
 
 
 def _quantile(ordered: Floats, reached: Floats, q: float) -> Floats:

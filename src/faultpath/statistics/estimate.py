@@ -36,13 +36,6 @@ class Discordant(FrozenResult):
         """Return the number of discordant pairs."""
         return self.first_only + self.second_only
 
-    @property
-    def net_pp(self) -> float:
-        """Return the difference in success, first minus second, in percentage points."""
-        if not self.n_pairs:
-            raise ValueError("the net difference needs n_pairs, the number of all pairs")
-        return 100.0 * (self.first_only - self.second_only) / self.n_pairs
-
     def swapped(self) -> Self:
         """Return the counts with the arms exchanged."""
         return self.model_copy(

@@ -6,7 +6,6 @@ from functools import lru_cache
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.statistics.inputs import Floats
 from faultpath.streams import generator
@@ -55,10 +54,6 @@ class Resamples:
         """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
         for rows in _blocks(self.n_resamples, self.n_scenes):
             yield self.counts[rows]
-
-    def reordered(self, order: NDArray[np.intp]) -> "Resamples":
-        """Return the same resamples for outcomes whose scenes were reordered as ``x[order]``."""
-        return Resamples(label=self.label, seed=self.seed, counts=self.counts[:, order])
 
     def same_as(self, other: "Resamples") -> bool:
         """Return whether both hold the same draws, so that effects on them are joint."""

@@ -1,7 +1,6 @@
 """What a run leaves behind: a folder of shards, and the tables assembled from them."""
 
 from faultpath.store.atomic import check_writable, make_folder, write_text
-from faultpath.store.deliveries import read_deliveries
 from faultpath.store.evidence import read_evidence, write_evidence
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import FORMAT, Manifest
@@ -16,7 +15,6 @@ __all__ = [
     "TrialAddress",
     "check_writable",
     "make_folder",
-    "read_deliveries",
     "read_evidence",
     "read_outcomes",
     "read_table",

@@ -1,6 +1,5 @@
 """Where a source's reading becomes what a consumer gets."""
 
-from faultpath.taps.counts import TapCount, added
 from faultpath.taps.errors import (
     IllegalRead,
     MalformedReading,
@@ -11,16 +10,20 @@ from faultpath.taps.errors import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.taps.query import Query
-from faultpath.taps.reading import Reading
-from faultpath.taps.receipts import Missed, Receipt, Receipts, StrikeReceipt, check_delivered
-from faultpath.taps.tap import StrikeState
+from faultpath.taps.reading import Query, Reading
+from faultpath.taps.receipts import (
+    Receipt,
+    Receipts,
+    StrikeReceipt,
+    TapCount,
+    added,
+    check_delivered,
+)
 from faultpath.taps.taps import ModuleTaps, Taps
 
 __all__ = [
     "IllegalRead",
     "MalformedReading",
-    "Missed",
     "ModuleTaps",
     "NotDelivered",
     "NotFinite",
@@ -29,7 +32,6 @@ __all__ = [
     "Receipt",
     "Receipts",
     "StrikeReceipt",
-    "StrikeState",
     "StruckElsewhere",
     "TapCount",
     "TapError",

@@ -1,12 +1,39 @@
 """What was delivered to whom, when, and altered or not."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.taps.counts import TapCount
 from faultpath.taps.errors import NotDelivered, StruckElsewhere, UndeclaredReader
+
+
+@dataclass(frozen=True, slots=True)
+class TapCount:
+    """What one tap did, summed over scenes."""
+
+    channel: str
+    consumer: str
+    deliveries: int
+    """Control steps at which the consumer got the channel, once a scene of the block."""
+    struck_steps: int
+    """Those with a fault in force while the scene ran."""
+    altered_steps: int
+    """Those in which what was delivered differed from the reading."""
+
+
+def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
+    """Return one count a tap, in the order in which the taps come up first."""
+    sums: dict[tuple[str, str], tuple[int, int, int]] = {}
+    for each in counts:
+        before = sums.get((each.channel, each.consumer), (0, 0, 0))
+        sums[each.channel, each.consumer] = (
+            before[0] + each.deliveries,
+            before[1] + each.struck_steps,
+            before[2] + each.altered_steps,
+        )
+    return tuple(TapCount(*tap, *numbers) for tap, numbers in sums.items())
 
 
 @dataclass(frozen=True)
@@ -32,8 +59,6 @@ class Receipt:
     """Control steps at which the consumer got the channel."""
     asks: int
     """Answers that it got of a query; 0 for a channel with one reading a step."""
-    first_step: int | None
-    last_step: int | None
     strikes: tuple[StrikeReceipt, ...]
     steps_struck: NDArray[np.int64]
     """`[B]`: deliveries with a fault in force while the scene ran."""
@@ -42,26 +67,11 @@ class Receipt:
 
 
 @dataclass(frozen=True)
-class Missed:
-    """Scenes in which a fault never came to bear at a tap, though it did or could elsewhere."""
-
-    channel: str
-    consumer: str
-    fault: str
-    ended_before: tuple[str, ...]
-    """Scenes that ended before the onset."""
-    not_called: tuple[str, ...]
-    """Scenes that ran past the onset without a delivery in the window."""
-
-
-@dataclass(frozen=True)
 class Receipts:
     """All taps over one run."""
 
     scenes: tuple[str, ...]
     taps: tuple[Receipt, ...]
-    absent: tuple[tuple[str, str], ...]
-    """`(channel, consumer)` that faults name and this variant does not have."""
     steps_struck: NDArray[np.int64]
     """`[B]`: control steps with a fault in force at some tap that delivered."""
     steps_altered: NDArray[np.int64]
@@ -92,14 +102,13 @@ def check_delivered(
     receipts: Receipts,
     struck: frozenset[tuple[str, str]],
     last_step: NDArray[np.int64],
-) -> tuple[Missed, ...]:
+) -> None:
     """Compare receipts with the taps `(channel, consumer)` that the faults name.
 
-    `last_step` `[B]` is the last control step at which each scene ran. Returns, per fault and tap,
-    the scenes that it missed. Raises `NotDelivered` where it missed every scene although one ran
-    past the onset, and `StruckElsewhere` where another tap altered a reading.
+    `last_step` `[B]` is the last control step at which each scene ran. Raises `NotDelivered` where
+    a fault missed every scene of a tap although one ran past the onset, and `StruckElsewhere`
+    where another tap altered a reading.
     """
-    missed: list[Missed] = []
     for receipt in receipts.taps:
         tap = f"{receipt.channel} -> {receipt.consumer}"
         if (receipt.channel, receipt.consumer) not in struck:
@@ -110,25 +119,9 @@ def check_delivered(
             raise NotDelivered(f"tap {tap}: a fault names it, but none acted there")
         for strike in receipt.strikes:
             ran = last_step >= strike.onset_step
-            reached = strike.steps_in_force > 0
-            if ran.any() and not reached.any():
+            if ran.any() and not strike.steps_in_force.any():
                 raise NotDelivered(
                     f"tap {tap}: '{strike.fault}' never reached it, although "
                     f"{int(ran.sum())} of {len(receipts.scenes)} scenes ran past the onset; the "
                     f"consumer got the channel in {receipt.deliveries} steps"
                 )
-            if not reached.all():
-                missed.append(
-                    Missed(
-                        receipt.channel,
-                        receipt.consumer,
-                        strike.fault,
-                        ended_before=_where(receipts.scenes, ~ran & ~reached),
-                        not_called=_where(receipts.scenes, ran & ~reached),
-                    )
-                )
-    return tuple(missed)
-
-
-def _where(scenes: tuple[str, ...], mask: NDArray[np.bool_]) -> tuple[str, ...]:
-    return tuple(scene for scene, held in zip(scenes, mask, strict=True) if held)

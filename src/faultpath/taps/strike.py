@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.arrays import Array, namespace, pick, rows, to_numpy
+from faultpath.arrays import Array, namespace, pick, rows
 from faultpath.errors import UserError
 from faultpath.faults import Draws, Fault, Moment, Window
 from faultpath.faults.base import Memory
@@ -75,22 +75,3 @@ class Strike:
     def onsets(self, n_scenes: int) -> NDArray[np.int64]:
         """Return the first step in force, `[B]`."""
         return np.broadcast_to(np.asarray(self._window.onset, dtype=np.int64), (n_scenes,))
-
-    def in_window(self, step: int, n_scenes: int) -> NDArray[np.bool_]:
-        """Return which scenes are in the window or recovering from it at `step`, `[B]`."""
-        return np.broadcast_to(np.asarray(self._window.weight(step)) > 0, (n_scenes,))
-
-    def memory_words(self) -> str:
-        """Return what the intervention carries, in short form."""
-        memories = tuple(self._memories.values())
-        return _words(memories[0] if len(memories) == 1 else memories or None)
-
-
-def _words(memory: Memory) -> str:
-    if isinstance(memory, tuple):  # of what, only the intervention knows
-        return "(" + ", ".join(_words(part) for part in memory) + ")"  # pyright: ignore[reportUnknownVariableType]
-    if hasattr(memory, "shape"):
-        values = to_numpy(memory)
-        shown = np.array2string(values, threshold=8, precision=4)
-        return f"{values.dtype} {list(values.shape)} {shown}"
-    return str(memory)

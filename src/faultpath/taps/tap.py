@@ -1,10 +1,6 @@
 """One consumer's end of one channel, and how a variant's taps come about."""
 
-from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Collection, Mapping
 
 from faultpath.arrays import Array
 from faultpath.errors import UserError
@@ -14,20 +10,6 @@ from faultpath.taps.guard import Watch
 from faultpath.taps.receipts import Receipt, StrikeReceipt
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Tally
-
-
-@dataclass(frozen=True)
-class StrikeState:
-    """One fault at one tap, as it stood at the tap's last delivery."""
-
-    channel: str
-    consumer: str
-    fault: str
-    step: int | None
-    """`None` before the first delivery."""
-    in_window: NDArray[np.bool_]
-    """`[B]`"""
-    memory: str
 
 
 class Tap:
@@ -42,7 +24,6 @@ class Tap:
         "consumer",
         "deliveries",
         "finite",
-        "first_step",
         "given",
         "last_step",
         "legal",
@@ -68,7 +49,6 @@ class Tap:
         """Answers of a query, over all steps."""
         self.asked = 0
         """Those of the last step."""
-        self.first_step = -1
         self.last_step = -1
         self.given: Array = None
         """The value of the step's reading."""
@@ -96,8 +76,6 @@ class Tap:
             source=self.source,
             deliveries=self.deliveries,
             asks=self.asks,
-            first_step=self.first_step if self.deliveries else None,
-            last_step=self.last_step if self.deliveries else None,
             strikes=tuple(
                 StrikeReceipt(
                     fault=strike.fault.describe(),
@@ -109,18 +87,6 @@ class Tap:
             steps_struck=self.struck.counts(n_scenes),
             steps_altered=self.altered.counts(n_scenes),
         )
-
-    def states(self, n_scenes: int) -> Iterator[StrikeState]:
-        """Yield the state of every fault here."""
-        for strike in self.strikes:
-            yield StrikeState(
-                channel=self.channel,
-                consumer=self.consumer,
-                fault=strike.fault.describe(),
-                step=self.last_step if self.deliveries else None,
-                in_window=strike.in_window(self.last_step, n_scenes),
-                memory=strike.memory_words(),
-            )
 
 
 def wire(

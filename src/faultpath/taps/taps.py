@@ -23,12 +23,11 @@ from faultpath.taps.errors import (
     WrittenTo,
 )
 from faultpath.taps.guard import Watch
-from faultpath.taps.query import Query
-from faultpath.taps.reading import Reading
-from faultpath.taps.receipts import Missed, Receipts, check_delivered
+from faultpath.taps.reading import Query, Reading
+from faultpath.taps.receipts import Receipts, check_delivered
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Running, Tally
-from faultpath.taps.tap import StrikeState, Tap, wire
+from faultpath.taps.tap import Tap, wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +77,6 @@ class Taps:
         self._struck, self._altered = Tally(), Tally()
         self._open: Array = None
         self._closed: Array = None
-        self._absent: list[tuple[str, str]] = []
         self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
         for tap in self._taps.values() if guard else ():
             tap.watch = Watch()
@@ -102,10 +100,7 @@ class Taps:
                 cause = fault.drawn_from
                 drawn = draws.setdefault(cause, Draws(self._scenes, seed, cause))
                 for consumer in fault.consumers:
-                    tap = self._taps.get((fault.channel, consumer))
-                    if tap is None:
-                        self._absent.append((fault.channel, consumer))
-                    else:
+                    if tap := self._taps.get((fault.channel, consumer)):
                         tap.add(Strike(fault, window, drawn, dt_s))
 
     @property
@@ -142,10 +137,8 @@ class Taps:
                     f"tap {tap}: step {step} comes after step {tap.last_step}; a new run needs "
                     "new taps"
                 )
-            if tap.first_step < 0:
-                if not isinstance(value, Query):
-                    check_first(tap, value, self._scenes)
-                tap.first_step = step
+            if not (tap.deliveries or isinstance(value, Query)):
+                check_first(tap, value, self._scenes)
             tap.last_step = step
             tap.deliveries += 1
             tap.given = value
@@ -225,17 +218,16 @@ class Taps:
         return Receipts(
             scenes=self._scenes,
             taps=tuple(tap.receipt(n) for tap in self._taps.values()),
-            absent=tuple(self._absent),
             steps_struck=self._struck.counts(n),
             steps_altered=self._altered.counts(n),
         )
 
-    def verify(self, last_step: NDArray[np.int64] | int) -> tuple[Missed, ...]:
+    def verify(self, last_step: NDArray[np.int64] | int) -> None:
         """Check that each fault reached the consumers that it names, and nobody else.
 
-        `last_step`: the last control step at which each scene ran, `[B]` or one for all. Returns
-        the scenes that a fault missed; raises as `check_delivered`, `NotFinite` for a first reading
-        on an accelerator, and `WrittenTo` of a guarded consumer that wrote.
+        `last_step`: the last control step at which each scene ran, `[B]` or one for all. Raises as
+        `check_delivered`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
+        guarded consumer that wrote.
         """
         for tap in self._taps.values():
             check_finite(tap, self._scenes)
@@ -246,12 +238,7 @@ class Taps:
                 )
         struck = frozenset(name for name, tap in self._taps.items() if tap.strikes)
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        return check_delivered(self.receipts(), struck, last)
-
-    def state(self) -> tuple[StrikeState, ...]:
-        """Return the state of every fault at every tap: for evaluation code, not for modules."""
-        n = len(self._scenes)
-        return tuple(state for tap in self._taps.values() for state in tap.states(n))
+        check_delivered(self.receipts(), struck, last)
 
     def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
         declared = self._interface.channel(channel).consumers

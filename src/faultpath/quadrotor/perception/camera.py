@@ -81,7 +81,3 @@ class CaptureFrame:
     def from_world(self, points: Tensor) -> Tensor:
         """Return world points `[3, S, N]` in the capture frame, m."""
         return so3.rotate_back(self.rotation[..., None], points - self.position[..., None])
-
-    def to_world(self, points: Tensor) -> Tensor:
-        """Return points of the capture frame `[3, S, N]` in the world frame, m."""
-        return so3.rotate(self.rotation[..., None], points) + self.position[..., None]

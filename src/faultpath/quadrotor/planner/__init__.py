@@ -12,7 +12,6 @@ from faultpath.quadrotor.planner.costs import (
 from faultpath.quadrotor.planner.modes import BundledSampler, WithinBundle
 from faultpath.quadrotor.planner.mppi import (
     MPPI,
-    FixedTemperature,
     ScaledTemperature,
     Temperature,
     weighted_mean,
@@ -27,7 +26,6 @@ __all__ = [
     "BundledSampler",
     "CEMSettings",
     "CostWeights",
-    "FixedTemperature",
     "GoalCost",
     "NavigationCost",
     "Planner",

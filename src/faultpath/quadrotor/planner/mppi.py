@@ -29,17 +29,6 @@ class Temperature(ABC):
 
 
 @dataclass(frozen=True)
-class FixedTemperature(Temperature):
-    """The same temperature at every replan."""
-
-    value: float
-
-    @override
-    def of(self, cost: Tensor) -> Tensor:
-        return torch.full_like(cost[:, :1], self.value)
-
-
-@dataclass(frozen=True)
 class ScaledTemperature(Temperature):
     """A fraction of the spread of the better half of the costs.
 

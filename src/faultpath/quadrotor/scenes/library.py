@@ -22,8 +22,6 @@ FORMAT = "faultpath-scenes/1"
 FROZEN_SEEDS = {"training": 101, "selection": 202, "held-out": 303}
 """The libraries of the package and the seeds that made them, 100 scenes each [paper, setup]."""
 
-FROZEN_COUNT = 100
-
 
 @dataclass(frozen=True)
 class Library:
