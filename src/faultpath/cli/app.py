@@ -55,7 +55,7 @@ def everywhere(
     traceback: Annotated[
         bool,
         typer.Option(
-            "--traceback", help="Show all that is known of an error; goes with every command."
+            "--traceback", help="Show the whole traceback of an error; works with every command."
         ),
     ] = False,
 ) -> None:

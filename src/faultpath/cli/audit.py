@@ -21,13 +21,13 @@ def command(
     ],
     baseline: Annotated[
         str,
-        typer.Option(help="Variant to compare with, of the quadrotor also your file.py:factory."),
+        typer.Option(help="Variant to compare with; for the quadrotor also your file.py:factory."),
     ],
-    repair: Annotated[str, typer.Option(help="Variant that is meant to help, likewise.")],
+    repair: Annotated[str, typer.Option(help="Variant that is meant to help, named likewise.")],
     fault: Annotated[
         str,
         typer.Option(
-            help="`calibration=+0.1`, or as in `mass:scale=1.1`, `wind:delay=5@predictor,onset=20`."
+            help="`calibration=+0.1`, `mass:scale=1.1`, `wind:delay=5@predictor,onset=20`, ..."
         ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
@@ -41,7 +41,9 @@ def command(
     ] = None,
     generalise: Annotated[
         Literal["scenes", "models"],
-        typer.Option(help="To new scenes, or to newly trained models too (several seeds)."),
+        typer.Option(
+            help="What intervals speak of: new scenes, or newly trained models too (several seeds)."
+        ),
     ] = "scenes",
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     out: Annotated[
@@ -50,7 +52,7 @@ def command(
     workers: Annotated[
         int | None,
         typer.Option(
-            help="Worker processes, 0 for none beside this one; default one a core, if that helps."
+            help="Worker processes, 0 for this process alone; default one per core if that helps."
         ),
     ] = None,
     time_limit: TimeLimit = None,

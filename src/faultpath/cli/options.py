@@ -26,7 +26,7 @@ TimeLimit = Annotated[
 """`--time-limit` of the verbs that fly."""
 
 
-SET = "Option of the system, key=value; for scripts, and where a flag above has the same name."
+SET = "System option, key=value; for scripts, and where a flag above has the same name."
 """Help of `--set`."""
 
 

@@ -19,13 +19,14 @@ if TYPE_CHECKING:
 def command(
     system: Annotated[str, typer.Argument(help="`quadrotor`.")],
     variants: Annotated[
-        str, typer.Option(help="Variants to compare, the first with each other: wm-a,wm-a+dcc.")
+        str,
+        typer.Option(help="Variants, the first compared with each of the others: wm-a,wm-a+dcc."),
     ],
     perturb: Annotated[
         list[str] | None,
         typer.Option(
-            help="A fault, as in `audit`, once for each perturbation; `history_code:shuffle` "
-            "exchanges histories. Default: calibration by its declared uncertainty."
+            help="A fault, as in `audit`; repeat the option for more. `history_code:shuffle` "
+            "swaps histories between windows. Default: calibration by its declared uncertainty."
         ),
     ] = None,
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
@@ -40,7 +41,7 @@ def command(
         Path, typer.Option(parser=path, help="Folder that keeps recordings and measurements.")
     ] = Path("runs/probe"),
     workers: Annotated[
-        int | None, typer.Option(help="Worker processes; default one a core.")
+        int | None, typer.Option(help="Worker processes; default one per core.")
     ] = None,
 ) -> None:
     """Perturb an input on recorded windows, all else fixed: how far do predictions move?"""

@@ -12,7 +12,7 @@ from faultpath.errors import UserError
 def command(
     folder: Annotated[Path, typer.Argument(parser=path, help="Folder of a finished audit.")],
 ) -> None:
-    """Write report and tables of a run again from what its folder holds; runs no code of it."""
+    """Write the report and tables of a run again from its folder; runs no code from it."""
     # What draws takes a second to load, and a wrong folder need not wait.
     if not (folder / "provenance.json").exists():
         raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")

@@ -29,12 +29,12 @@ def command(
         typer.Option(help="Library or file to fly in place of the held-out library."),
     ] = None,
     workers: Annotated[
-        int | None, typer.Option(help="Worker processes; default one a core, or one a GPU.")
+        int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
     time_limit: TimeLimit = None,
 ) -> int:
-    """Fly every study of the paper, or some of its pages, and set the results beside it."""
+    """Fly every study of the paper, or some of its pages, and compare the results with it."""
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.reproduction import reproduce
 

@@ -27,7 +27,7 @@ def statistics(
         Path | None, typer.Option(parser=path, help="File to write the numbers to, as JSON.")
     ] = None,
     processes: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default one a core.")
+        int | None, typer.Option(min=1, help="Processes; default one per core.")
     ] = None,
 ) -> int:
     """Simulate audits with a known truth: coverage of the intervals, power at the reported

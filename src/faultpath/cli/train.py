@@ -39,7 +39,7 @@ def command(
     ] = None,
     workers: Annotated[
         int | None,
-        typer.Option(help="Worker processes, 0 for none beside this one; default one a core."),
+        typer.Option(help="Worker processes, 0 for this process alone; default one per core."),
     ] = None,
     tensorboard: Annotated[
         Path | None, typer.Option(parser=path, help="Folder for the curves of TensorBoard.")

@@ -52,9 +52,9 @@ def audit(
             builds the system, or a `System`. One that `load_system` gave is built again from its
             name and options, in worker processes too. Any other object flies as it is, in this
             process, and its trials are never taken for those of another call.
-        baseline: Variant to compare with. Of the quadrotor also what builds a predictor,
+        baseline: Variant to compare with. For the quadrotor also what builds a predictor,
             reconstruction or planner of your own, as `my_model.py:create`.
-        repair: Variant that is meant to help, likewise.
+        repair: Variant that is meant to help, named likewise.
         fault: As on the command line: `calibration=+0.1`, `mass:scale=1.1`,
             `wind:delay=5@predictor,onset=20`.
         library: Library of scenes, by name or file.
@@ -65,7 +65,7 @@ def audit(
         options: The system's own options, such as `{"wind": "L3"}`.
         folder: Run folder. The default is `runs/<question>-<code>` in the working directory, so
             that the same call resumes, and finds what is finished.
-        workers: Worker processes, 0 for none beside this one; default one a core, if that helps.
+        workers: Worker processes, 0 for this process alone; default one per core where that helps.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.

@@ -22,14 +22,14 @@ def reproduce(
     progress: bool | Display = True,
     name: str = "reproduction",
 ) -> ReproductionRun:
-    """Fly every study of the paper, or some of its pages, and set the results beside it.
+    """Fly every study of the paper, or some of its pages, and compare the results with it.
 
     Args:
         pages: `table-4`, `figure-3`, `text-wind` and so on; default all.
         profile: `quick` (few scenes, one seed) or `paper` (its size).
         library: Library or file to fly in place of the held-out one.
         folder: Run folder; default `runs/<name>-<library>-<profile>-<code>`.
-        workers: Worker processes, 0 for none beside this one; default one a core, or one a GPU.
+        workers: Worker processes, 0 for this process alone; default one per core, or per GPU.
         device: `cpu` (default) or `cuda`.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As in `audit`.
