@@ -4,8 +4,13 @@
 class UserError(Exception):
     """A mistake in what was asked: one sentence says what is wrong, where, and what to do.
 
-    The command line prints the sentence without a traceback and exits with status 2.
+    The command line prints the sentence without a traceback and exits with status 2; a notebook
+    shows it alone as well.
     """
+
+    def _render_traceback_(self) -> list[str]:
+        """Return what IPython shows in place of a traceback."""
+        return [str(self)]
 
 
 class Stopped(UserError):

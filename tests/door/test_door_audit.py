@@ -99,6 +99,14 @@ def test_a_notebook_shows_verdict_effects_and_table(run):
     assert ":root" not in shown  # its colours are not those of the notebook
 
 
+def test_a_notebook_shows_a_mistake_as_its_sentence():
+    with pytest.raises(faultpath.UserError, match="nobody") as caught:
+        faultpath.audit(
+            "examples/toy.py", baseline="nobody", repair="blind", fault="gain:scale=0.6"
+        )
+    assert caught.value._render_traceback_() == [str(caught.value)]  # IPython asks for this
+
+
 def test_name_file_path_and_object_fly_the_same(run, toy):
     ways = {
         "file": str(FILE),
