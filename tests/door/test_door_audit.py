@@ -101,9 +101,7 @@ def test_a_notebook_shows_verdict_effects_and_table(run):
 
 def test_a_notebook_shows_a_mistake_as_its_sentence():
     with pytest.raises(faultpath.UserError, match="nobody") as caught:
-        faultpath.audit(
-            "examples/toy.py", baseline="nobody", repair="blind", fault="gain:scale=0.6"
-        )
+        faultpath.audit(FILE, baseline="nobody", repair="blind", fault="gain:scale=0.6")
     assert caught.value._render_traceback_() == [str(caught.value)]  # IPython asks for this
 
 
