@@ -1,4 +1,4 @@
-"""Whose code an error comes from: that of a system of one's own, or faultpath's.
+"""Whose code an error comes from: that of a user's system, or faultpath's.
 
 A traceback is read from its innermost frame outward. Frames of the standard library and of
 installed packages are passed over, because they do what they are told. The first that is left

@@ -18,7 +18,7 @@ class Stopped(UserError):
 
 
 class SystemMistake(UserError):
-    """A mistake in the code of a system of one's own."""
+    """A mistake in the code of a user's system."""
 
     place: str = ""
     """File and line of that code, once they are known; `faultpath.blame` finds them."""

@@ -90,7 +90,7 @@ def plan_audit(
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
     trained models too. Raises `UserError` for an unknown variant, a
     repair that is its own baseline, a number of scenes that the library does not have, no seed,
-    a fault that reaches neither variant, a primary path that there is none of, or newly trained
+    a fault that reaches neither variant, a primary path that does not exist, or newly trained
     models of a system that trains none or from one seed.
     """
     variants = [_variant(system, name) for name in (baseline, repair)]
@@ -141,7 +141,8 @@ def _check_trainings(system: System, seeds: Sequence[int]) -> None:
         )
     if len(seeds) < 2:
         raise UserError(
-            "one seed says nothing of newly trained models: give several, such as --seeds 0,1,2, "
+            "one seed says nothing about newly trained models: give several, such as "
+            "--seeds 0,1,2, "
             "or leave --generalise models out."
         )
 

@@ -1,4 +1,4 @@
-"""Mistakes in the code of a system of one's own: one sentence with its file and line, status 2.
+"""Mistakes in the code of a user's system: one sentence with its file and line, status 2.
 An error of faultpath's own code keeps its traceback."""
 
 import re

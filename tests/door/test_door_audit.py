@@ -172,9 +172,9 @@ def test_an_object_says_that_it_runs_here(toy):
         (TOY, {"baseline": None}, "baseline is None: give it as text"),
         (TOY, {"repair": "octopus"}, "unknown variant 'octopus'"),
         (TOY, {"scenes": "12"}, "scenes is '12': give a whole number"),
-        (TOY, {"seeds": "0,1"}, "'0,1' is no seed"),
-        (TOY, {"seeds": (0, -1)}, "-1 is no seed"),
-        (TOY, {"seeds": 2**63}, "is no seed"),
+        (TOY, {"seeds": "0,1"}, "'0,1' is not a seed"),
+        (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
+        (TOY, {"seeds": 2**63}, "is not a seed"),
         (TOY, {"workers": -1}, "the number of workers is -1"),
         (
             None,

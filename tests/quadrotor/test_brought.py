@@ -90,7 +90,7 @@ BROKEN = {
         "class P(K):\n    reads = 0\n    def __init__(self):\n        super().__init__()\n"
         "        self.reads |= {'sonar'}\ndef create(seed):\n    return P()",
         "create",
-        "'sonar', which a predictor has not: there are initial_state (position, velocity,",
+        "'sonar', which predictors do not have: choose from initial_state (position, velocity,",
     ),
     "without a start": (
         "def create(seed):\n    k = K()\n    k.reads = frozenset({'trim'})\n    return k",
@@ -105,7 +105,7 @@ BROKEN = {
     "channel": (
         "def create(seed):\n    c = Constant()\n    c.reads = {('wind', 'head')}\n    return c",
         "create",
-        "('wind', 'head'), a channel and a place that a reconstruction has not",
+        "('wind', 'head'), a channel and place that reconstructions do not have",
     ),
     "half a place": (
         "def create(seed):\n    c = Constant()\n    c.reads = {('mass', 'head')}\n    return c",

@@ -191,9 +191,12 @@ def _other_format(text: str) -> str:
     [
         (_damage_value, "was changed"),
         (_drop_scene, "was changed"),
-        (lambda text: text[: len(text) // 2], "no readable library"),
-        (lambda text: "[1, 2]", "no readable library"),
-        (lambda text: text.replace('"radius_m":0.', '"radius_m":-0.', 1), "no readable library"),
+        (lambda text: text[: len(text) // 2], "cannot be read as a library"),
+        (lambda text: "[1, 2]", "cannot be read as a library"),
+        (
+            lambda text: text.replace('"radius_m":0.', '"radius_m":-0.', 1),
+            "cannot be read as a library",
+        ),
         (_other_format, "format 'faultpath-scenes/9'"),
     ],
 )

@@ -138,7 +138,7 @@ def test_a_number_that_is_none_is_refused(tmp_path: Path, number: str, field: st
         place[field][0] = "HERE"
     file = tmp_path / "mine.json"
     file.write_text(json.dumps(content).replace('"HERE"', number), encoding="utf-8")
-    with pytest.raises(UserError, match="no readable library") as told:
+    with pytest.raises(UserError, match="cannot be read as a library") as told:
         load_library(file)
     if len(number) < 100:
         assert "scene 1" in str(told.value)
@@ -164,7 +164,7 @@ def test_reserved_names_are_refused_unless_they_are_the_packages_own(tmp_path: P
 def test_a_library_without_scenes_and_one_too_deep_are_refused(tmp_path: Path) -> None:
     assert "holds no scene" in refused(tmp_path, Library.of("mine", ()))
     (tmp_path / "mine.json").write_text("[" * 100_000, encoding="utf-8")
-    with pytest.raises(UserError, match="no readable library"):
+    with pytest.raises(UserError, match="cannot be read as a library"):
         load_library(tmp_path / "mine.json")
 
 

@@ -49,8 +49,8 @@ def test_noise_on_the_clearance_differs_from_ask_to_ask() -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"elites": "16"}, "elites is of the planner cem"),
-        ({"planner": "running", "iterations": "2"}, "iterations is of the planner cem"),
+        ({"elites": "16"}, "elites belongs to planner cem"),
+        ({"planner": "running", "iterations": "2"}, "iterations belongs to planner cem"),
         ({"planner": "cem", "sampler": "mode-preserving"}, "leave the sampler or the planner out"),
         ({"planner": "cem", "elites": "1000"}, "elites"),
     ],

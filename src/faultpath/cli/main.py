@@ -31,7 +31,7 @@ _AGAIN = "interrupted; the same command goes on from what is stored."
 def main() -> None:
     """Run the command line; a user's mistake ends in one sentence and status 2.
 
-    So does an error in the code of a system of one's own. An error of faultpath's own code keeps
+    So does an error in the code of a user's system. An error of faultpath's own code keeps
     its traceback; `faultpath.blame` tells the two apart.
     """
     arguments, told = _arguments(sys.argv[1:])

@@ -1,7 +1,7 @@
 """The options of a system as flags of the verbs that take one.
 
 Which system a command line names decides which flags there are, so the verb gets them before the
-line is parsed. A system of one's own is imported for that, but only where the line asks for help or
+line is parsed. A user's system is imported for that, but only where the line asks for help or
 holds a flag that the verb itself has not got.
 """
 

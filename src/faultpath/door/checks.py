@@ -29,5 +29,7 @@ def checked_seeds(seeds: int | Sequence[int]) -> tuple[int, ...]:
     )
     for seed in found:
         if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
-            raise UserError(f"{seed!r:.80} is no seed: give whole numbers between 0 and 2^63 - 1.")
+            raise UserError(
+                f"{seed!r:.80} is not a seed: give whole numbers between 0 and 2^63 - 1."
+            )
     return tuple(seed for seed in found if isinstance(seed, int))

@@ -70,7 +70,7 @@ def _parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"])) or "the whole"
         raise UserError(
-            f"{path} is damaged or of another version of faultpath ({where!r}): {AGAIN}."
+            f"{path} is damaged or from another version of faultpath ({where!r}): {AGAIN}."
         ) from None
 
 

@@ -40,7 +40,7 @@ def load_system(
 
     `system` is a name, `module:attribute`, `file.py:attribute`, or a file in which `create` builds
     it; `options` are its own, such as `{"wind": "L3"}`. Raises `UserError` for a name or an option
-    that there is none of, and for a package that is missing.
+    that does not exist, and for a package that is missing.
     """
     spec = _spec(system, options or {})
     built = trials.load_system(spec)

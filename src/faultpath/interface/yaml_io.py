@@ -41,7 +41,7 @@ def read_interface(
     except UnicodeDecodeError:
         raise UserError(f"{path}: is not UTF-8 text; save the interface as UTF-8") from None
     except ValueError:  # a name with NUL or a surrogate in it
-        raise UserError(f"{path}: is no name of a file; give the path of one") from None
+        raise UserError(f"{path}: is not a file name; give the path of a file") from None
     return _parse(text, str(path), consumers or {}, writers or {})
 
 
@@ -82,9 +82,7 @@ def _parse(
         raise _refused(error, root, where) from None
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         # a number of 5,000 digits, the 99th of a month, `!!bool 7`: the loader lets them through
-        raise UserError(
-            f"{where}: holds a value that is none ({error}); write it plainly"
-        ) from None
+        raise UserError(f"{where}: holds an invalid value ({error}); write it plainly") from None
 
 
 def _completed(

@@ -61,7 +61,8 @@ def _check_places(name: str, reads: object) -> None:
     for place in places:
         if place not in PLACES:
             raise SystemMistake(
-                f"{name} reads at the place {place!r}, which a predictor has not: there are {known}"
+                f"{name} reads at the place {place!r}, which predictors do not have: "
+                f"choose from {known}"
             )
     for needed in ("initial_state", "trim"):
         if needed not in places:
@@ -87,8 +88,8 @@ def _check_ports(name: str, reads: object) -> None:
     for read in reads:
         if read not in known:
             raise SystemMistake(
-                f"{name} reads {read!r}, a channel and a place that a reconstruction has not: "
-                f"there are {listed(f'{channel} at {place}' for channel, place in known)}"
+                f"{name} reads {read!r}, a channel and place that reconstructions do not have: "
+                f"choose from {listed(f'{channel} at {place}' for channel, place in known)}"
             )
     places = {place for _, place in reads}
     for channel, place in sorted(known - set(reads)):

@@ -135,7 +135,7 @@ def _check_planner(choices: QuadrotorChoices) -> None:
         idle = sorted({"elites", "iterations"} & choices.model_fields_set)
         if idle:
             raise UserError(
-                f"{idle[0]} is of the planner cem, and planner {choices.planner} has none: add "
+                f"{idle[0]} belongs to planner cem, and planner {choices.planner} has none: add "
                 f"--planner cem or leave {idle[0]} out."
             )
     elif choices.sampler is SamplerName.MODE_PRESERVING:

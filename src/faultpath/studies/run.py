@@ -239,7 +239,7 @@ def _check_digests(folder: Path) -> None:
         provenance = RunProvenance.model_validate_json(read_regular(place))
     except ValidationError:
         raise UserError(
-            f"{place} is damaged or of another version of faultpath: reproduce the paper again."
+            f"{place} is damaged or from another version of faultpath: reproduce the paper again."
         ) from None
     unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **provenance.files}, ())
 

@@ -1,4 +1,4 @@
-"""What a system of one's own must be like, so that nothing fails halfway for want of it."""
+"""What a user's system must be like, so that nothing fails halfway for want of it."""
 
 from collections.abc import Mapping
 from numbers import Integral, Real

@@ -67,7 +67,7 @@ def _load(spec: SystemSpec) -> System:
 def system_options(name: str) -> tuple[Option, ...]:
     """Return the options that the system `name` takes, without building it.
 
-    A system of one's own is imported for that. `UserError` as `load_system`.
+    A user's system is imported for that. `UserError` as `load_system`.
     """
     try:
         with _undone_on_failure():
@@ -203,9 +203,7 @@ def _compile(place: str, name: str) -> None:
         error.filename = error.filename or place  # a file with NUL bytes has neither
         raise
     except (ValueError, RecursionError, MemoryError) as error:
-        raise UserError(
-            f"{place} is no Python that can be compiled ({error}): correct it"
-        ) from error
+        raise UserError(f"{place} is not valid Python ({error}): correct it") from error
 
 
 def _file(place: str) -> Path:

@@ -95,7 +95,7 @@ def _read(file: Traversable | Path, what: str) -> Library:
         library, promised = Library.of(str(content["name"]), scenes), content["content_hash"]
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         reason = (str(error).splitlines() or [type(error).__name__])[0]
-        raise UserError(f"The {what} is no readable library ({reason}): {remedy}.") from error
+        raise UserError(f"The {what} cannot be read as a library ({reason}): {remedy}.") from error
     if library.content_hash != promised:
         raise UserError(
             f"The {what} was changed after it was written (content hash {library.content_hash}, "
