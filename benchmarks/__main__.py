@@ -7,44 +7,40 @@ import argparse
 import sys
 import time
 
-from benchmarks import page
-from benchmarks.results import RESULTS, Results, load, save
+from benchmarks import machine, page
+from benchmarks.comparison import Effort
+from benchmarks.results import RESULTS, Record, Results, load, save
+from benchmarks.table import COMPARISONS
+
+TRY = Effort(share=0.02)
 
 
-def measure(only: list[str]) -> None:
-    """Take comparisons one after the other; results are saved after each."""
-    from benchmarks import ablation, commands, loop, machine, parts, planning, scaling
-    from benchmarks.comparison import unmeasured
-
-    modules = (planning, loop, ablation, parts, scaling, commands)
-    known = {each.name: each for module in modules for each in module.COMPARISONS}
-    unknown = [name for name in only if name not in known]
-    if unknown:
-        sys.exit(
-            f"benchmarks: there is no comparison '{unknown[0]}'; choose of {', '.join(known)}."
-        )
+def measure(only: list[str], effort: Effort, keep: bool) -> None:
+    """Take comparisons one after the other; what is kept is saved after each."""
     here = machine.describe()
-    results = load() if RESULTS.exists() else Results(machine=here, records=(), curves=())
-    for name in only or known:
-        start = time.monotonic()
-        try:
-            found = known[name].run()
-            records, curves = found.records, found.curves
-        except Exception as error:  # one that fails must not lose the others
-            reason = f"{type(error).__name__}: {error}"
-            records, curves = [unmeasured(name, name, reason)], ()
-        results = results.replaced(here, name, records, curves, apart=bool(only))
-        save(results)
+    results = load() if RESULTS.exists() else Results(machine=here)
+    for name in only or COMPARISONS:
+        start, comparison = time.monotonic(), COMPARISONS[name]
+        found = list(comparison.take(effort))
+        if keep:
+            results = results.replaced(here, name, found, bool(only), comparison.edition)
+            save(results)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
-        for record in records:
-            print("   ", page.told(record), flush=True)
+        for each in found:
+            if isinstance(each, Record):
+                print("   ", page.told(each), flush=True)
 
 
 def main() -> int:
     """Do what was asked; return the exit status."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument("--only", nargs="+", default=[], metavar="NAME", help="these comparisons")
-    measure(parser.parse_args().only)
+    parser.add_argument(
+        "--only", nargs="+", default=[], metavar="NAME", choices=COMPARISONS,
+        help=f"these comparisons, of {', '.join(COMPARISONS)}",
+    )  # fmt: skip
+    parser.add_argument("--try", dest="tried", action="store_true", help="a little, kept nowhere")
+    asked = parser.parse_args()
+    measure(asked.only, TRY if asked.tried else Effort(), keep=not asked.tried)
     return 0
 
 

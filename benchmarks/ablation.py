@@ -1,14 +1,14 @@
 """What each compiled kernel buys: the same flights with all kernels, and without one of them."""
 
-import statistics
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from functools import partial
+from statistics import median
 from typing import Any
 
-from benchmarks.comparison import Comparison, Outcome, absolute, unmeasured
-from benchmarks.flights import SCENES, WHOLE, ClosedLoop
-from benchmarks.measure import NotMeasured, Running, Work
-from benchmarks.results import Record
+from benchmarks.comparison import Case, Effort
+from benchmarks.flights import SCENES, WHOLE, ClosedLoop, replaced
+from benchmarks.measure import Running, Work
+from benchmarks.results import Record, record
 from faultpath.quadrotor import native, system
 from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.perception import DepthRenderer, seen
@@ -40,14 +40,6 @@ KERNELS: Mapping[str, tuple[Any, str, tuple[str, ...]]] = {
 """Where each kernel is chosen, and the parts of a control step that change without it: what is
 called there under `native.using(PORTABLE)` goes without."""
 
-SEEN = tuple(name for name in KERNELS if name != "distance field")
-JOBS: Sequence[tuple[str, dict[str, Any], tuple[str, ...], int]] = (
-    ("Main job", {"clearance": "depth", "scenes": SCENES}, SEEN, 3),
-    ("Main job of 5 scenes", {"clearance": "depth", "scenes": 5}, SEEN, 7),
-    ("Ground-truth clearance", {"clearance": "true", "scenes": SCENES}, ("distance field",), 5),
-)
-"""Flights, the kernels that run in them, and rounds."""
-
 LEAST = 2.0
 """Per cent of the flights that a kernel should buy to be worth its code."""
 
@@ -66,9 +58,8 @@ class Ablation(ClosedLoop):
     def _round(self) -> Iterator[float]:
         """Only the parts that a kernel changes are compared: the rest is noise."""
         whole = self._fresh()
-        for name in self._kernels:
-            *_, parts = KERNELS[name]
-            with without(name):
+        for owner, name, parts in map(KERNELS.__getitem__, self._kernels):
+            with replaced(owner, name, _portable(getattr(owner, name))):
                 fewer = self._fresh()
             yield 100 * sum(fewer[part] - whole[part] for part in parts) / whole[WHOLE]
 
@@ -78,46 +69,39 @@ class Ablation(ClosedLoop):
         return self.spent(repeats=1)
 
 
-@contextmanager
-def without(kernel: str) -> Iterator[None]:
-    """Let the portable form of one kernel run."""
-    owner, name, _ = KERNELS[kernel]
-    original: Callable[..., Any] = getattr(owner, name)
-
+def _portable(original: Callable[..., Any]) -> Callable[..., Any]:
     def portable(*given: Any, **named: Any) -> Any:
         with native.using(native.PORTABLE):
             return original(*given, **named)
 
-    setattr(owner, name, portable)
-    try:
-        yield
-    finally:
-        setattr(owner, name, original)
+    return portable
 
 
-def kernels() -> Outcome:
+def _fly(
+    words: str, clearance: str, scenes: int, kernels: Sequence[str], rounds: int, effort: Effort
+) -> Iterator[Record]:
     """Fly with all kernels and without each."""
-    records: list[Record] = []
-    for words, flights, names, rounds in JOBS:
-        given = {**flights, "kernels": names, "rounds": rounds}
-        try:
-            with Running(Work("benchmarks.ablation:Ablation", given)) as side:
-                found = list(zip(*[iter(side.answer())] * len(names), strict=True))
-        except NotMeasured as reason:
-            records.append(unmeasured("kernels", f"{words}: kernels", str(reason)))
-            continue
-        bought = dict(zip(names, zip(*found, strict=True), strict=True))
-        for name, values in bought.items():
-            records.append(_record(f"{words}: {name}", values))
-        small = [values for values in bought.values() if statistics.median(values) < LEAST]
-        if len(small) > 1:
-            together = [sum(each) for each in zip(*small, strict=True)]
-            records.append(_record(f"{words}: those below {LEAST:g} %, together", together))
-    return Outcome(records)
+    given = {"clearance": clearance, "scenes": effort.of(scenes), "kernels": kernels}
+    given["rounds"] = effort.of(rounds)
+    with Running(Work("benchmarks.ablation:Ablation", given)) as side:
+        found = list(zip(*[iter(side.answer())] * len(kernels), strict=True))
+    bought = dict(zip(kernels, zip(*found, strict=True), strict=True))
+    for name, values in bought.items():
+        yield record(f"{words}: {name}", "%", values)
+    small = [values for values in bought.values() if median(values) < LEAST]
+    if len(small) > 1:
+        together = [sum(each) for each in zip(*small, strict=True)]
+        yield record(f"{words}: those below {LEAST:g} %, together", "%", together)
 
 
-def _record(name: str, bought: Sequence[float]) -> Record:
-    return absolute("kernels", name, bought, "%")
+_SEEN = tuple(name for name in KERNELS if name != "distance field")
+_JOBS: Mapping[str, tuple[str, int, tuple[str, ...], int]] = {
+    "Main job": ("depth", SCENES, _SEEN, 3),
+    "Main job of 5 scenes": ("depth", 5, _SEEN, 7),
+    "Ground-truth clearance": ("true", SCENES, ("distance field",), 5),
+}
+"""Clearance and scenes of some flights, the kernels that run in them, and rounds."""
 
-
-COMPARISONS = (Comparison("kernels", kernels),)
+CASES: Mapping[str, Case] = {
+    f"{words}: kernels": partial(_fly, words, *job) for words, job in _JOBS.items()
+}

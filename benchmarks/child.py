@@ -1,6 +1,6 @@
 """A process that holds one side and times it when asked, so that sides take turns.
 
-    python -m benchmarks.child MODULE:CLASS ARGUMENTS CPU
+    python -m benchmarks.child MODULE:NAME ARGUMENTS CPU
 
 Each line of standard input is a request and gets one line of JSON on standard output.
 """
@@ -25,17 +25,21 @@ def main() -> None:
     os.sched_setaffinity(0, {int(cpu)})
     replies = os.fdopen(os.dup(1), "w", buffering=1)
     os.dup2(2, 1)  # whatever a library prints is no reply
+    import torch
+
+    torch.set_num_threads(1)
     try:
         module, _, name = where.partition(":")
         side = getattr(importlib.import_module(module), name)(**json.loads(arguments))
-        side.prepare()
-        side.work()
+        with torch.inference_mode():
+            side.prepare()
+            side.work()
     except Exception as error:  # the parent reports it and goes on without this side
         print(json.dumps({"error": f"{type(error).__name__}: {error}"}), file=replies)
         return
     print(json.dumps({"amount": side.amount}), file=replies)
     gc.freeze()
-    with contextlib.suppress(KeyboardInterrupt):
+    with contextlib.suppress(KeyboardInterrupt), torch.inference_mode():
         for line in sys.stdin:
             print(json.dumps(_reply(side, json.loads(line))), file=replies)
 

@@ -5,47 +5,84 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
-from benchmarks.comparison import Comparison, Outcome, absolute
-from benchmarks.results import Record
+from benchmarks.comparison import Case, Effort
+from benchmarks.measure import Running, Work, processors
+from benchmarks.results import Record, at_least, at_most, record
 
 SCENES = 20
 REPEATS = 5
 SAMPLE_S = 0.1
+PRODUCT_S = 4.0
 
-STARTS = {
-    "faultpath --help": ["--help"],
-    "faultpath audit --help": ["audit", "--help"],
-    "faultpath interface quadrotor": ["interface", "quadrotor"],
-    "faultpath scenes list": ["scenes", "list"],
-    "faultpath train quadrotor --list": ["train", "quadrotor", "--list"],
-}
-
-
-@dataclass(frozen=True)
-class Run:
-    """How long a command took and the most memory that its processes held at a time."""
-
-    seconds: float
-    peak_bytes: int
+STARTS = (
+    "--help",
+    "audit --help",
+    "interface quadrotor",
+    "scenes list",
+    "train quadrotor --list",
+)
+MAIN_JOB = (
+    "audit quadrotor --baseline gru --repair gru+dcc --fault calibration=+0.1 --wind L3 "
+    "--library selection"
+)
 
 
-def workers_command(workers: int, out: Path) -> list[str]:
-    """Return the main job on a few selection scenes."""
-    question = ["--baseline", "gru", "--repair", "gru+dcc", "--fault", "calibration=+0.1"]
-    where = ["--library", "selection", "--scenes", str(SCENES), "--wind", "L3"]
-    return ["audit", "quadrotor", *question, *where, "--workers", str(workers), "--out", str(out)]
+def _command(*arguments: str) -> list[str]:
+    return [str(Path(sys.executable).with_name("faultpath")), *arguments]
 
 
-def audit(arguments: Sequence[str]) -> Run:
-    """Run a command of faultpath to its end and watch its memory; `RuntimeError` if it fails."""
+def _start(words: str, effort: Effort) -> Iterator[Record]:
+    """Time what answers at once, from the start of the process to its end."""
+    taken = []
+    with tempfile.TemporaryDirectory() as folder:
+        for _ in range(effort.of(REPEATS) + 1):  # the first one fills the file cache
+            start = time.perf_counter()
+            command = _command(*words.split())
+            subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+            taken.append(time.perf_counter() - start)
+    yield record(f"faultpath {words}", "s", taken[1:])
+
+
+def _workers(effort: Effort) -> Iterator[Record]:
+    """Run a small audit with one worker and with two, and watch its memory."""
+    scenes = ["--scenes", str(effort.of(SCENES))]
+    with tempfile.TemporaryDirectory() as folder:
+        (one, _), (two, peak) = (
+            _watched(*MAIN_JOB.split(), *scenes, "--workers", n, "--out", f"{folder}/{n}")
+            for n in ("1", "2")
+        )
+    yield record(
+        "Small audit, two workers against one",
+        "s",
+        *([two], [one], [one / two]),
+        ours_name="two workers",
+        peer_name="one worker",
+        target=at_least(1.8),
+        note="Start-up and the report are in both.",
+    )
+    yield record(
+        "Small audit, two workers: peak memory",
+        "GB",
+        [peak / 1e9],
+        target=at_most(2.0, "ours"),
+        note="All processes together; what they share counts once.",
+    )
+
+
+def _watched(*arguments: str) -> tuple[float, int]:
+    """Return how long a command took, s, and the most bytes that its processes held at a time.
+
+    Raises `RuntimeError` if it fails.
+    """
     with tempfile.TemporaryFile("w+") as said:
         start = time.perf_counter()
         process = subprocess.Popen(
-            _command(arguments),
+            _command(*arguments),
             stdout=said,
             stderr=subprocess.STDOUT,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
@@ -58,54 +95,57 @@ def audit(arguments: Sequence[str]) -> Run:
         if process.returncode:
             said.seek(0)
             raise RuntimeError(f"faultpath {' '.join(arguments)}: {said.read()[-300:]}")
-    return Run(seconds, peak)
+    return seconds, peak
 
 
-def starts() -> Outcome:
-    """Time what answers at once, from the start of the process to its end."""
-    records: list[Record] = []
-    with tempfile.TemporaryDirectory() as folder:
-        for name, arguments in STARTS.items():
-            taken = []
-            for _ in range(REPEATS + 1):  # the first one fills the file cache
-                start = time.perf_counter()
-                subprocess.run(
-                    _command(arguments), cwd=folder, check=True, stdout=subprocess.DEVNULL
-                )
-                taken.append(time.perf_counter() - start)
-            records.append(absolute("start-up", name, taken[1:], "s"))
-    return Outcome(records)
-
-
-def _command(arguments: Sequence[str]) -> list[str]:
-    return [str(Path(sys.executable).with_name("faultpath")), *arguments]
-
-
-def _tree(root: int) -> list[int]:
-    """Return a process and all that descend from it."""
-    found, last = [root], [root]
-    while last:
-        last = [child for parent in last for child in _children(parent)]
-        found += last
-    return found
-
-
-def _children(parent: int) -> list[int]:
-    try:
-        return [
-            int(word) for word in Path(f"/proc/{parent}/task/{parent}/children").read_text().split()
-        ]
-    except OSError:
-        return []
+def _tree(root: int) -> Iterator[int]:
+    """Yield a process and all that descend from it."""
+    yield root
+    for child in _lines(f"/proc/{root}/task/{root}/children"):
+        for each in child.split():
+            yield from _tree(int(each))
 
 
 def _proportional(process: int) -> int:
     """Return the bytes that a process holds, pages shared by n processes counting a nth each."""
-    try:
-        lines = Path(f"/proc/{process}/smaps_rollup").read_text().splitlines()
-    except OSError:
-        return 0
+    lines = _lines(f"/proc/{process}/smaps_rollup")
     return sum(1024 * int(line.split()[1]) for line in lines if line.startswith("Pss:"))
 
 
-COMPARISONS = (Comparison("start-up", starts),)
+def _lines(path: str) -> Sequence[str]:
+    try:
+        return Path(path).read_text().splitlines()
+    except OSError:  # the process has ended
+        return ()
+
+
+def _ceiling(effort: Effort) -> Iterator[Record]:
+    """Return what a second process brings where nothing of ours runs."""
+    product, cpus = Work("benchmarks.planning:matrix_product"), processors()
+    length = max(0.1, effort.share * PRODUCT_S)
+
+    def rate(side: Running) -> float:
+        return side.rate(length, "wall") / side.amount
+
+    with (
+        Running(product, cpus[0]) as one,
+        Running(product, cpus[-1]) as other,
+        ThreadPoolExecutor(2) as both,
+    ):
+        rounds = [(rate(one), sum(both.map(rate, (one, other)))) for _ in range(effort.of(3))]
+    alone, together = zip(*rounds, strict=True)
+    yield record(
+        "torch.mm alone, two processes against one",
+        "products/s",
+        *(together, alone, [two / one for one, two in rounds]),
+        ours_name="two processes",
+        peer_name="one process",
+        note="What this machine gives a second process that multiplies matrices and nothing else.",
+    )
+
+
+START_UP: Mapping[str, Case] = {f"faultpath {words}": partial(_start, words) for words in STARTS}
+WORKERS: Mapping[str, Case] = {
+    "Small audit, two workers against one": _workers,
+    "torch.mm alone, two processes against one": _ceiling,
+}

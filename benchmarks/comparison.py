@@ -1,144 +1,94 @@
-"""A comparison: what runs against what, and which records come of it."""
+"""A comparison: a name, and what is measured under it. What runs against what is a table."""
 
-import statistics
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 
-from benchmarks.measure import Rates
-from benchmarks.results import Curve, Record, Target
+from benchmarks.measure import ROUNDS, NotMeasured, Rates, Work, interleaved
+from benchmarks.results import Curve, Record, Target, record, unmeasured
+
+Found = Record | Curve
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What one comparison found."""
+class Effort:
+    """How much is measured: everything, or just enough to see that it can be."""
 
-    records: Sequence[Record]
-    curves: Sequence[Curve] = ()
+    share: float = 1.0
+
+    def of(self, full: int, least: int = 1) -> int:
+        """Return how many rounds, scenes or repetitions to take of `full`."""
+        return max(least, round(self.share * full))
+
+
+Case = Callable[[Effort], Iterable[Found]]
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A named measurement; `run` takes it."""
+    """A named measurement of one or several cases, each by its words."""
 
     name: str
-    run: Callable[[], Outcome]
+    cases: Mapping[str, Case]
+    edition: int = 1
+    """Raised when what is measured changes, so that older numbers are known as such."""
+    changed: str = ""
+    """What the last edition changed; the page says it beside numbers of an earlier one."""
 
-
-def at_least(value: float, of: str = "ratio") -> Target:
-    """Return a lower bound on the ratio, or on our own number."""
-    return Target.model_validate({"of": of, "sense": "at least", "value": value})
-
-
-def at_most(value: float, of: str = "ratio") -> Target:
-    """Return an upper bound on the ratio, or on our own number."""
-    return Target.model_validate({"of": of, "sense": "at most", "value": value})
-
-
-_TIMES: Mapping[str, Callable[[float], float]] = {
-    "s": lambda rate: 1 / rate,
-    "ms": lambda rate: 1e3 / rate,
-}
+    def take(self, effort: Effort) -> Iterator[Found]:
+        """Measure; a case that fails says why and does not lose the others."""
+        for words, case in self.cases.items():
+            try:
+                yield from case(effort)
+            except NotMeasured as reason:
+                yield unmeasured(words, str(reason))
+            except Exception as error:
+                yield unmeasured(words, f"{type(error).__name__}: {error}")
 
 
 @dataclass(frozen=True)
-class Writer:
-    """Makes the records of one comparison from its rates."""
+class Row:
+    """Two sides of a contest, by their names there, and the target of their ratio."""
 
-    comparison: str
-    rates: Rates
+    name: str
+    ours: str
+    peer: str
+    target: Target | None = None
+    unit: str = ""
+    """Where it is not the contest's."""
+    scale: Callable[[], float] | None = None
+    """What a unit of our work counts in `unit`."""
 
-    def versus(
-        self,
-        name: str,
-        ours: str,
-        peer: str,
-        unit: str,
-        target: Target | None = None,
-        note: str = "",
-    ) -> Record:
-        """Return our rate against that of a peer, or our time where `unit` is one.
+    def record(self, rates: Rates, unit: str) -> Record:
+        """Return our rate against that of the peer, or our time where `unit` is milliseconds.
 
         The ratio is that of the rates either way: how many times as fast ours is.
         """
-        blank = Record(
-            name=name,
-            comparison=self.comparison,
-            unit=unit,
-            ours_name=ours,
-            peer_name=peer,
-            target=target,
-            note=note,
-        )
-        for side in (ours, peer):
-            if side in self.rates.missing:
-                reason = f"Not measured: {side}: {self.rates.missing[side]}"
-                return blank.model_copy(update={"note": reason})
-        one, other = self.rates.rounds[ours], self.rates.rounds[peer]
+        said = {"ours_name": self.ours, "peer_name": self.peer, "target": self.target}
+        for side in (self.ours, self.peer):
+            if side in rates.missing:
+                return unmeasured(self.name, f"{side}: {rates.missing[side]}", unit=unit, **said)
+        scale = self.scale() if self.scale else 1.0
+        one = [scale * rate for rate in rates.rounds[self.ours]]
+        other = rates.rounds[self.peer]
         ratios = [a / b for a, b in zip(one, other, strict=True)]
-        shown = _TIMES.get(unit, lambda rate: rate)
-        return judged(
-            blank.model_copy(
-                update={
-                    "ours": shown(statistics.median(one)),
-                    "peer": shown(statistics.median(other)),
-                    "ratio": statistics.median(ratios),
-                    "low": min(ratios),
-                    "high": max(ratios),
-                }
-            )
-        )
+        if unit == "ms":
+            one, other = ([1e3 / rate for rate in side] for side in (one, other))
+        return record(self.name, unit, one, other, ratios, **said)
 
 
-def absolute(
-    comparison: str,
-    name: str,
-    values: Sequence[float],
-    unit: str,
-    target: Target | None = None,
-    note: str = "",
-) -> Record:
-    """Return a number of ours that stands alone: the median of `values` and their range."""
-    return judged(
-        Record(
-            name=name,
-            comparison=comparison,
-            unit=unit,
-            ours=statistics.median(values),
-            low=min(values),
-            high=max(values),
-            target=target,
-            note=note,
-        )
-    )
+@dataclass(frozen=True)
+class Contest:
+    """Sides that take turns, and the rows that come of their rates; a case of a comparison."""
 
+    unit: str
+    sides: Mapping[str, Work]
+    rows: tuple[Row, ...]
+    same: Mapping[str, str] = field(default_factory=dict)
+    """Which side must give the numbers of which other, within `tolerance`."""
+    tolerance: float = 1e-3
 
-def unmeasured(comparison: str, name: str, reason: str) -> Record:
-    """Return a record without numbers that says why it has none."""
-    return Record(name=name, comparison=comparison, unit="", note=f"Not measured: {reason}")
-
-
-def judged(record: Record) -> Record:
-    """Return the record with its target looked at."""
-    if record.target is None:
-        return record
-    value = record.ratio if record.target.of == "ratio" else record.ours
-    return record.model_copy(update={"met": None if value is None else record.target.met_by(value)})
-
-
-def growth(curve: Curve, comparison: str, name: str, limit: float) -> Record:
-    """Return whether the time grows no faster than the size, from the first point to the last."""
-    (size, time), (size_end, time_end) = curve.points[0], curve.points[-1]
-    linear = time * size_end / size
-    return judged(
-        Record(
-            name=name,
-            comparison=comparison,
-            unit=curve.unit,
-            ours=time_end,
-            ours_name=f"{size_end:g} {curve.across}",
-            peer=linear,
-            peer_name=f"{size_end / size:g} times the time of {size:g}",
-            ratio=time_end / linear,
-            target=at_most(limit),
-        )
-    )
+    def __call__(self, effort: Effort) -> Iterator[Record]:
+        """Let the sides take turns and return the rows."""
+        rates = interleaved(self.sides, effort.of(ROUNDS), self.same, self.tolerance)
+        for row in self.rows:
+            yield row.record(rates, row.unit or self.unit)

@@ -1,14 +1,12 @@
 """A real block in flight: how much of a closed-loop replan is not the rollout."""
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
+from functools import wraps
+from itertools import islice
 from typing import Any
 
-import torch
-from typing_extensions import override
-
-from benchmarks.side import Side
 from faultpath.loop import Batch, Instant
 from faultpath.quadrotor.modules.clearance import Perception
 from faultpath.quadrotor.modules.wind import WindReconstruction
@@ -25,8 +23,9 @@ from faultpath.trials import SystemSpec, load_system
 SCENES = 50
 STEPS = 20
 VARIANT = "gru"
+WHOLE = "whole"
 
-PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
+PARTS: Mapping[str, tuple[tuple[Any, str], ...]] = {
     "rendering": ((DepthRenderer, "render"),),
     "encoding": ((Perception, "step"),),
     "noise": ((AutoregressiveSampler, "noise"),),
@@ -40,52 +39,46 @@ PARTS: dict[str, tuple[tuple[Any, str], ...]] = {
 }
 """The methods in which the parts of a control step are; the rest is taps and bookkeeping."""
 
-WHOLE = "whole"
 
+class ClosedLoop:
+    """A side: twenty control steps of a block; the unit is one running scene's step."""
 
-class ClosedLoop(Side):
-    """Twenty control steps of a block; the unit is one running scene's step."""
-
-    def __init__(self, clearance: str = "true", scenes: int = SCENES) -> None:
-        torch.set_num_threads(1)
+    def __init__(self, clearance: str = "true", scenes: int = SCENES, repeats: int = 3) -> None:
         options = {"wind": "L3", "predictor": "wm-a-wind", "clearance": clearance}
         system = load_system(SystemSpec(name="quadrotor", options=options))
         assert isinstance(system, Quadrotor)
         self._system = system
-        self._scenes = [scene.id for scene in system.library("selection").scenes[:scenes]]
+        self._scenes = tuple(scene.id for scene in system.library("selection").scenes[:scenes])
         self._steps: Iterator[Instant] = iter(())
+        self._repeats = repeats
         self.amount = 0
 
-    @torch.inference_mode()
     def prepare(self) -> None:
         """Fly a new block up to its first command."""
         system, parts = self._system, self._system.variants[VARIANT]
         taps = Taps(
             system.interface,
             (),
-            scenes=tuple(self._scenes),
+            scenes=self._scenes,
             dt_s=system.control_dt_s,
             seed=0,
             bindings=parts.bindings,
             consumers=parts.consumers,
             privileged=parts.privileged,
         )
-        batch = Batch(tuple(self._scenes), 0, system.control_dt_s)
+        batch = Batch(self._scenes, 0, system.control_dt_s)
         self._steps = system.loop(VARIANT, 0).execute(batch, taps)
         next(self._steps)
 
-    @torch.inference_mode()
-    @override
     def work(self) -> None:
-        replans = 0
-        for _ in range(STEPS):
-            world: World = next(self._steps).state.world
-            replans += int(world.progress.running[: len(self._scenes)].sum())
-        self.amount = replans
+        """Fly on; counts the steps of scenes that still run."""
+        worlds: Iterator[World] = (now.state.world for now in islice(self._steps, STEPS))
+        count = len(self._scenes)
+        self.amount = sum(int(world.progress.running[:count].sum()) for world in worlds)
 
     def answer(self) -> Sequence[float]:
         """Return the time of each of `PARTS` and of the whole, s a running scene's step."""
-        return list(self.spent(repeats=3).values())
+        return list(self.spent(self._repeats).values())
 
     def spent(self, repeats: int) -> dict[str, float]:
         """Return the time of each of `PARTS` and of the `WHOLE`, s a running scene's step."""
@@ -95,19 +88,17 @@ class ClosedLoop(Side):
             with ExitStack() as stack:
                 for part, methods in PARTS.items():
                     for owner, method in methods:
-                        stack.enter_context(_clocked(owner, method, spent, part))
-                start = time.process_time()
-                self.work()
-                spent[WHOLE] += time.process_time() - start
+                        clocked = _clocked(getattr(owner, method), spent, part)
+                        stack.enter_context(replaced(owner, method, clocked))
+                _clocked(self.work, spent, WHOLE)()
             replans += self.amount
         return {part: seconds / replans for part, seconds in spent.items()}
 
 
-@contextmanager
-def _clocked(owner: type, method: str, spent: dict[str, float], part: str) -> Iterator[None]:
-    """Add up the time that calls of a method take, while the context lasts."""
-    original = getattr(owner, method)
+def _clocked(original: Callable[..., Any], spent: dict[str, float], part: str) -> Any:
+    """Return a function whose calls add up the time that they take."""
 
+    @wraps(original)
     def timed(*arguments: Any, **named: Any) -> Any:
         start = time.process_time()
         try:
@@ -115,8 +106,15 @@ def _clocked(owner: type, method: str, spent: dict[str, float], part: str) -> It
         finally:
             spent[part] += time.process_time() - start
 
-    setattr(owner, method, timed)
+    return timed
+
+
+@contextmanager
+def replaced(owner: Any, name: str, by: Callable[..., Any]) -> Iterator[None]:
+    """Let another function stand in a function's place while the context lasts."""
+    original = getattr(owner, name)
+    setattr(owner, name, by)
     try:
         yield
     finally:
-        setattr(owner, method, original)
+        setattr(owner, name, original)

@@ -4,7 +4,7 @@ import os
 import platform
 import subprocess
 from datetime import UTC, datetime
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import distributions
 from pathlib import Path
 
 import faultpath
@@ -12,22 +12,14 @@ from benchmarks.results import Machine
 from faultpath.execution.provenance import checkout, processor
 from faultpath.quadrotor import native
 
-PACKAGES = (
-    "numpy",
-    "scipy",
-    "torch",
-    "jax",
-    "mujoco",
-    "pytorch-mppi",
-    "rotorpy",
-    "torchrl",
-)
+PACKAGES = ["numpy", "scipy", "torch", "jax", "mujoco", "pytorch-mppi", "rotorpy", "torchrl"]
 
 
 def describe() -> Machine:
     """Return this machine and the code on it."""
     kernels = native.kernels()
     commit, dirty = checkout(Path(faultpath.__file__).parent)
+    installed = {each.name.replace("_", "-"): each.version for each in distributions()}
     return Machine(
         processor=processor(),
         cores=len(os.sched_getaffinity(0)),
@@ -35,8 +27,8 @@ def describe() -> Machine:
         load=os.getloadavg()[0],
         system=platform.platform(aliased=True),
         python=platform.python_version(),
-        packages=_packages(),
-        kernels="portable" if kernels is None else kernels.isa,
+        packages={name: installed[name] for name in PACKAGES if name in installed},
+        kernels=native.PORTABLE if kernels is None else kernels.isa,
         compiler=_compiler(),
         commit=commit,
         dirty=dirty,
@@ -44,21 +36,11 @@ def describe() -> Machine:
     )
 
 
-def _packages() -> dict[str, str]:
-    found: dict[str, str] = {}
-    for name in PACKAGES:
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return found
-
-
 def _compiler() -> str:
     """Return the line in which the C++ compiler says what it is; empty where there is none."""
-    command = os.environ.get("CXX", "c++")
+    command = [os.environ.get("CXX", "c++"), "--version"]
     try:
-        done = subprocess.run([command, "--version"], capture_output=True, text=True, check=True)
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
     except (OSError, subprocess.SubprocessError):
         return ""
     return done.stdout.partition("\n")[0]

@@ -5,10 +5,9 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from types import TracebackType
 from typing import IO, Any, Literal, Self
 
 from benchmarks.results import ROOT
@@ -26,24 +25,43 @@ ONE_THREAD = {
     "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
     "JAX_PLATFORMS": "cpu",
 }
+Clock = Literal["processor", "wall"]
 
 
 class NotMeasured(Exception):
     """A side that could not be built, or that gives other numbers than its counterpart."""
 
 
+@dataclass
+class Side:
+    """Work that is timed; a function of the side's module builds it in the child process."""
+
+    work: Callable[[], object]
+    amount: float = 1.0
+    """Units of work in one repetition; a rate is amount times repetitions over seconds."""
+    answer: Callable[[], Sequence[float]] = list
+    """Numbers that another side must reproduce; empty where nothing is comparable."""
+    prepare: Callable[[], object] = lambda: None
+    """Gets ready for the next repetition; this is not timed."""
+
+
 @dataclass(frozen=True)
 class Work:
-    """How to build a side: its class as `module:Class`, arguments and environment."""
+    """How to build a side: what builds it as `module:name`, arguments and environment."""
 
     side: str
     arguments: Mapping[str, Any] = field(default_factory=dict)
     environment: Mapping[str, str] = field(default_factory=dict)
 
 
-def cpu() -> int:
-    """Return the processor that sides run on: the last, as the first serves interrupts."""
-    return max(os.sched_getaffinity(0))
+def portable(side: str, **arguments: Any) -> Work:
+    """Return a side that runs without compiled kernels."""
+    return Work(side, arguments, {library.VARIABLE: library.PORTABLE})
+
+
+def processors() -> list[int]:
+    """Return the processors, that on which sides run first: the last serves no interrupts."""
+    return sorted(os.sched_getaffinity(0), reverse=True)
 
 
 def _kernels() -> Mapping[str, str]:
@@ -56,12 +74,13 @@ def _kernels() -> Mapping[str, str]:
 class Running:
     """A side in its process; a context that ends it."""
 
-    def __init__(self, work: Work) -> None:
+    def __init__(self, work: Work, cpu: int | None = None) -> None:
         """Start the process; `NotMeasured` where the side cannot be built."""
+        where = str(processors()[0] if cpu is None else cpu)
         command = [sys.executable, "-m", "benchmarks.child", work.side]
         self._log: IO[str] = tempfile.TemporaryFile("w+")  # noqa: SIM115, closed by __exit__
         self._process = subprocess.Popen(
-            [*command, json.dumps(dict(work.arguments)), str(cpu())],
+            [*command, json.dumps(dict(work.arguments)), where],
             cwd=ROOT,
             env={**os.environ, **KEEP_MEMORY, **ONE_THREAD, **_kernels(), **work.environment},
             stdin=subprocess.PIPE,
@@ -71,20 +90,19 @@ class Running:
         )
         try:
             self.amount: float = self._reply()["amount"]
-            self.repeats = max(1, round(ROUND_S / max(min(self.seconds(3)), 1e-6)))
+            self._each = max(min(self.seconds(3)), 1e-6)
         except NotMeasured:
-            self.__exit__(None, None, None)
+            self.__exit__()
             raise
 
-    def seconds(
-        self, repeats: int, clock: Literal["processor", "wall"] = "processor"
-    ) -> list[float]:
+    def seconds(self, repeats: int, clock: Clock = "processor") -> list[float]:
         """Return how long each of some repetitions takes, s."""
         return self._ask(do="time", repeats=repeats, clock=clock)["seconds"]
 
-    def rate(self) -> float:
+    def rate(self, round_s: float = ROUND_S, clock: Clock = "processor") -> float:
         """Return units of work a second over one round."""
-        return self.amount * self.repeats / sum(self.seconds(self.repeats))
+        repeats = max(1, round(round_s / self._each))
+        return self.amount * repeats / sum(self.seconds(repeats, clock))
 
     def answer(self) -> list[float]:
         """Return the numbers that the side works out."""
@@ -111,21 +129,12 @@ class Running:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        assert self._process.stdin is not None
-        assert self._process.stdout is not None
-        self._process.stdin.close()
-        self._process.stdout.close()
+    def __exit__(self, *raised: object) -> None:
         try:
-            self._process.wait(10)
+            self._process.communicate(timeout=10)  # closes its input, which ends it
         except subprocess.TimeoutExpired:
             self._process.kill()
-            self._process.wait()
+            self._process.communicate()
         self._log.close()
 
 
@@ -136,19 +145,12 @@ class Rates:
     rounds: Mapping[str, Sequence[float]]
     missing: Mapping[str, str]
 
-    def also(self, name: str, of: str, factor: float) -> "Rates":
-        """Return these rates with those of one side in other units beside them."""
-        if of in self.missing:
-            return Rates(self.rounds, {**self.missing, name: self.missing[of]})
-        scaled = [factor * rate for rate in self.rounds[of]]
-        return Rates({**self.rounds, name: scaled}, self.missing)
-
 
 def interleaved(
     works: Mapping[str, Work],
+    rounds: int,
     same: Mapping[str, str] | None = None,
     tolerance: float = 1e-3,
-    rounds: int | None = None,
 ) -> Rates:
     """Let the sides take turns, `rounds` times, and return their rates.
 
@@ -170,7 +172,7 @@ def interleaved(
                     missing[name] = f"its numbers differ from those of {other} by {apart:.3g}"
                     del sides[name]
         found: dict[str, list[float]] = {name: [] for name in sides}
-        for _ in range(rounds or ROUNDS):
+        for _ in range(rounds):
             for name, side in sides.items():
                 found[name].append(side.rate())
     return Rates(found, missing)

@@ -1,47 +1,57 @@
-"""`docs/performance.md` from `results.json`: its words are here, its numbers only there."""
+"""The blocks of `docs/performance.md` from `results.json`: its words are there, its numbers here.
 
-from collections.abc import Iterator, Mapping, Sequence
+As of every document, `tools/documents.py` fills the blocks that are marked in it.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from benchmarks import pictures
-from benchmarks.results import ROOT, Machine, Record, Results, Target
-from benchmarks.words import HEAD, SECTIONS, number
+from benchmarks.pictures import number
+from benchmarks.results import ROOT, Machine, Record, Results, Target, load
+from benchmarks.table import COMPARISONS
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.markdown import grid
 
-PAGE = ROOT / "docs" / "performance.md"
-RATIOS = ROOT / "docs" / "images" / "performance.svg"
-SCALING = ROOT / "docs" / "images" / "performance-scaling.svg"
+IMAGES = ROOT / "docs" / "images"
 
 _COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
 BUSY = 0.5
 """Load above which the page warns."""
 
 
-def files(results: Results) -> Mapping[Path, str]:
-    """Return every file that the results decide, by its path."""
-    order = [name for section in SECTIONS for name in section.comparisons]
+def files() -> Mapping[Path, str]:
+    """Return the pictures that the results decide, by their path."""
+    results, order = load(), list(COMPARISONS)
     records = sorted(results.records, key=lambda record: order.index(record.comparison))
     return {
-        PAGE: text(results),
-        RATIOS: pictures.ratios(records) + "\n",
-        SCALING: pictures.scaling(results.curves) + "\n",
+        IMAGES / "performance.svg": pictures.ratios(records) + "\n",
+        IMAGES / "performance-scaling.svg": pictures.scaling(results.curves) + "\n",
     }
 
 
-def text(results: Results) -> str:
-    """Return the page."""
-    parts = [HEAD, *_machine(results.machine), *_summary(results.records)]
-    for section in SECTIONS:
-        records = [r for r in results.records if r.comparison in section.comparisons]
-        parts += [f"## {section.title}", section.words, _table(records)]
-        parts += _notes(records)
-        for name in section.comparisons:
-            if name in results.apart:
-                parts += _machine(results.apart[name])
-        if section.picture:
-            parts.append(section.picture)
-    return "\n\n".join(parts) + "\n"
+def fill(part: str, *names: str) -> str:
+    """Return the text of a block: `machine`, `summary`, or the `rows` of some comparisons."""
+    return "\n\n".join(_PARTS[part](load(), *names))
+
+
+def rows(results: Results, *names: str) -> Iterator[str]:
+    """Yield the table of some comparisons, what there is to say of its rows, and of what age."""
+    records = [record for record in results.records if record.comparison in names]
+    for name in names:
+        asked = COMPARISONS[name]
+        if results.editions.get(name, 1) < asked.edition:
+            yield (
+                f"**Out of date.** Since this was measured, {asked.changed}. "
+                f'`make bench ARGS="--only {name}"` measures it again.'
+            )
+    yield grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
+    notes = [f"- {record.name}: {record.note}" for record in records if record.note]
+    if notes:
+        yield "\n".join(notes)
+    for name in names:
+        if name in results.apart:
+            yield from _machine(results.apart[name])
 
 
 def told(record: Record) -> str:
@@ -71,27 +81,21 @@ def _machine(machine: Machine) -> Iterator[str]:
         )
 
 
-def _summary(records: Sequence[Record]) -> Iterator[str]:
-    judged = [record for record in records if record.target is not None]
+def _summary(results: Results) -> Iterator[str]:
+    judged = [record for record in results.records if record.target is not None]
     missed = [record for record in judged if record.met is False]
     yield f"Targets met: {sum(record.met is True for record in judged)} of {len(judged)}."
     if missed:
-        rows = [
+        yield "Missed:\n\n" + "\n".join(
             f"- {record.name}: {_reached(record)}, asked {_target(record.target)}"
             for record in missed
-        ]
-        yield "Missed:\n\n" + "\n".join(rows)
-    yield "![Ratios of speed against other software, with the targets](images/performance.svg)"
+        )
 
 
 def _reached(record: Record) -> str:
     if record.target is not None and record.target.of == "ratio":
         return f"ratio {_ratio(record)}"
     return f"{number(record.ours or 0.0)} {record.unit}"
-
-
-def _table(records: Sequence[Record]) -> str:
-    return grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
 
 
 def _line(record: Record) -> Line:
@@ -119,7 +123,8 @@ def _target(target: Target | None) -> str:
     return f"{target.sense} {number(target.value)}{of}"
 
 
-def _notes(records: Sequence[Record]) -> Iterator[str]:
-    notes = [f"- {record.name}: {record.note}" for record in records if record.note]
-    if notes:
-        yield "\n".join(notes)
+_PARTS: Mapping[str, Callable[..., Iterator[str]]] = {
+    "machine": lambda results: _machine(results.machine),
+    "summary": _summary,
+    "rows": rows,
+}

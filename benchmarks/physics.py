@@ -4,9 +4,8 @@ from collections.abc import Callable, Sequence
 
 import torch
 from torch import Tensor
-from typing_extensions import override
 
-from benchmarks.side import Side
+from benchmarks.measure import Side
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.perception.camera import mounted
@@ -22,45 +21,34 @@ VEHICLES = 100
 SCENES = 25
 
 
-def vehicles(count: int) -> list[VehicleParameters]:
+def vehicles() -> list[VehicleParameters]:
     """Return vehicles drawn from the ranges of the collected flights."""
-    return [draw(generator("benchmark-vehicle", f"vehicle/{i}", 0)) for i in range(count)]
+    return [draw(generator("benchmark-vehicle", f"vehicle/{i}", 0)) for i in range(VEHICLES)]
 
 
-class FullPlant(Side):
+def full_plant(build: Callable[[Vehicle], Plant] = TorchPlant) -> Side:
     """A control interval of every vehicle; the unit is a vehicle's step of 2 ms, float64.
 
     Rate loop, mixer, motors, drag and wind; lanes are padded as in a flight, padding not counted.
     """
+    lanes = padded_lanes(VEHICLES)
+    vehicle = Vehicle.stack(vehicles()).take(lanes)
+    plant = build(vehicle)
+    still = torch.zeros(3, len(lanes), dtype=torch.float64)
+    start = plant.start(State.hover(still, still[0]))
+    command = vehicle.hover_command()
+    command[1:] += torch.tensor([[1.0], [-0.5], [0.2]])
+    shape = (STEPS_PER_CONTROL, 3, len(lanes))
+    winds = torch.from_numpy(generator("benchmark-wind", "all", 0).uniform(-5.0, 5.0, shape))
 
-    def __init__(
-        self, count: int = VEHICLES, build: Callable[[Vehicle], Plant] = TorchPlant
-    ) -> None:
-        torch.set_num_threads(1)
-        self.amount = count * STEPS_PER_CONTROL
-        lanes = padded_lanes(count)
-        vehicle = Vehicle.stack(vehicles(count)).take(lanes)
-        self._plant = build(vehicle)
-        still = torch.zeros(3, len(lanes), dtype=torch.float64)
-        self._state = self._plant.start(State.hover(still, still[0]))
-        self._command = vehicle.hover_command()
-        self._command[1:] += torch.tensor([[1.0], [-0.5], [0.2]])
-        draws = generator("benchmark-wind", "all", 0)
-        shape = (STEPS_PER_CONTROL, 3, len(lanes))
-        self._winds = torch.from_numpy(draws.uniform(-5.0, 5.0, shape))
+    def flown() -> PlantState:
+        return plant.advance(start, command, winds)
 
-    @torch.inference_mode()
-    @override
-    def work(self) -> None:
-        self._fly()
-
-    @torch.inference_mode()
-    def answer(self) -> Sequence[float]:
+    def ends() -> Sequence[float]:
         """Return where the vehicles are after the interval, m."""
-        return self._fly().state.position.flatten().tolist()
+        return flown().state.position.flatten().tolist()
 
-    def _fly(self) -> PlantState:
-        return self._plant.advance(self._state, self._command, self._winds)
+    return Side(flown, VEHICLES * STEPS_PER_CONTROL, ends)
 
 
 def scenes() -> Sequence[Scene]:
@@ -76,24 +64,15 @@ def camera_poses(chosen: Sequence[Scene]) -> State:
     return State(state.position, state.velocity, mounted(so3.from_yaw(yaw)), state.rate)
 
 
-class Rendering(Side):
+def rendering() -> Side:
     """The depth images of a block of scenes; the unit is an image of 64 x 36."""
+    chosen = scenes()
+    renderer, poses = DepthRenderer(chosen), camera_poses(chosen)
 
-    def __init__(self) -> None:
-        torch.set_num_threads(1)
-        chosen = scenes()
-        self.amount = len(chosen)
-        self._renderer = DepthRenderer(chosen)
-        self._poses = camera_poses(chosen)
+    def drawn() -> Tensor:
+        return renderer.render(poses)
 
-    @torch.inference_mode()
-    @override
-    def work(self) -> None:
-        self._renderer.render(self._poses)
-
-    @override
-    def answer(self) -> Sequence[float]:
-        return depths(self._renderer.render(self._poses))
+    return Side(drawn, len(chosen), lambda: depths(drawn()))
 
 
 def depths(images: Tensor) -> list[float]:

@@ -1,122 +1,112 @@
-"""Replans and rollouts of WM-A against other planners and against the machine's own rate."""
+"""Our sides of the planning comparisons, and the machine's own rate of multiplication."""
 
-from benchmarks.comparison import Comparison, Outcome, Writer, at_least
-from benchmarks.measure import Work, interleaved
-from benchmarks.planner import flops_per_replan
+from collections.abc import Callable, Sequence
 
-PORTABLE = {"FAULTPATH_KERNELS": "portable"}
-OURS = "benchmarks.planner"
-PEERS = "benchmarks.peers"
-UNIT = "replans/s"
-GFLOPS = "GFLOP/s"
+import torch
+from torch import Tensor
 
-
-def rollouts() -> Outcome:
-    """Compare the rollout alone with JAX and with what the machine multiplies."""
-    scans = {f"JAX scan, {words}": layout for words, layout in (("[F, K]", "FK"), ("[K, F]", "KF"))}
-    works = {
-        "torch.mm, 1024": Work(f"{OURS}:MatrixProduct"),
-        "torch.mm, a layer": Work(
-            f"{OURS}:MatrixProduct", {"rows": 64, "inner": 64, "columns": 512}
-        ),
-        "fused": Work(f"{OURS}:Rollout"),
-        "portable": Work(f"{OURS}:Rollout", environment=PORTABLE),
-        **{name: Work(f"{PEERS}.jax_scan:Scan", {"layout": at}) for name, at in scans.items()},
-    }
-    rates = interleaved(works, same=dict.fromkeys(("fused", *scans), "portable"))
-    flops = 1e-9 * flops_per_replan()
-    for name in ("fused", "portable"):
-        rates = rates.also(f"{name}, as multiplication", name, flops)
-    writer = Writer("rollout", rates)
-    return Outcome(
-        [
-            *(
-                writer.versus(f"Fused rollout, {name}", "fused", name, UNIT, at_least(1.4))
-                for name in scans
-            ),
-            writer.versus("Portable rollout, JAX scan", "portable", "JAX scan, [F, K]", UNIT),
-            writer.versus("Fused rollout, portable", "fused", "portable", UNIT),
-            writer.versus(
-                "Fused rollout, share of torch.mm",
-                "fused, as multiplication",
-                "torch.mm, 1024",
-                GFLOPS,
-                at_least(0.75),
-            ),
-            writer.versus(
-                "Portable rollout, share of torch.mm",
-                "portable, as multiplication",
-                "torch.mm, 1024",
-                GFLOPS,
-            ),
-            writer.versus(
-                "Fused rollout, share of torch.mm on a layer",
-                "fused, as multiplication",
-                "torch.mm, a layer",
-                GFLOPS,
-            ),
-        ]
-    )
+from benchmarks import problem
+from benchmarks.measure import Side
+from faultpath.quadrotor.models import clearance_model
+from faultpath.quadrotor.options import QuadrotorOptions
+from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
+from faultpath.quadrotor.planner import Scored, shift
+from faultpath.quadrotor.rollout import rolling
+from faultpath.quadrotor.scenes.field import DistanceField
+from faultpath.quadrotor.scenes.library import load_library
+from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 
-def replans() -> Outcome:
-    """Compare whole replans, of one scene and of sixteen."""
-    peer = f"{PEERS}.pytorch_mppi_side:Command"
-    works = {
-        "fused": Work(f"{OURS}:Replan"),
-        "portable": Work(f"{OURS}:Replan", environment=PORTABLE),
-        "portable, 16 scenes": Work(f"{OURS}:Replan", {"scenes": 16}, PORTABLE),
-        "fused, 16 scenes": Work(f"{OURS}:Replan", {"scenes": 16}),
-        "pytorch_mppi": Work(peer),
-        "pytorch_mppi, 16 scenes": Work(peer, {"scenes": 16}),
-        "pytorch_mppi, our layout": Work(peer, {"layout": "columns"}, PORTABLE),
-        "torchrl": Work(f"{PEERS}.torchrl_side:Planning"),
-    }
-    rates = interleaved(works, same=dict.fromkeys(("fused", "pytorch_mppi", "torchrl"), "portable"))
-    writer = Writer("replan", rates)
-    return Outcome(
-        [
-            writer.versus(
-                "Fused replan, pytorch_mppi", "fused", "pytorch_mppi", UNIT, at_least(5.0)
-            ),
-            writer.versus(
-                "Portable replan of 16 scenes, pytorch_mppi",
-                "portable, 16 scenes",
-                "pytorch_mppi, 16 scenes",
-                UNIT,
-                at_least(1.7),
-            ),
-            writer.versus(
-                "Fused replan of 16 scenes, pytorch_mppi",
-                "fused, 16 scenes",
-                "pytorch_mppi, 16 scenes",
-                UNIT,
-            ),
-            writer.versus("Portable replan, pytorch_mppi", "portable", "pytorch_mppi", UNIT),
-            writer.versus(
-                "Fused replan, pytorch_mppi with our layout",
-                "fused",
-                "pytorch_mppi, our layout",
-                UNIT,
-            ),
-            writer.versus("Fused replan, torchrl", "fused", "torchrl", UNIT),
-        ]
-    )
+def rollout(
+    scenes: int = 1, candidates: int = problem.CANDIDATES, steps: int = problem.HORIZON
+) -> Side:
+    """The candidates of some scenes rolled out; the unit is one scene's."""
+    roll, inputs = rolling(problem.model()), problem.inputs(scenes)
+    commands = problem.commands(scenes, candidates, steps)
+
+    def answer() -> Sequence[float]:
+        """Return positions `[3, H, 32]` of the first scene, m."""
+        found = roll(inputs, commands).positions
+        return found[:, 0, :, : problem.CHECKED].flatten().tolist()
+
+    return Side(lambda: roll(inputs, commands), scenes, answer)
 
 
-def compiled() -> Outcome:
-    """Compare whole replans with pytorch_mppi compiled, which takes minutes to start."""
-    peer = "pytorch_mppi, torch.compile"
-    works = {
-        "fused": Work(f"{OURS}:Replan"),
-        peer: Work(f"{PEERS}.pytorch_mppi_side:Command", {"compiled": True}),
-    }
-    writer = Writer("compiled", interleaved(works, same={peer: "fused"}))
-    return Outcome([writer.versus("Fused replan, pytorch_mppi compiled", "fused", peer, UNIT)])
+def replan(scenes: int = 1) -> Side:
+    """Noise, rollout, all costs and the update, for some scenes at once.
+
+    The clearance is a constant here: no peer has one. Everything else is the planner of an audit.
+    """
+    goal = torch.tensor(problem.GOAL_M)[:, None].expand(3, scenes).contiguous()
+    near = torch.ones(scenes, problem.HORIZON, problem.CANDIDATES)
+    names = [f"scene/{i}" for i in range(scenes)]
+    return Side(_replans(names, goal, lambda positions: near), scenes, rollout().answer)
 
 
-COMPARISONS = (
-    Comparison("rollout", rollouts),
-    Comparison("replan", replans),
-    Comparison("compiled", compiled),
-)
+def one_vehicle(clearance: str = "field") -> Side:
+    """One vehicle's replan, as a flight computer would run it.
+
+    `clearance` is `field`, a query of the baked distance field, or `depth`: the image is encoded
+    and the model asked along all candidates. Rendering an image is no work of the vehicle's.
+    """
+    scene = load_library("selection").scenes[0]
+    state = problem.inputs(1).state
+    pose = State(*(part[..., 0] for part in vars(state).values()))
+    image = DepthRenderer([scene]).render(pose)
+    place, mount = pose.position.T.contiguous(), mounted(pose.rotation).movedim(-1, 0)
+    field, seen = DistanceField.bake(scene), DepthClearance(clearance_model())
+
+    def along(positions: Tensor) -> Tensor:
+        points = positions.flatten(2)
+        if clearance == "field":
+            return field.query(points).view(positions.shape[1:])
+        seen.capture(image, place, mount)
+        return seen.query(points, [0]).view(positions.shape[1:])
+
+    return Side(_replans(["scene/0"], torch.tensor(scene.goal_m)[:, None], along))
+
+
+def _replans(
+    names: Sequence[str], goal: Tensor, clearance: Callable[[Tensor], Tensor]
+) -> Callable[[], None]:
+    """Return what takes one step of the planner outside the loop, from the step before's plan.
+
+    `clearance` gives `[S, H, K]`, metres, along positions `[3, S, H, K]`.
+    """
+    planner, roll = QuadrotorOptions().build_planner(), rolling(problem.model())
+    inputs = problem.inputs(len(names))
+    hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    plan, step = problem.commands(len(names))[..., 0].clone(), 0
+
+    def work() -> None:
+        nonlocal plan, step
+        search = planner.init(plan, hover)
+        for iteration in range(planner.iterations):
+            commands = planner.propose(search, planner.noise(names, 0, step, iteration))
+            rolled = roll(inputs, commands)
+            near = clearance(rolled.positions)
+            search = planner.update(search, Scored(rolled, commands, near, goal, hover))
+        plan, step = shift(search.plan), step + 1
+
+    return work
+
+
+def matrix_product(rows: int = 1024, inner: int = 1024, columns: int = 1024) -> Side:
+    """torch's product of two float32 matrices; the unit is a GFLOP."""
+    one, other = torch.rand(rows, inner), torch.rand(inner, columns)
+    out = torch.empty(rows, columns)
+    return Side(lambda: torch.mm(one, other, out=out), 2e-9 * rows * inner * columns)
+
+
+def gflop_per_replan() -> float:
+    """Return the floating-point operations, 1e9, of the network's affine maps in one replan.
+
+    The kinematics and the activations are left out, so that a share of the rate of multiplication
+    errs on the low side.
+    """
+    network = problem.model().network
+    layers = [network.embed, network.cell.from_input, network.cell.from_latent]
+    layers += [network.first, network.second, network.last]
+    each = sum(2 * layer.weight.numel() + layer.bias.numel() for layer in layers)
+    return 1e-9 * each * problem.CANDIDATES * problem.HORIZON

@@ -1,15 +1,15 @@
 """What was measured, as `results.json` keeps it; the page is made from nothing else."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from statistics import median
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parent
-RESULTS = HERE / "results.json"
+ROOT = Path(__file__).resolve().parents[1]
+RESULTS = ROOT / "benchmarks" / "results.json"
 
 
 class _Frozen(BaseModel):
@@ -28,14 +28,24 @@ class Target(_Frozen):
         return value >= self.value if self.sense == "at least" else value <= self.value
 
 
+def at_least(value: float, of: Literal["ratio", "ours"] = "ratio") -> Target:
+    """Return a lower bound on the ratio, or on our own number."""
+    return Target(of=of, sense="at least", value=value)
+
+
+def at_most(value: float, of: Literal["ratio", "ours"] = "ratio") -> Target:
+    """Return an upper bound on the ratio, or on our own number."""
+    return Target(of=of, sense="at most", value=value)
+
+
 class Record(_Frozen):
     """One number of ours, beside one of a peer where there is a peer."""
 
     name: str
     """What is measured, as the page's table says it; unique."""
-    comparison: str
+    comparison: str = ""
     """The comparison that measured it; `--only` names these."""
-    unit: str
+    unit: str = ""
     ours: float | None = None
     """Median over the rounds; `None` where it was not measured, and `note` says why."""
     ours_name: str = "faultpath"
@@ -50,12 +60,46 @@ class Record(_Frozen):
     met: bool | None = None
     note: str = ""
 
+    def judged(self) -> "Record":
+        """Return the record with its target looked at."""
+        value = self.ratio if self.target and self.target.of == "ratio" else self.ours
+        met = None if self.target is None or value is None else self.target.met_by(value)
+        return self.model_copy(update={"met": met})
+
+
+def record(
+    name: str,
+    unit: str,
+    ours: Sequence[float],
+    peer: Sequence[float] = (),
+    ratios: Sequence[float] = (),
+    **said: Any,
+) -> Record:
+    """Return the record of some rounds; `said` are further fields of it."""
+    spread = ratios or ours
+    several = len(spread) > 1
+    return Record(
+        name=name,
+        unit=unit,
+        ours=median(ours),
+        peer=median(peer) if peer else None,
+        ratio=median(ratios) if ratios else None,
+        low=min(spread) if several else None,
+        high=max(spread) if several else None,
+        **said,
+    ).judged()
+
+
+def unmeasured(name: str, reason: str, **said: Any) -> Record:
+    """Return a record without numbers that says why it has none."""
+    return Record(name=name, note=f"Not measured: {reason}", **said)
+
 
 class Curve(_Frozen):
     """How a time grows with the size of the work."""
 
     name: str
-    comparison: str
+    comparison: str = ""
     across: str
     """What the horizontal axis counts."""
     unit: str
@@ -86,42 +130,44 @@ class Results(_Frozen):
     """Everything in `results.json`."""
 
     machine: Machine
-    records: tuple[Record, ...]
-    curves: tuple[Curve, ...]
+    records: tuple[Record, ...] = ()
+    curves: tuple[Curve, ...] = ()
     apart: Mapping[str, Machine] = {}
     """What a comparison was measured on that was taken by itself, by its name."""
+    editions: Mapping[str, int] = {}
+    """Which edition of a comparison was measured, by its name, where it is not the first."""
 
     def replaced(
         self,
         machine: Machine,
         comparison: str,
-        records: Sequence[Record],
-        curves: Sequence[Curve],
+        found: Iterable[Record | Curve],
         apart: bool,
+        edition: int = 1,
     ) -> "Results":
         """Return these results with one comparison measured again, with all others or `apart`."""
-        kept = [record for record in self.records if record.comparison != comparison]
-        lines = [curve for curve in self.curves if curve.comparison != comparison]
+        here = [each.model_copy(update={"comparison": comparison}) for each in found]
+        kept = [each for each in (*self.records, *self.curves) if each.comparison != comparison]
         alone = {name: each for name, each in self.apart.items() if name != comparison}
-        if apart:
-            alone[comparison] = machine
+        older = {name: each for name, each in self.editions.items() if name != comparison}
         return Results(
             machine=self.machine if apart else machine,
-            records=(*kept, *records),
-            curves=(*lines, *curves),
-            apart=alone,
+            records=tuple(each for each in (*kept, *here) if isinstance(each, Record)),
+            curves=tuple(each for each in (*kept, *here) if isinstance(each, Curve)),
+            apart={**alone, comparison: machine} if apart else alone,
+            editions={**older, comparison: edition} if edition > 1 else older,
         )
 
 
-def load(path: Path = RESULTS) -> Results:
+def load() -> Results:
     """Read `results.json`."""
-    return Results.model_validate_json(path.read_bytes())
+    return Results.model_validate_json(RESULTS.read_bytes())
 
 
-def save(results: Results, path: Path = RESULTS) -> None:
+def save(results: Results) -> None:
     """Write `results.json`, six digits a number: more would only be noise."""
     content = _rounded(results.model_dump(mode="json"))
-    path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    RESULTS.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", "utf-8")
 
 
 def _rounded(content: object) -> object:

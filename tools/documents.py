@@ -32,8 +32,7 @@ from faultpath.door.saved import MADE_FROM
 from faultpath.selfcheck import Report, failures, page
 
 sys.path.insert(0, str(ROOT))
-from benchmarks.page import files as performance
-from benchmarks.results import load as measured
+from benchmarks import page as performance
 
 TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
 """All that `faultpath report` reads of a run folder and writes there."""
@@ -42,6 +41,7 @@ KINDS: Mapping[str, Callable[..., str]] = {
     **blocks.KINDS,
     "learning": learning_blocks.fill,
     "paper": paper_blocks.paper,
+    "performance": performance.fill,
     "platform": platform_blocks.fill,
 }
 """What fills a block, by its kind; takes the arguments that the block names."""
@@ -62,7 +62,7 @@ def statistics_check() -> Mapping[Path, str]:
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     statistics_check,
     learning_blocks.pictures,
-    lambda: performance(measured()),
+    performance.files,
 )
 """What makes whole files, by their path."""
 

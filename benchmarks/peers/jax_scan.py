@@ -5,15 +5,15 @@ differs between the two forms: features `[F, K]` or `[K, F]`.
 """
 
 from collections.abc import Sequence
+from types import SimpleNamespace
 
 import jax
 import jax.numpy as jnp
 import numpy as np
-from typing_extensions import override
 
 from benchmarks import problem
+from benchmarks.measure import Side
 from benchmarks.peers import rows
-from benchmarks.side import Side
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 
@@ -21,29 +21,19 @@ Array = jax.Array
 DT = CONTROL_DT_S
 
 
-class Scan(Side):
+def scan(layout: str = "FK") -> Side:
     """The rollout of one scene's 512 candidates: positions and velocities of every step."""
+    state = jnp.asarray(rows.initial().numpy())
+    start, code = state[: rows.CODE.start], state[rows.CODE]
+    commands = jnp.asarray(problem.commands()[:, :, 0].numpy())
+    rollout = jax.jit(_rollout(rows.RowsModel(), layout == "FK"))
 
-    def __init__(self, layout: str = "FK") -> None:
-        model = rows.RowsModel()
-        given = problem.inputs(1)
-        state = given.state
-        assert given.code is not None
-        self._commands = jnp.asarray(problem.commands()[:, :, 0].numpy())
-        parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate)
-        start = np.concatenate([part.reshape(-1).numpy() for part in parts])
-        self._start = jnp.asarray(start)
-        self._code = jnp.asarray(given.code.reshape(-1).numpy())
-        self._rollout = jax.jit(_rollout(model, layout == "FK"))
-
-    @override
-    def work(self) -> None:
-        jax.block_until_ready(self._rollout(self._start, self._code, self._commands))
-
-    def answer(self) -> Sequence[float]:
+    def answer() -> Sequence[float]:
         """Return positions `[3, H, 32]`, m."""
-        positions, _ = self._rollout(self._start, self._code, self._commands)
+        positions, _ = rollout(start, code, commands)
         return np.asarray(positions)[:, :, : problem.CHECKED].swapaxes(0, 1).ravel().tolist()
+
+    return Side(lambda: jax.block_until_ready(rollout(start, code, commands)), answer=answer)
 
 
 def _rollout(model: rows.RowsModel, feature_first: bool):
@@ -54,8 +44,8 @@ def _rollout(model: rows.RowsModel, feature_first: bool):
 
     cell = model.cell
     layers = [layer(part) for part in (model.embed, *(model.head[i] for i in (0, 2, 4)))]
-    from_input = layer(_Pair(cell.weight_ih, cell.bias_ih))
-    from_latent = layer(_Pair(cell.weight_hh, cell.bias_hh))
+    from_input = layer(SimpleNamespace(weight=cell.weight_ih, bias=cell.bias_ih))
+    from_latent = layer(SimpleNamespace(weight=cell.weight_hh, bias=cell.bias_hh))
     axis = 0 if feature_first else 1
     constant = [float(value) for value in model.constant]
     gain, weight_n = model.gain, model.weight_n
@@ -107,11 +97,6 @@ def _rollout(model: rows.RowsModel, feature_first: bool):
         return jax.lax.scan(step, carry, commands)[1]
 
     return run
-
-
-class _Pair:
-    def __init__(self, weight, bias) -> None:
-        self.weight, self.bias = weight, bias
 
 
 def _compose(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:

@@ -6,74 +6,49 @@ write, to show how much of the difference is the layout. `compiled` calls the li
 `compile`, which is torch.compile.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 
 import torch
 from pytorch_mppi import MPPI
 from torch import Tensor
-from typing_extensions import override
 
 from benchmarks import problem
+from benchmarks.measure import Side
 from benchmarks.peers import rows
-from benchmarks.planner import Rollout
-from benchmarks.side import Side
-from faultpath.quadrotor.planner import CostWeights, SamplerSettings
+from benchmarks.planning import rollout
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
 
 
-class Command(Side):
+def command(scenes: int = 1, layout: str = "rows", compiled: bool = False) -> Side:
     """`MPPI.command` for some scenes, one after the other; the unit is one scene's."""
+    model = rows.RowsModel()
+    centre, sigma, low, high = rows.actions()
+    planners = [
+        MPPI(
+            model if layout == "rows" else columns(),
+            lambda state, action: rows.cost(state),
+            nx=rows.STATE,
+            noise_sigma=torch.diag(sigma.square()),
+            num_samples=problem.CANDIDATES,
+            horizon=problem.HORIZON,
+            u_min=low,
+            u_max=high,
+            u_init=centre,
+            U_init=centre.repeat(problem.HORIZON, 1),
+        )
+        for _ in range(scenes)
+    ]
+    if compiled:
+        for planner in planners:
+            planner.compile()
+    state = rows.initial()
 
-    def __init__(self, scenes: int = 1, layout: str = "rows", compiled: bool = False) -> None:
-        torch.set_num_threads(1)
-        self.amount = scenes
-        self._layout = layout
-        self._step = rows.RowsModel() if layout == "rows" else None
-        self._state = rows.initial()
-        dynamics = self._step or columns()
-        hover = problem.inputs(1).trim.hover_thrust(GRAVITY_MPS2)[0, 0]
-        sampler, cost = SamplerSettings(), CostWeights()
-        sigma = torch.tensor([sampler.thrust_sigma * float(hover), *sampler.rate_sigma_radps])
-        limit = torch.tensor([2 * float(hover), *RATE_LIMIT_RADPS])
-        goal = torch.tensor(problem.GOAL_M)
-        plan = torch.zeros(problem.HORIZON, 4)
-        plan[:, 0] = hover
+    def work() -> None:
+        for planner in planners:
+            planner.command(state)
 
-        def running_cost(state: Tensor, action: Tensor) -> Tensor:
-            away = torch.linalg.vector_norm(state[:, rows.POSITION] - goal, dim=1)
-            speed = torch.linalg.vector_norm(state[:, rows.VELOCITY], dim=1)
-            return away + cost.speed * (speed - cost.v_max_mps).clamp_min(0).square()
-
-        low = torch.cat((torch.zeros(1), -limit[1:]))
-        self._planners = [
-            MPPI(
-                dynamics,
-                running_cost,
-                nx=rows.STATE,
-                noise_sigma=torch.diag(sigma.square()),
-                num_samples=problem.CANDIDATES,
-                horizon=problem.HORIZON,
-                u_min=low,
-                u_max=limit,
-                u_init=plan[0],
-                U_init=plan.clone(),
-            )
-            for _ in range(scenes)
-        ]
-        if compiled:
-            for planner in self._planners:
-                planner.compile()
-
-    @torch.inference_mode()
-    @override
-    def work(self) -> None:
-        for planner in self._planners:
-            planner.command(self._state)
-
-    def answer(self) -> Sequence[float]:
-        """Return positions `[3, H, 32]` of the dynamics that it is given, m."""
-        return Rollout().answer() if self._step is None else rows.positions(self._step)
+    own = layout == "rows"
+    return Side(work, scenes, (lambda: rows.positions(model)) if own else rollout().answer)
 
 
 def columns() -> Callable[[Tensor, Tensor], Tensor]:

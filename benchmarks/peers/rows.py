@@ -10,10 +10,16 @@ import torch
 from torch import Tensor, nn
 
 from benchmarks import problem
+from faultpath.quadrotor.planner import CostWeights, SamplerSettings
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
 from faultpath.quadrotor.predictors.network import LATENT, LatentNetwork
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath.quadrotor.vehicle import (
+    CONTROL_DT_S,
+    GRAVITY_MPS2,
+    NOMINAL_DRAG_KGPS,
+    RATE_LIMIT_RADPS,
+)
 
 STATE = 18 + LATENT
 POSITION, VELOCITY, ROTATION, RATE, CODE = (
@@ -51,7 +57,6 @@ class RowsModel(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        torch.set_num_threads(1)
         network: LatentNetwork = problem.model().network
         mean, std = network.feature_mean, network.feature_std
         self.embed = folded(
@@ -122,12 +127,33 @@ def initial() -> Tensor:
     return torch.cat([part.reshape(-1) for part in parts])
 
 
-def positions(step: "RowsModel") -> list[float]:
+@torch.inference_mode()
+def positions(step: RowsModel) -> list[float]:
     """Return the positions `[3, H, 32]` under the problem's candidates, m."""
     state = initial().expand(problem.CHECKED, -1)
     found = []
-    with torch.inference_mode():
-        for command in problem.commands()[:, :, 0, : problem.CHECKED]:
-            state = step(state, command.T)
-            found.append(state[:, POSITION].T)
+    for command in problem.commands()[:, :, 0, : problem.CHECKED]:
+        state = step(state, command.T)
+        found.append(state[:, POSITION].T)
     return torch.stack(found, 1).flatten().tolist()
+
+
+def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """Return centre, spread and bounds of the planner's commands, `[4]` each."""
+    hover = float(problem.inputs(1).trim.hover_thrust(GRAVITY_MPS2))
+    sampler = SamplerSettings()
+    centre = torch.tensor([hover, 0.0, 0.0, 0.0])
+    sigma = torch.tensor([sampler.thrust_sigma * hover, *sampler.rate_sigma_radps])
+    high = torch.tensor([2 * hover, *RATE_LIMIT_RADPS])
+    return centre, sigma, torch.cat((torch.zeros(1), -high[1:])), high
+
+
+_GOAL = torch.tensor(problem.GOAL_M)
+_WEIGHTS = CostWeights()
+
+
+def cost(state: Tensor) -> Tensor:
+    """Return the distance to the goal and the penalty on speed of states `[..., 50]`."""
+    away = torch.linalg.vector_norm(state[..., POSITION] - _GOAL, dim=-1)
+    speed = torch.linalg.vector_norm(state[..., VELOCITY], dim=-1)
+    return away + _WEIGHTS.speed * (speed - _WEIGHTS.v_max_mps).clamp_min(0).square()

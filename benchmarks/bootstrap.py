@@ -1,12 +1,9 @@
 """A paired bootstrap of 100 scenes and 3 seeds with 10,000 resamples, ours and SciPy's."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy.stats import bootstrap
-from typing_extensions import override
 
-from benchmarks.side import Side
+from benchmarks.measure import Side
 from faultpath.statistics import Resamples, success_effect
 from faultpath.streams import generator
 
@@ -19,53 +16,39 @@ def outcomes() -> tuple[np.ndarray, np.ndarray]:
     return draws.random((SCENES, SEEDS)) < 0.6, draws.random((SCENES, SEEDS)) < 0.7
 
 
-class Ours(Side):
+def ours(drawn: bool = False) -> Side:
     """Effect and interval; with `drawn`, on resamples that are there already."""
+    arms = outcomes()
 
-    def __init__(self, drawn: bool = False) -> None:
-        self._arms = outcomes()
-        self._kept = self._draw() if drawn else None
-
-    @override
-    def work(self) -> None:
-        self._estimate()
-
-    def answer(self) -> Sequence[float]:
-        """Return the ends of the interval, percentage points."""
-        return self._estimate()
-
-    def _draw(self) -> Resamples:
+    def draw() -> Resamples:
         return Resamples.draw("benchmark", SCENES, n_resamples=RESAMPLES)
 
-    def _estimate(self) -> tuple[float, float]:
-        resamples = self._kept or self._draw()
-        found = success_effect(*self._arms, resamples).estimate()
+    kept = draw() if drawn else None
+
+    def interval() -> tuple[float, float]:
+        """Return the ends of the interval, percentage points."""
+        found = success_effect(*arms, kept or draw()).estimate()
         assert found.low is not None
         assert found.high is not None
         return found.low, found.high
 
+    return Side(interval, answer=interval)
 
-class Scipy(Side):
+
+def scipy() -> Side:
     """`scipy.stats.bootstrap`, vectorised, on each scene's difference: the percentile interval.
 
     Resampling scenes with all their seeds is resampling the scenes' means.
     """
+    one, two = outcomes()
+    difference = 100.0 * (one.astype(float) - two.astype(float)).mean(1)
 
-    def __init__(self) -> None:
-        one, two = outcomes()
-        self._difference = 100.0 * (one.astype(float) - two.astype(float)).mean(1)
-
-    @override
-    def work(self) -> None:
-        self._interval()
-
-    def answer(self) -> Sequence[float]:
+    def interval() -> tuple[float, float]:
         """Return the ends of the interval, percentage points."""
-        return self._interval()
-
-    def _interval(self) -> tuple[float, float]:
         found = bootstrap(
-            (self._difference,), np.mean, n_resamples=RESAMPLES, method="percentile",
+            (difference,), np.mean, n_resamples=RESAMPLES, method="percentile",
             vectorized=True, rng=np.random.default_rng(0),
         )  # fmt: skip
         return found.confidence_interval.low, found.confidence_interval.high
+
+    return Side(interval, answer=interval)
