@@ -3,14 +3,18 @@
 On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
 """
 
+import shutil
 from pathlib import Path
 
 import pytest
 
+import faultpath
+from faultpath.cli import report
 from faultpath.cli.reproduce import tell
 from faultpath.door.display import Display
 from faultpath.door.reproducing import carry_out
 from faultpath.door.reproduction import ReproductionRun
+from faultpath.errors import UserError
 from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
 from faultpath.studies.pages import figure_2, table_4
 from faultpath.studies.run import Plan
@@ -74,6 +78,28 @@ def test_the_same_command_again_flies_nothing(done: ReproductionRun) -> None:
     provenance = (again.folder / "provenance.json").read_text("utf-8")
     assert '"blocks_computed": 0' in provenance
     assert again.record.tables == done.record.tables
+
+
+def test_the_folder_opens_as_it_was_left(done: ReproductionRun) -> None:
+    again = faultpath.open_run(done.folder)
+    assert isinstance(again, ReproductionRun)
+    assert again.record == done.record
+    assert again.folder == done.folder
+
+
+@pytest.mark.parametrize("name", ["reproduction.json", "outcomes.parquet", "deliveries.json"])
+def test_a_file_that_was_changed_since_is_named(
+    done: ReproductionRun, name: str, tmp_path: Path
+) -> None:
+    copy = shutil.copytree(done.folder, tmp_path / "received")
+    (copy / name).write_bytes((copy / name).read_bytes() + b"\n")
+    with pytest.raises(UserError, match=rf"{name} changed since the run"):
+        faultpath.open_run(copy)
+
+
+def test_a_reproduction_is_not_reported_as_an_audit(done: ReproductionRun) -> None:
+    with pytest.raises(UserError, match="holds a reproduction, whose pages stand in it"):
+        report.command(done.folder)
 
 
 def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:

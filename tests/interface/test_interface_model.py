@@ -81,6 +81,10 @@ def test_unknown_name_is_a_users_mistake(look_up: object, sentence: str) -> None
             "that it reads, known modules: predictor",
         ),
         (
+            {"sources": (MASS, WIND), "reconstructs": {"predictor": ["observed_wind"] * 2}},
+            "reconstructs: module 'predictor': source 'observed_wind' is declared twice; drop one",
+        ),
+        (
             {"reconstructs": {"predictor": "wind"}},
             "reconstructs: unknown source 'wind'; known: mass_estimate",
         ),

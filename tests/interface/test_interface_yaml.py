@@ -17,7 +17,6 @@ from faultpath.interface import (
     Source,
     Uncertainty,
     interface_yaml,
-    json_schema,
     read_interface,
 )
 
@@ -213,6 +212,6 @@ def test_deep_nesting_is_told() -> None:
 
 
 def test_schema_describes_a_file() -> None:
-    schema = json_schema()
+    schema = Interface.model_json_schema()
     assert set(schema["required"]) == {"name", "sources", "channels"}
     assert json.loads(json.dumps(schema)) == schema

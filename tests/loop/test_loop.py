@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from loop_toys import FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
+from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
 
-from faultpath.errors import SystemMistake, UserError
-from faultpath.faults import parse_fault
+from faultpath.errors import SystemMistake
+from faultpath.faults import Fault, Scale, parse_fault
+from faultpath.interface import interface_yaml, read_interface, transitive_consumers
 from faultpath.loop import Batch, Loop, Module, Port, Trace, consumers, graph
 from faultpath.loop import interface_of as derived
 from faultpath.taps import IllegalRead, MalformedReading, Taps
@@ -193,7 +194,7 @@ def test_the_interface_follows_from_the_ports() -> None:
     parts = (Guess(), Planner(), Line())
     interface = interface_of(parts)
     assert interface.channel("action").consumers == ("observer.executed", "line.motor")
-    assert interface.reconstructs == {"observer": "guess"}
+    assert interface.reconstructs == {"observer": ("guess",)}
     every = {name for channel in interface.channels for name in channel.consumers}
     assert every == set(consumers(parts))
     with pytest.raises(SystemMistake, match=r"does not list observer\.other"):
@@ -213,15 +214,53 @@ def test_facts_that_list_readers_keep_their_list() -> None:
     assert derived(facts, (Guess(),)).channel("position").consumers == ("a.b",)
 
 
-def test_a_module_reconstructs_one_source():
-    class Both(Guess):
-        writes = ("guess", "spare")
+def test_a_filter_reconstructs_position_and_velocity():
+    class Filter(Module):
+        """Holds where the vehicle was, and differences that."""
 
-    facts = FACTS.replace(
-        "channels:", "- {name: spare, unit: m, provenance: reconstructed}\nchannels:"
+        name, writes = "filter", ("guess", "speed")
+        reads = frozenset({Port("position", "seen")})
+
+        def begin(self, batch):
+            return np.full(len(batch.scenes), np.nan)
+
+        def step(self, inputs, memory):
+            seen = inputs["position", "seen"]
+            gone = np.where(np.isnan(memory), 0.0, seen - memory)
+            return {"guess": seen, "speed": gone / DT_S}, seen.copy()
+
+    class Pilot(Module):
+        """Orders what the filter says of the speed, and one more."""
+
+        name, writes = "pilot", ("order",)
+        reads = frozenset({Port("guessed", "start"), Port("velocity", "feedback")})
+
+        def __init__(self):
+            self.speeds = []
+
+        def step(self, inputs, memory):
+            self.speeds.append(inputs["velocity", "feedback"].tolist())
+            return {"order": np.ones_like(inputs["guessed", "start"])}, memory
+
+    facts = FACTS % ""
+    facts = facts.replace(
+        "- {name: field,", "- {name: speed, unit: m/s, provenance: reconstructed}\n- {name: field,"
+    ).replace("- {name: clearance, sources: [field]}", "- {name: velocity, sources: [speed]}")
+    pilot = Pilot()
+    parts = (Filter(), pilot, Line())
+    interface = derived(facts, parts)
+    assert interface.reconstructs == {"filter": ("guess", "speed")}
+    assert read_interface(interface_yaml(interface)) == interface
+    assert transitive_consumers(interface, "position") == (
+        "filter.seen",
+        "pilot.start",
+        "pilot.feedback",
     )
-    with pytest.raises(UserError, match="'observer' writes the reconstructed sources 'guess' and"):
-        derived(facts % "", (Both(), Planner(), Line()))
+    scaled = Fault(channel="position", intervention=Scale(factor=2.0))
+    taps = Taps(interface, [scaled], scenes=SCENES, dt_s=DT_S)
+    list(Loop(interface, graph(interface, Line(), parts[:2])).execute(_batch(), taps))
+    assert pilot.speeds[0] == [0.0, 0.0]
+    assert np.allclose(pilot.speeds[1:], 2.0 / DT_S)  # a metre a step, seen as two
 
 
 def test_a_loop_is_executed_as_often_as_wanted_and_ends_where_nothing_runs():

@@ -68,7 +68,7 @@ def test_the_declared_reconstructions_are_what_modules_write(systems):
         for source in module.writes
         if declared.source(source).provenance is Provenance.RECONSTRUCTED
     }
-    assert set(declared.reconstructs.items()) == made
+    assert set(declared.reconstructions) == made
 
 
 def test_a_variants_consumers_follow_from_its_ports(systems):

@@ -25,7 +25,7 @@ def command(
     """Print a system's information interface, and draw it."""
     from faultpath.door.display import SafeConsole
     from faultpath.errors import UserError
-    from faultpath.interface import interface_yaml, json_schema
+    from faultpath.interface import Interface, interface_yaml
     from faultpath.report import draw_interface, interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
@@ -41,7 +41,7 @@ def command(
     for place, text in (
         (svg, lambda: draw_interface(built.interface)),
         (yaml, lambda: interface_yaml(built.interface)),
-        (schema, lambda: json.dumps(json_schema(), indent=2) + "\n"),
+        (schema, lambda: json.dumps(Interface.model_json_schema(), indent=2) + "\n"),
     ):
         if place is not None:
             write_text(place, text())

@@ -17,7 +17,10 @@ def command(
     if not (folder / "provenance.json").exists():
         raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
 
-    from faultpath.door.run import open_run
+    from faultpath.door.run import Run, open_run
 
-    for written in open_run(folder).report():
+    run = open_run(folder)
+    if not isinstance(run, Run):
+        raise UserError(f"{folder} holds a reproduction, whose pages stand in it: give an audit.")
+    for written in run.report():
         typer.echo(written)

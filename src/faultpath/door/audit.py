@@ -115,7 +115,8 @@ def audit(
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.carrying_out import carry_out
-    from faultpath.door.run import open_run
+    from faultpath.door.run import Run
+    from faultpath.door.saved import read_run
 
     if folder is None:
         place, other = _folder(asked, chosen, library, scenes)
@@ -129,7 +130,7 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s)
-    run = open_run(place)
+    run = Run(place, read_run(place))
     run.report()
     return run
 

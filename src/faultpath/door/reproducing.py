@@ -5,6 +5,7 @@ from pathlib import Path
 
 from faultpath.door.display import Display
 from faultpath.door.reproduced import ReproductionRun
+from faultpath.door.saved import DELIVERIES
 from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
@@ -50,7 +51,7 @@ def carry_out(
     result = save(place, flown, results, evidence, found)
     _tell_failures(told, result)
     backend = plan.system.backend
-    files = seal(place, RESULTS)
+    files = seal(place, (*RESULTS, DELIVERIES))
     provenance = run_provenance(result, stopwatch, told.command, workers, backend, files)
     write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
     _write_pages(place, plan, found, provenance, flown)

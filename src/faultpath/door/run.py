@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from faultpath.door.saved import read_run
+from faultpath.door.saved import RECORD, read_provenance, read_run
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import ReportInput, notebook_view, write_report
@@ -18,6 +18,8 @@ from faultpath.trials import Status
 
 if TYPE_CHECKING:
     import pandas
+
+    from faultpath.door.reproduced import ReproductionRun
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -79,11 +81,15 @@ class Run:
         return notebook_view(self.record)
 
 
-def open_run(folder: str | PathLike[str]) -> Run:
-    """Open the folder of a finished audit, one's own or anybody's.
+def open_run(folder: str | PathLike[str]) -> "Run | ReproductionRun":
+    """Open the folder of a finished audit or reproduction, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
-    Raises `UserError` for a folder that holds no finished audit, or a damaged or changed one.
+    Raises `UserError` for a folder that holds neither, or a damaged or changed one.
     """
     place = Path(folder)
-    return Run(place, read_run(place))
+    if RECORD in read_provenance(place).files or not (place / "reproduction.json").exists():
+        return Run(place, read_run(place))
+    from faultpath.door.reproduced import read_reproduction
+
+    return read_reproduction(place)

@@ -31,14 +31,19 @@ _Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")
 
 
+def read_provenance(folder: Path) -> RunProvenance:
+    """Read how a run was made, with the digests of its files; `UserError` without a sound one."""
+    place = folder / "provenance.json"
+    return _parsed(read_regular(place), place, RunProvenance)
+
+
 def read_run(folder: Path) -> ReportInput:
     """Read all that the pages of a run are made from.
 
     Every file is compared with the digest in `provenance.json` first. `UserError` for a file that
     is missing, damaged or changed, and for files that do not belong together.
     """
-    place = folder / "provenance.json"
-    provenance = _parsed(read_regular(place), place, RunProvenance)
+    provenance = read_provenance(folder)
     held = unseal(folder, provenance.files, MADE_FROM)
     record = _parsed(held[RECORD], folder / RECORD, DecisionRecord)
     shown = _parsed(held[SYSTEM], folder / SYSTEM, SystemShown)

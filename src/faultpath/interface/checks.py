@@ -1,7 +1,9 @@
-"""What must hold between the parts of an interface; each refusal says where and what to do."""
+"""An interface whose parts fit each other; each refusal says where and what to do."""
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Self
 
+from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from faultpath.arrays import misfit
@@ -16,19 +18,24 @@ Where = tuple[str | int, ...]
 
 
 def _refuse(where: Where, sentence: str) -> PydanticCustomError:
+    """Return an error with the path to the part in its context, for the line in a file."""
     return PydanticCustomError("interface", "{sentence}", {"sentence": sentence, "where": where})
 
 
-def check_interface(interface: Declared) -> None:
-    """Raise a pydantic error, with the path to the part in its context, unless all fits."""
-    _check_unique("source", (s.name for s in interface.sources), "sources")
-    _check_unique("channel", (c.name for c in interface.channels), "channels")
-    _check_groups(interface)
-    known = {source.name: source for source in interface.sources}
-    for index, channel in enumerate(interface.channels):
-        _check_channel(known, channel, ("channels", index))
-    _check_reconstructions(interface)
-    _check_cycles(interface)
+class Interface(Declared):
+    """All sources and channels of a system, and which modules produce sources themselves."""
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        _check_unique("source", (s.name for s in self.sources), "sources")
+        _check_unique("channel", (c.name for c in self.channels), "channels")
+        _check_groups(self)
+        known = {source.name: source for source in self.sources}
+        for index, channel in enumerate(self.channels):
+            _check_channel(known, channel, ("channels", index))
+        _check_reconstructions(self)
+        _check_cycles(self)
+        return self
 
 
 def _check_unique(what: str, names: Iterable[str], *where: str | int) -> None:
@@ -71,9 +78,11 @@ def _check_channel(known: Mapping[str, Source], channel: Channel, where: Where) 
 
 
 def _check_reconstructions(interface: Declared) -> None:
+    for module, names in interface.reconstructs.items():
+        _check_unique(f"reconstructs: module '{module}': source", names, "reconstructs", module)
     known = {source.name: source for source in interface.sources}
     readers = {consumer.split(".")[0] for c in interface.channels for consumer in c.consumers}
-    for module, name in interface.reconstructs.items():
+    for module, name in interface.reconstructions:
         here = ("reconstructs", module)
         if module not in readers:
             raise _refuse(
@@ -89,7 +98,7 @@ def _check_reconstructions(interface: Declared) -> None:
                 f"reconstructs: module '{module}' produces source '{name}', whose provenance is "
                 f"{known[name].provenance}; make it reconstructed",
             )
-    produced = set(interface.reconstructs.values())
+    produced = {name for _, name in interface.reconstructions}
     for index, source in enumerate(interface.sources):
         if source.provenance == "reconstructed" and source.name not in produced:
             raise _refuse(
@@ -103,8 +112,13 @@ def _check_cycles(interface: Declared) -> None:
     """Look at every module and every read once, however they are joined."""
     read_by = readers(interface)
     below = {
-        module: [reader for reader in read_by.get(source, ()) if reader in interface.reconstructs]
-        for module, source in interface.reconstructs.items()
+        module: [
+            reader
+            for name in names
+            for reader in read_by.get(name, ())
+            if reader in interface.reconstructs
+        ]
+        for module, names in interface.reconstructs.items()
     }
     done: set[str] = set()
     for start in below:

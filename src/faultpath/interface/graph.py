@@ -5,10 +5,8 @@ channel's faults on to everything that reads its output.
 """
 
 from collections import deque
-from collections.abc import Mapping
-from dataclasses import dataclass
 
-from faultpath.interface.model import Declared
+from faultpath.interface.model import Channel, Declared
 
 
 def module_of(consumer: str) -> str:
@@ -21,62 +19,33 @@ def modules(interface: Declared) -> tuple[str, ...]:
     return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.consumers))
 
 
-def feeds(
-    interface: Declared, module: str, bindings: Mapping[str, str] | None = None
-) -> tuple[str, ...]:
-    """Return the modules that read what `module` reconstructs.
-
-    With `bindings` (channel to source) only the channels bound to that source count; without,
-    every channel that the source may feed.
-    """
-    produced = interface.reconstructs.get(module)
-    return () if produced is None else readers(interface, bindings).get(produced, ())
-
-
-def readers(
-    interface: Declared, bindings: Mapping[str, str] | None = None
-) -> dict[str, tuple[str, ...]]:
-    """Return the modules that read each source, in the order of declaration; `bindings` as above.
-
-    In one pass, for whoever asks about many modules.
-    """
+def readers(interface: Declared) -> dict[str, tuple[str, ...]]:
+    """Return the modules that read each source, in the order of declaration."""
     found: dict[str, dict[str, None]] = {}
-    for source, fed in _fed(interface, bindings).items():
-        names = (name for index in fed for name in interface.channels[index].consumers)
-        found[source] = dict.fromkeys(map(module_of, names))
+    for channel in interface.channels:
+        names = dict.fromkeys(map(module_of, channel.consumers))
+        for source in channel.sources:
+            found.setdefault(source, {}).update(names)
     return {source: tuple(names) for source, names in found.items()}
 
 
-def _fed(interface: Declared, bindings: Mapping[str, str] | None) -> dict[str, list[int]]:
-    """Return, for each source, the places of the channels that it feeds."""
-    found: dict[str, list[int]] = {}
-    for index, channel in enumerate(interface.channels):
-        for source in (bindings[channel.name],) if bindings else channel.sources:
-            found.setdefault(source, []).append(index)
-    return found
-
-
-def direct_consumers(interface: Declared, channel: str) -> tuple[str, ...]:
-    """Return the consumers that read `channel` itself; raises `UserError` for an unknown name."""
-    return interface.channel(channel).consumers
-
-
-def transitive_consumers(
-    interface: Declared, channel: str, bindings: Mapping[str, str] | None = None
-) -> tuple[str, ...]:
+def transitive_consumers(interface: Declared, channel: str) -> tuple[str, ...]:
     """Return the consumers that a fault on `channel` reaches, directly or through reconstructions.
 
-    `bindings` as in `feeds`. Raises `UserError` for an unknown name.
+    Raises `UserError` for an unknown name.
     """
+    fed: dict[str, list[int]] = {}
+    for index, each in enumerate(interface.channels):
+        for source in each.sources:
+            fed.setdefault(source, []).append(index)
     reached: dict[str, None] = {}
-    fed = _fed(interface, bindings)
     waiting = deque([interface.channel(channel)])
     seen, followed = {channel}, set[str]()
     while waiting:
         here = waiting.popleft()
         reached.update(dict.fromkeys(here.consumers))
-        produced = {interface.reconstructs.get(module_of(name), "") for name in here.consumers}
-        fresh = produced - followed
+        made_by = interface.reconstructs.get
+        fresh = {made for c in here.consumers for made in made_by(module_of(c), ())} - followed
         followed |= fresh
         for index in sorted({index for source in fresh for index in fed.get(source, ())}):
             other = interface.channels[index]
@@ -86,46 +55,21 @@ def transitive_consumers(
     return tuple(reached)
 
 
-@dataclass(frozen=True)
-class Ranked:
-    """One channel's place in the order of audit."""
-
-    channel: str
-    transitive: int
-    """Consumers that a fault reaches."""
-    direct: int
-    """Consumers that read the channel itself."""
-    weight: float | None
-    """Probe response where one was given, else the expected uncertainty of the first source."""
-
-
-def rank(interface: Declared, responses: Mapping[str, float] | None = None) -> tuple[Ranked, ...]:
+def rank(interface: Declared) -> tuple[Channel, ...]:
     """Return the channels, the one to audit first in front.
 
-    By consumer count, then by `responses` (channel to probe response at the expected deployment
-    uncertainty) or, without them, by the expected relative uncertainty; unknown counts last. Paper,
-    section "Propose Repairs, Then Audit Their Composition".
+    By how many consumers a fault reaches, how many read the channel itself, and the expected
+    relative uncertainty of its first source, where an unknown one counts least (paper, section
+    "Propose Repairs, Then Audit Their Composition").
     """
 
-    def ranked(name: str, source: str) -> Ranked:
-        expected = interface.source(source).expected_uncertainty
-        return Ranked(
-            channel=name,
-            transitive=len(transitive_consumers(interface, name)),
-            direct=len(direct_consumers(interface, name)),
-            weight=expected if responses is None else responses.get(name),
-        )
+    def order(channel: Channel) -> tuple[int, int, float, str]:
+        expected = interface.source(channel.sources[0]).expected_uncertainty
+        reach = len(transitive_consumers(interface, channel.name))
+        weight = -1.0 if expected is None else expected
+        return -reach, -len(channel.consumers), -weight, channel.name
 
-    found = [ranked(channel.name, channel.sources[0]) for channel in interface.channels]
-    found.sort(
-        key=lambda r: (
-            -r.transitive,
-            -r.direct,
-            -(r.weight if r.weight is not None else -1.0),
-            r.channel,
-        )
-    )
-    return tuple(found)
+    return tuple(sorted(interface.channels, key=order))
 
 
 def groups(interface: Declared) -> dict[str, tuple[str, ...]]:

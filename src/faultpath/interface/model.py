@@ -13,8 +13,10 @@ from typing import Annotated, Self
 from pydantic import (
     AfterValidator,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
+    PlainSerializer,
     StringConstraints,
     model_validator,
 )
@@ -35,6 +37,22 @@ def _readable(text: str) -> str:
             raise ValueError(f"holds the control character U+{ord(character):04X}")
     return text
 
+
+def _several(given: object) -> object:
+    return (given,) if isinstance(given, str) else given
+
+
+def _briefly(names: tuple[str, ...]) -> str | list[str]:
+    return names[0] if len(names) == 1 else list(names)
+
+
+Made = Annotated[
+    tuple[Name, ...],
+    Field(min_length=1),
+    BeforeValidator(_several, json_schema_input_type=Name | tuple[Name, ...]),
+    PlainSerializer(_briefly, when_used="json"),
+]
+"""Sources that a module produces."""
 
 Words = Annotated[str, AfterValidator(_readable)]
 """Text for people: line breaks, but no other control characters."""
@@ -142,8 +160,13 @@ class Declared(_Frozen):
     name: Name
     sources: tuple[Source, ...]
     channels: tuple[Channel, ...]
-    reconstructs: dict[Name, Name] = Field(default_factory=dict[str, str])
-    """Module to the source that it produces."""
+    reconstructs: dict[Name, Made] = Field(default_factory=dict[str, tuple[str, ...]])
+    """Module to the sources that it produces; a file may name a single one without a list."""
+
+    @property
+    def reconstructions(self) -> tuple[tuple[str, str], ...]:
+        """Each module that produces a source, with the source."""
+        return tuple((module, made) for module, all_ in self.reconstructs.items() for made in all_)
 
     def source(self, name: str) -> Source:
         """Return the source called `name`; raises `UserError` with the known names."""

@@ -10,7 +10,7 @@ from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from faultpath.errors import UserError
-from faultpath.interface.interface import Interface
+from faultpath.interface.checks import Interface
 
 _DEEPEST = 12
 _LONGEST = 1_000_000
@@ -51,11 +51,6 @@ def interface_yaml(interface: Interface) -> str:
     return yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=100)
 
 
-def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of an interface file, for editors and other tools."""
-    return Interface.model_json_schema()
-
-
 def _read(path: Path) -> bytes:
     """Read a file, but no device or pipe: those may have no end."""
     if path.exists() and not path.is_file():
@@ -92,18 +87,11 @@ def _completed(
     for channel in _dicts(data, "channels"):
         if "consumers" not in channel and channel.get("name") in consumers:
             channel["consumers"] = list(consumers[channel["name"]])
-    made: dict[str, str] = {}
+    made: dict[str, list[str]] = {}
     for source in _dicts(data, "sources"):
         name: str = source["name"]
-        if source.get("provenance") != "reconstructed" or name not in writers:
-            continue
-        if writers[name] in made:
-            raise UserError(
-                f"module '{writers[name]}' writes the reconstructed sources "
-                f"'{made[writers[name]]}' and '{name}', and an interface holds one a module: "
-                "make it two modules"
-            )
-        made[writers[name]] = name
+        if source.get("provenance") == "reconstructed" and name in writers:
+            made.setdefault(writers[name], []).append(name)
     if made:  # so it is a mapping
         data.setdefault("reconstructs", made)
     return data

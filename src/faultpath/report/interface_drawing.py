@@ -36,7 +36,7 @@ def draw_interface(
     where one variant alone was struck; the key stands below.
     """
     layout, wiring = lay_out(interface), Wiring(variants)
-    lanes = len(interface.reconstructs)
+    lanes = len(interface.reconstructions)
     key_top = layout.bottom + 18 + _LANE * lanes + (12 if lanes else 0)
     width = _TAP_X + _BLOCK_W + 14 + _LANE * max(lanes, 1)
     height = key_top + 28 + 20 * (len(struck) + bool(variants))
@@ -204,7 +204,7 @@ def _groups(svg: Svg, interface: Interface, layout: Layout) -> None:
 def _reconstructions(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring) -> None:
     """Lead what a module reconstructs round the drawing, back to the source it makes."""
     tops = {block.name: block.top for block in layout.modules}
-    for lane, (module, source) in enumerate(interface.reconstructs.items()):
+    for lane, (module, source) in enumerate(interface.reconstructions):
         right = _TAP_X + _BLOCK_W + 10 + _LANE * lane
         below = layout.bottom + 14 + _LANE * lane
         left, start, end = 6.0 + 5 * lane, tops[module] + 14, layout.sources[source]

@@ -16,12 +16,9 @@ def interface_table(interface: Interface) -> RenderableType:
         corner="channel",
         columns=columns,
         words=columns,
-        lines=tuple(_line(interface, interface.channel(at.channel)) for at in rank(interface)),
+        lines=tuple(_line(interface, channel) for channel in rank(interface)),
     )
-    made = [
-        Text(f"{module} reconstructs {source}.")
-        for module, source in interface.reconstructs.items()
-    ]
+    made = [Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions]
     return Group(drawn(table), *made)
 
 

@@ -241,7 +241,8 @@ def _check_digests(folder: Path) -> None:
         raise UserError(
             f"{place} is damaged or from another version of faultpath: reproduce the paper again."
         ) from None
-    unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **provenance.files}, ())
+    named = {name: digest for name, digest in provenance.files.items() if name in RESULTS}
+    unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **named}, ())
 
 
 def _gallery(library: Library) -> tuple[SceneShown, ...]:
