@@ -115,13 +115,14 @@ function drawHeight(host, scene, pair, step, data) {
   const { low, high } = Flight.bounds({ plan: null }, pair);
   const bottom = Math.min(0, Math.floor(low[2])), top = Math.max(Math.ceil(high[2]), bottom + 1);
   const last = Math.max(...Flight.arms.map((arm) => Flight.steps(pair[arm].track_cm))) - 1 || 1;
-  const x = (i) => 34 + (i / last) * (w - 46), y = (z) => h - 22 - ((z - bottom) / (top - bottom)) * (h - 44);
+  const left = 34, right = w - 24;  // beside the last step stays room for half of its label
+  const x = (i) => left + (i / last) * (right - left), y = (z) => h - 22 - ((z - bottom) / (top - bottom)) * (h - 44);
   for (const z of [bottom, top]) {
-    Draw.node(svg, "line", { x1: 34, x2: w - 12, y1: y(z), y2: y(z), class: "v-line" });
+    Draw.node(svg, "line", { x1: left, x2: right, y1: y(z), y2: y(z), class: "v-line" });
     Draw.node(svg, "text", { x: 28, y: y(z) + 4, "text-anchor": "end", class: "v-text soft" }, String(z).replace("-", "−"));
   }
-  Draw.node(svg, "text", { x: 34, y: 13, class: "v-text soft" }, "height, m");
-  const every = [0.5, 1, 2, 5].find((s) => (s / data.dt_s / last) * (w - 46) > 44) ?? 10;
+  Draw.node(svg, "text", { x: left, y: 13, class: "v-text soft" }, "height, m");
+  const every = [0.5, 1, 2, 5].find((s) => (s / data.dt_s / last) * (right - left) > 44) ?? 10;
   for (let t = 0; t <= last * data.dt_s + 1e-9; t += every) {
     Draw.node(svg, "text", { x: x(t / data.dt_s), y: h - 6, "text-anchor": "middle", class: "v-text soft" }, `${t} s`);
   }
