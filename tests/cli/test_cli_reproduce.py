@@ -16,7 +16,7 @@ from faultpath.door.reproducing import carry_out
 from faultpath.door.reproduction import ReproductionRun
 from faultpath.errors import UserError
 from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
-from faultpath.studies.pages import figure_2, table_4
+from faultpath.studies.pages import FIGURE_2, table_4
 from faultpath.studies.run import Plan
 from faultpath.tables import MISSING
 
@@ -108,7 +108,7 @@ def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFix
 
 
 def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
-    drawn = Plan((figure_2.PAGE,), QUICK, {HELD_OUT: SELECTION})
+    drawn = Plan((FIGURE_2,), QUICK, {HELD_OUT: SELECTION})
     done = carry_out(drawn, tmp_path, 0, TOLD)
     page = (done.folder / "reproduction.html").read_text("utf-8")
     assert (done.record.trials, done.record.flown) == (0, None)

@@ -58,7 +58,7 @@ def test_an_empty_run_leaves_every_claim_undecided() -> None:
 
 
 def test_a_run_of_some_pages_answers_what_it_is_about(published_run: Results) -> None:
-    cells = set(table_4.CELLS)
+    cells = set(table_4.PAGE.cells)
     rows = [row for row in published_run.outcomes.rows if row.path in {c.path for c in cells}]
     some = Results(OutcomeTable(tuple(rows)), EvidenceTable({}), "toy")
     found = ledger(some, "toy", "hash", SCENES, (0, 1, 2), only_run=True)
@@ -124,7 +124,7 @@ def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
         turned = seed == 2 and cell.variant == "gru+dcc"
         return mirrored(cell, seed, scene) if turned else as_published(cell, seed, scene)
 
-    run = Results(trials(table_4.CELLS, ends, range(SCENES)), None, "toy")
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
     seeds = STATEMENTS["C26"][1].part(run)
     assert (seeds.answer, seeds.estimate) == ("refuted", 2)
 
@@ -147,7 +147,7 @@ def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: 
         lost = cell == table_4.cell("gru", "shared") and seed == 1 and scene in (0, 60)
         return Status.FAILED if lost else as_published(cell, seed, scene)
 
-    run = Results(trials(table_4.CELLS, ends, range(SCENES)), None, "toy")
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
     found = STATEMENTS["C26"][0].quantity(run)
     assert found.n_scenes == SCENES - 2
 

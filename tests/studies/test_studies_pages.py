@@ -26,7 +26,7 @@ from faultpath.evidence import EvidenceTable
 from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
 from faultpath.studies.entries import printed
-from faultpath.studies.pages import PAGES, figure_1, in_text, table_4
+from faultpath.studies.pages import FIGURE_1, PAGES, in_text, table_4
 from faultpath.studies.published import published
 from faultpath.tables import MISSING, Table
 from faultpath.trials import OutcomeTable
@@ -55,10 +55,17 @@ def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
 
 def test_every_result_of_the_text_has_a_page() -> None:
     flown = {(cell.side, seed) for cell in CELLS for seed in cell.seeds}
-    needed = {(cell.side, seed) for cell in in_text.CELLS for seed in cell.seeds}
+    named = [each for each in vars(in_text).values() if isinstance(each, Cell)]
+    made = [in_text.noisy(model, e) for model in ("wm-a", "wm-a+dcc") for e in in_text.ERRORS]
+    windy = [in_text.noisy_wind(variant) for variant in ("gru", "zero-wind")]
+    cells = (*named, *made, *windy, *in_text.CEILING, *in_text.OTHER_PLANNERS.values())
+    assert len(named) > 7
     # Configurations without wind count with their first seed; Table I flies the others.
-    assert needed <= flown
-    assert set(in_text.MEASUREMENTS) <= set(MEASUREMENTS)
+    assert {(cell.side, seed) for cell in cells for seed in cell.seeds} <= flown
+    responses = {
+        in_text.response(model, probe) for model in ("wm-a", "wm-a+dcc") for probe in in_text.PROBES
+    }
+    assert responses | set(map(in_text.windy_error, in_text.WINDY_SUBJECTS)) <= set(MEASUREMENTS)
 
 
 def test_names_of_pages_and_of_their_parts_are_unique() -> None:
@@ -68,9 +75,8 @@ def test_names_of_pages_and_of_their_parts_are_unique() -> None:
 
 
 def test_figure_1_shows_the_contrast_that_reverses() -> None:
-    assert (figure_1.REPAIR, figure_1.BASELINE) == ("gru+dcc", "gru")
-    assert {cell.path for cell in figure_1.CELLS} == {
-        table_4.cell("gru", path).path for path in table_4.PATHS
+    assert set(FIGURE_1.cells) == {
+        table_4.cell(method, path) for method in ("gru+dcc", "gru") for path in table_4.PATHS
     }
 
 

@@ -9,12 +9,12 @@ from faultpath.evidence import EvidenceTable
 from faultpath.record import Reproduction
 from faultpath.studies import flights, stand_in
 from faultpath.studies.cells import HELD_OUT, PAPER, QUICK, SELECTION, Cell, Profile, calibration
+from faultpath.studies.entries import Group, centimetres, success
 from faultpath.studies.flights import Flown, Pace
-from faultpath.studies.page import Page
+from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import PAGES, table_1, table_2
 from faultpath.studies.results import Results
 from faultpath.studies.run import Plan, conclude, measure_all, plan, read_results, save
-from faultpath.tables import Table
 
 TINY = Profile("tiny", scenes=2, seeds=(0,))
 NOMINAL = table_2.cell("wm-a", 0.0)
@@ -22,12 +22,12 @@ FAULTY = table_2.cell("wm-a", 0.1)
 ERROR = table_2.error_under(0.1)
 
 
-def table(results: Results) -> tuple[Table, ...]:
-    return (Table(name="one", title="One", columns=("Success, %",), lines=()),)
+def table(*groups: Group) -> TableSpec:
+    return TableSpec("one", "One", ("Success, %",), tuple(Row("", (group,)) for group in groups))
 
 
-ONE = Page("one", "One", (NOMINAL, FAULTY), (ERROR,), table)
-TWO = Page("two", "Two", (NOMINAL,), (), table)
+ONE = Page("one", "One", (table(success(NOMINAL), success(FAULTY), centimetres(ERROR)),))
+TWO = Page("two", "Two", (table(success(NOMINAL)),))
 
 
 def a_plan(*pages: Page) -> Plan:

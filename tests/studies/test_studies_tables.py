@@ -162,12 +162,12 @@ def test_table_6_averages_the_medians_of_the_seeds() -> None:
     def value(measurement: Measurement) -> float:
         return 1.0 + measurement.seed
 
-    evidence = measured(table_6.MEASUREMENTS, value)
+    evidence = measured(table_6.PAGE.measurements, value)
     table = tables(page("table-6"), run(won(calibrated), evidence=evidence))["table-6a"]
     assert texts(line(table, "GRU")) == ["2.00"] * 4
     assert texts(line(table, "DOB")) == ["1.00"] * 4
     assert texts(line(table, "GRU, wind term alone")) == ["", "2.00", "", "2.00"]
-    first = measured([m for m in table_6.MEASUREMENTS if m.seed == 0], value)
+    first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
     table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
     assert texts(line(table, "GRU")) == ["1.00"] * 4
 

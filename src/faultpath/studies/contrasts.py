@@ -1,13 +1,14 @@
 """Contrasts as entries: difference in success, its interval, and who won how often."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 
 from faultpath.report import wording
 from faultpath.studies.cells import Cell
-from faultpath.studies.entries import bracket, interval, success
-from faultpath.studies.results import Contrast, NotRun, Results
-from faultpath.tables import MISSING, Entry, Line
+from faultpath.studies.entries import Figure, Group, Made, bracket, success
+from faultpath.studies.page import Columns, Row
+from faultpath.studies.results import Contrast
+from faultpath.tables import MISSING, Entry
 
 ROWS = ("Difference", "95 % interval", "Wins:losses")
 COLUMNS = (
@@ -17,7 +18,7 @@ COLUMNS = (
     "p",
     "Least detectable (pp)",
 )
-"""Headings of what `contrast_entries` returns: the first as rows, or all as columns."""
+"""Headings of what `difference` makes: the first as rows, or all as columns."""
 COMPARED = ("First (%)", "Second (%)", *COLUMNS)
 """Headings of what `comparison` returns."""
 
@@ -48,76 +49,55 @@ def published_contrasts(
     )
 
 
-def attempt(make: Callable[[], Sequence[Entry]], published: Sequence[str]) -> tuple[Entry, ...]:
-    """Return entries that are made together, beside the paper's; dashes where nothing was run."""
-    try:
-        ours = make()
-    except NotRun:
-        ours = [Entry(text=MISSING)] * len(published)
-    return tuple(
-        entry.model_copy(update={"published": text})
-        for entry, text in zip(ours, published, strict=True)
-    )
-
-
-def contrast_entries(
-    results: Results,
+def difference(
     first: Cell,
     second: Cell,
     published: PublishedContrast = UNPUBLISHED,
     *,
     other_noise: bool = False,
-) -> tuple[Entry, ...]:
-    """Return difference, interval, wins:losses, p-value and least detectable difference."""
-    return attempt(
-        lambda: _entries(results.contrast(first, second, other_noise=other_noise)),
+) -> Group:
+    """Difference, interval, wins:losses, p-value and least detectable difference of two cells."""
+    return Group(
+        lambda results: _entries(results.contrast(first, second, other_noise=other_noise)),
         astuple(published),
+        (first, second),
     )
 
 
-def contrast_lines(
-    results: Results,
-    pairs: Iterable[tuple[Cell, Cell]],
-    published: Sequence[PublishedContrast],
-) -> tuple[Line, ...]:
+def differences(
+    pairs: Iterable[tuple[Cell, Cell]], published: Sequence[PublishedContrast]
+) -> Columns:
     """Return the rows that `ROWS` names, with a column for each pair of cells."""
-    columns = [
-        contrast_entries(results, first, second, paper)[: len(ROWS)]
-        for (first, second), paper in zip(pairs, published, strict=True)
-    ]
-    rows = zip(*columns, strict=True)
-    return tuple(
-        Line(label=label, entries=entries) for label, entries in zip(ROWS, rows, strict=True)
-    )
+    columns = zip(pairs, published, strict=True)
+    return Columns(ROWS, tuple(difference(*pair, paper) for pair, paper in columns))
 
 
 def comparison(
-    results: Results,
     label: str,
     first: Cell,
     second: Cell,
-    rates: tuple[str, str] = ("", ""),
+    papers: tuple[Figure, Figure] = ("", ""),
     published: PublishedContrast = UNPUBLISHED,
     *,
     other_noise: bool = False,
-) -> Line:
-    """Return the success of two cells and their contrast as one row; `rates` are the paper's."""
-    return Line(
-        label=label,
-        entries=(
-            success(rates[0], results, first),
-            success(rates[1], results, second),
-            *contrast_entries(results, first, second, published, other_noise=other_noise),
+) -> Row:
+    """Return the success of two cells and their contrast as one row; `papers` are its rates."""
+    return Row(
+        label,
+        (
+            success(first, papers[0]),
+            success(second, papers[1]),
+            difference(first, second, published, other_noise=other_noise),
         ),
     )
 
 
-def _entries(contrast: Contrast) -> tuple[Entry, ...]:
+def _entries(contrast: Contrast) -> Made:
     least = contrast.detectable.value
     return (
         Entry(text=wording.signed(contrast.success.value), detected=bool(contrast.detected_sign)),
-        interval(contrast.success),
-        Entry(text=str(contrast.counts)),
-        Entry(text=wording.p_value(contrast.test.p_value)),
-        Entry(text="none" if least is None else wording.plain(least)),
+        wording.interval(contrast.success) or MISSING,
+        str(contrast.counts),
+        wording.p_value(contrast.test.p_value),
+        "none" if least is None else wording.plain(least),
     )

@@ -1,42 +1,54 @@
-"""Entries of tables: our figure as text beside the paper's, and a dash where the run has none."""
+"""Entries of tables as data: what each is made of, how, and the paper's figure beside it."""
 
 from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
-from typing import Concatenate, ParamSpec
+from dataclasses import dataclass
 
 from faultpath.evidence import Measurement
 from faultpath.report import wording
-from faultpath.statistics import Estimate
-from faultpath.studies.cells import Cell
+from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.quantities.found import Quantity, Undecidable
-from faultpath.studies.quantities.windows import quantile
+from faultpath.studies.quantities.windows import mean_of_medians
 from faultpath.studies.results import NotRun, Results
 from faultpath.tables import MISSING, Entry
 from faultpath.trials import Status
 
-P = ParamSpec("P")
+Made = Sequence[Entry | str]
+Figure = float | str
+"""A figure of the paper: as text, or as the number that it prints; empty where it prints none."""
 
-BLANK = Entry(text="")
+
+@dataclass(frozen=True)
+class Group:
+    """Entries that are made together: dashes, all of them, where a run does not hold them."""
+
+    make: Callable[[Results], Made]
+    published: tuple[str, ...] = ("",)
+    """The paper's figures, one an entry."""
+    cells: tuple[Cell, ...] = ()
+    measurements: tuple[Measurement, ...] = ()
+
+    def entries(self, results: Results) -> tuple[Entry, ...]:
+        """Return our figures beside the paper's."""
+        try:
+            ours = self.make(results)
+        except (NotRun, Undecidable):
+            ours = [MISSING] * len(self.published)
+        entries = (Entry(text=each) if isinstance(each, str) else each for each in ours)
+        return tuple(
+            entry.model_copy(update={"published": paper})
+            for entry, paper in zip(entries, self.published, strict=True)
+        )
+
+
+BLANK = Group(lambda results: ("",))
 """Where a column has nothing to say of a line."""
 
 
-def guarded(make: Callable[P, Entry]) -> Callable[Concatenate[str, P], Entry]:
-    """Give `make` the paper's text as first argument, and a dash for ours where it has no trial."""
-
-    @wraps(make)
-    def entry(published: str, /, *args: P.args, **named: P.kwargs) -> Entry:
-        try:
-            made = make(*args, **named)
-        except NotRun:
-            made = Entry(text=MISSING)
-        return made.model_copy(update={"published": published})
-
-    return entry
-
-
-def printed(value: float, digits: int = 1) -> str:
+def printed(figure: Figure, digits: int = 1) -> str:
     """Return a figure of the paper as it prints it: a whole one without digits."""
-    return wording.plain(value, 0 if isinstance(value, int) else digits)
+    if isinstance(figure, str):
+        return figure
+    return wording.plain(figure, 0 if isinstance(figure, int) else digits)
 
 
 def bracket(ends: Sequence[float], digits: int = 1) -> str:
@@ -45,79 +57,98 @@ def bracket(ends: Sequence[float], digits: int = 1) -> str:
     return f"[{wording.plain(low, digits)}, {wording.plain(high, digits)}]"
 
 
-@guarded
-def success(results: Results, cell: Cell) -> Entry:
+def success(cell: Cell, paper: Figure = "") -> Group:
     """Success in percent: one decimal for a mean over seeds, none for one seed, as in the paper."""
-    rate = results.rate(cell)
-    return Entry(text=wording.plain(rate.value, 1 if rate.n_seeds > 1 else 0))
+
+    def make(results: Results) -> Made:
+        rate = results.rate(cell)
+        return (wording.plain(rate.value, 1 if rate.n_seeds > 1 else 0),)
+
+    return Group(make, (printed(paper),), (cell,))
 
 
-@guarded
-def seed_range(results: Results, cell: Cell) -> Entry:
+def seed_range(cell: Cell, ends: Sequence[int]) -> Group:
     """Least and greatest success of a seed, percent."""
-    per_seed = results.rate(cell).per_seed or ()
-    ends = dict.fromkeys(wording.plain(end(per_seed), 0) for end in (min, max))
-    return Entry(text="–".join(ends))
+
+    def make(results: Results) -> Made:
+        per_seed = results.rate(cell).per_seed or ()
+        return ("–".join(dict.fromkeys(wording.plain(end(per_seed), 0) for end in (min, max))),)
+
+    return Group(make, ("–".join(map(str, ends)),), (cell,))
 
 
-@guarded
-def ended(results: Results, cell: Cell, status: Status) -> Entry:
+def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
     """Share of seed 0's trials that ended in a way, percent; failed trials do not count."""
-    counts = results.counts(cell)
-    flown = sum(counts.values()) - counts[Status.FAILED]
-    if not flown:
-        raise NotRun(f"a trial of {results.named(cell)} that did not fail")
-    return Entry(text=wording.plain(100 * counts[status] / flown, 0))
+
+    def make(results: Results) -> Made:
+        counts = results.counts(cell)
+        flown = sum(counts.values()) - counts[Status.FAILED]
+        if not flown:
+            raise NotRun(f"a trial of {results.named(cell)} that did not fail")
+        return (wording.plain(100 * counts[status] / flown, 0),)
+
+    return Group(make, (printed(paper),), (of_seed(cell),))
 
 
-@guarded
-def successes(results: Results, cell: Cell, scenes: Iterable[int]) -> Entry:
-    """Successful scenes among those of some indices, seed by seed, such as `14/15/14`."""
-    pairs = results.contrast(cell, cell, scenes=tuple(scenes)).pairs
-    return Entry(text="/".join(map(str, pairs.first.success.sum(axis=0))))
-
-
-@guarded
-def time(results: Results, cell: Cell) -> Entry:
+def time(cell: Cell, paper: float) -> Group:
     """Median time of seed 0's successful trials, s."""
-    return Entry(text=wording.plain(results.median_time(cell), 2))
+    return Group(
+        lambda results: (wording.plain(results.median_time(cell), 2),),
+        (printed(paper, 2),),
+        (of_seed(cell),),
+    )
+
+
+def successes(cell: Cell, scenes: Iterable[int], paper: int | Sequence[int]) -> Group:
+    """Successful scenes among those of some indices, seed by seed, such as `14/15/14`."""
+    indices, counts = tuple(scenes), (paper,) if isinstance(paper, int) else paper
+
+    def make(results: Results) -> Made:
+        pairs = results.contrast(cell, cell, scenes=indices).pairs
+        return ("/".join(map(str, pairs.first.success.sum(axis=0))),)
+
+    return Group(make, ("/".join(map(str, counts)),), (cell,))
+
+
+def measured(
+    by_seed: Iterable[Measurement], paper: Figure = "", *, times: float = 1.0, digits: int = 2
+) -> Group:
+    """Mean over seeds of the median over windows, in `times` its unit."""
+    subject = tuple(by_seed)
+    return Group(
+        lambda results: (wording.plain(times * mean_of_medians(results, subject), digits),),
+        (printed(paper, digits),),
+        measurements=subject,
+    )
+
+
+def centimetres(measurement: Measurement, paper: Figure = "") -> Group:
+    """Median over windows of a distance, cm."""
+    return measured((measurement,), paper, times=100, digits=1)
 
 
 def of_quantity(
-    results: Results,
     quantity: Quantity,
+    cells: Iterable[Cell] = (),
+    measurements: Iterable[Measurement] = (),
     published: tuple[str, str] = ("", ""),
     digits: int = 1,
     *,
     times: float = 1.0,
-) -> tuple[Entry, Entry]:
-    """Return a difference that claims may be decided by, in `times` its unit, and its interval.
+) -> Group:
+    """A difference that claims may be decided by, in `times` its unit, and its interval.
 
     Bold is a detected difference in success: all others are secondary.
     """
-    try:
+
+    def make(results: Results) -> Made:
         found = quantity(results)
-    except (NotRun, Undecidable):
-        one, two = (Entry(text=MISSING, published=paper) for paper in published)
-        return one, two
-    value, ends = MISSING, MISSING
-    if found.value is not None:
-        value = wording.signed(times * found.value, digits)
-    if found.interval is not None:
-        ends = bracket([times * end for end in found.interval], digits)
-    bold = found.unit == "pp" and bool(found.detected)
-    return (
-        Entry(text=value, published=published[0], detected=bold),
-        Entry(text=ends, published=published[1]),
-    )
+        value, ends = MISSING, MISSING
+        if found.value is not None:
+            value = wording.signed(times * found.value, digits)
+        if found.interval is not None:
+            ends = bracket([times * end for end in found.interval], digits)
+        bold = found.unit == "pp" and bool(found.detected)
+        return Entry(text=value, detected=bold), ends
 
-
-def interval(estimate: Estimate, digits: int = 1) -> Entry:
-    """Return the interval of an estimate."""
-    return Entry(text=wording.interval(estimate, digits) or MISSING)
-
-
-@guarded
-def centimetres(results: Results, measurement: Measurement, q: float = 0.5) -> Entry:
-    """A quantile over windows of a distance, cm."""
-    return Entry(text=wording.plain(100 * quantile(results, measurement, q)))
+    return Group(make, published, tuple(cells), tuple(measurements))

@@ -5,45 +5,34 @@ equivalence.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from itertools import combinations
 
 from faultpath.studies.cells import Cell, of_seed
-from faultpath.studies.contrasts import (
-    COLUMNS,
-    UNPUBLISHED,
-    PublishedContrast,
-    contrast_entries,
-)
-from faultpath.studies.notes import INTERVALS, LEAST, WINS, flown
-from faultpath.studies.page import Built, Page
+from faultpath.studies.contrasts import COLUMNS, UNPUBLISHED, PublishedContrast, difference
+from faultpath.studies.notes import INTERVALS, LEAST, WINS
+from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import in_text, table_1, table_2, table_3, table_4, table_6
-from faultpath.studies.results import Results
-from faultpath.tables import Line, Table
-
-TITLE = "Detection sensitivity of contrasts without a detected difference"
 
 
-@dataclass(frozen=True)
-class Undetected:
-    """A contrast in which the paper detects no difference, or whose interval there includes 0."""
+def _row(
+    label: str,
+    first: Cell,
+    second: Cell,
+    paper: PublishedContrast = UNPUBLISHED,
+    *,
+    other_noise: bool = False,
+) -> Row:
+    return Row(label, (difference(first, second, paper, other_noise=other_noise),))
 
-    label: str
-    first: Cell
-    second: Cell
-    published: PublishedContrast = UNPUBLISHED
-    other_noise: bool = False
-    """As `Results.contrast` takes it."""
 
-
-def _predictors() -> Iterator[Undetected]:
+def _predictors() -> Iterator[Row]:
     names = dict(zip(table_1.PREDICTORS, ("DKI", "WM-A", "WM-U", "true-parameter"), strict=True))
     for first, second in combinations(table_1.PREDICTORS, 2):
         label = f"{names[first]} minus {names[second]}, seed 0"
-        yield Undetected(label, of_seed(first), of_seed(second))
+        yield _row(label, of_seed(first), of_seed(second))
     nominal = table_2.ERRORS.index(0.0)
     for repair, baseline in table_2.PAIRS:
-        yield Undetected(
+        yield _row(
             f"{table_2.NAMES[repair]} minus {table_2.NAMES[baseline]}, correct calibration",
             table_2.cell(repair, 0.0),
             table_2.cell(baseline, 0.0),
@@ -51,24 +40,24 @@ def _predictors() -> Iterator[Undetected]:
         )
 
 
-def _wind() -> Iterator[Undetected]:
+def _wind() -> Iterator[Row]:
     for environment in table_3.ENVIRONMENTS:
         where = environment.replace("-", " ")
         for level in ("L2", "L3"):
-            yield Undetected(
+            yield _row(
                 f"Zero wind input minus wind-withheld, {where}, {level}",
                 table_3.cell(table_3.ZERO, environment, level),
                 table_3.cell(table_3.WITHHELD, environment, level),
             )
-        yield Undetected(
+        yield _row(
             f"GRU minus ground-truth wind, {where}, L3",
             table_3.cell(table_3.GRU, environment, "L3"),
             table_3.cell(table_3.TRUE, environment, "L3"),
         )
 
 
-def _shared_calibration() -> Iterator[Undetected]:
-    yield Undetected(
+def _shared_calibration() -> Iterator[Row]:
+    yield _row(
         "GRU, shared error minus correct",
         table_4.cell("gru", "shared"),
         table_4.cell("gru", "correct"),
@@ -76,56 +65,41 @@ def _shared_calibration() -> Iterator[Undetected]:
     papers = table_4.published_methods("dob", "gru")
     for path, paper in zip(table_4.PATHS, papers, strict=True):
         first, second = table_4.cell("dob", path), table_4.cell("gru", path)
-        yield Undetected(f"DOB minus GRU, {path}", first, second, paper)
+        yield _row(f"DOB minus GRU, {path}", first, second, paper)
     for path, paper in zip(table_6.NEGATIVE, table_6.published_negative(), strict=True):
         if path != "correct":
             first, second = table_6.negative("gru+dcc", path), table_6.negative("gru", path)
-            yield Undetected(f"GRU+DCC minus GRU, e = −0.1, {path}, seed 0", first, second, paper)
+            yield _row(f"GRU+DCC minus GRU, e = −0.1, {path}, seed 0", first, second, paper)
 
 
-def _others() -> Iterator[Undetected]:
-    yield Undetected(
+def _others() -> Iterator[Row]:
+    yield _row(
         "History code of WM-A+DCC frozen minus updated",
         in_text.CODE_FROZEN,
         of_seed(in_text.CODE_UPDATED),
     )
-    yield Undetected(
+    yield _row(
         "History code of the wind-withheld model frozen minus updated",
         in_text.WITHHELD_FROZEN,
         in_text.WITHHELD_UPDATED,
     )
     for label, planner in in_text.OTHER_PLANNERS.items():
-        yield Undetected(
+        yield _row(
             f"{label} minus 512 candidates", planner, in_text.REFERENCE_PLANNER, other_noise=True
         )
 
 
-CONTRASTS = (*_predictors(), *_wind(), *_shared_calibration(), *_others())
-CELLS = tuple(cell for contrast in CONTRASTS for cell in (contrast.first, contrast.second))
-
-
-def build(results: Results) -> Built:
-    """Return the table."""
-    table = Table(
-        name="detection-sensitivity",
-        title=TITLE,
-        columns=COLUMNS,
-        lines=tuple(
-            Line(
-                label=each.label,
-                entries=contrast_entries(
-                    results,
-                    each.first,
-                    each.second,
-                    each.published,
-                    other_noise=each.other_noise,
-                ),
-            )
-            for each in CONTRASTS
+TITLE = "Detection sensitivity of contrasts without a detected difference"
+PAGE = Page(
+    "detection-sensitivity",
+    TITLE,
+    (
+        TableSpec(
+            name="detection-sensitivity",
+            title=TITLE,
+            columns=COLUMNS,
+            rows=(*_predictors(), *_wind(), *_shared_calibration(), *_others()),
+            notes=("{flown}", LEAST, WINS, INTERVALS),
         ),
-        notes=(flown(results, CELLS), LEAST, WINS, INTERVALS),
-    )
-    return (table,)
-
-
-PAGE = Page("detection-sensitivity", TITLE, CELLS, (), build)
+    ),
+)

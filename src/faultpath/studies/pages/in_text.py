@@ -36,7 +36,8 @@ WITHHELD_FROZEN = Cell(SELECTION_FREE_L3, table_3.WITHHELD, (FREEZE_CODE,))
 CALIBRATION_WITHHELD = Cell(table_4.WINDY, "gru-withheld", seeds=SEEDS)
 
 CEILING = (
-    *table_1.CELLS,
+    *table_1.PREDICTORS,
+    *table_1.WITH_TRUE_CLEARANCE,
     table_2.cell("wm-a+dcc", 0.0),
     table_2.cell("wm-u+dcc", 0.0),
 )
@@ -86,23 +87,4 @@ WINDY_SUBJECTS = (
     "wm-a-wind/true-wind",
     table_3.WITHHELD,
     "wm-a-wind/zero-wind",
-)
-
-CELLS = (
-    *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
-    *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),
-    WIND_UPDATED,
-    WIND_FROZEN,
-    CODE_UPDATED,
-    CODE_FROZEN,
-    WITHHELD_UPDATED,
-    WITHHELD_FROZEN,
-    CALIBRATION_WITHHELD,
-    *CEILING,
-    REFERENCE_PLANNER,
-    *OTHER_PLANNERS.values(),
-)
-MEASUREMENTS = (
-    *(response(subject, probe) for subject in ("wm-a", "wm-a+dcc") for probe in PROBES),
-    *map(windy_error, WINDY_SUBJECTS),
 )

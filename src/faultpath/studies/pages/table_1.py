@@ -2,23 +2,24 @@
 
 from faultpath.evidence import Measurement, Recording
 from faultpath.report import wording
-from faultpath.studies.cells import SEEDS, Cell, Setting, of_seed
+from faultpath.studies.cells import SEEDS, Cell, Setting
 from faultpath.studies.entries import (
+    Group,
+    Made,
     centimetres,
     ended,
-    guarded,
     of_quantity,
     printed,
     seed_range,
     time,
 )
-from faultpath.studies.notes import INTERVALS, WINDOWS, flown, recorded
-from faultpath.studies.page import Built, Page
+from faultpath.studies.notes import INTERVALS, WINDOWS
+from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.published import published
 from faultpath.studies.quantities.differences import time as time_difference
 from faultpath.studies.quantities.windows import quantile
 from faultpath.studies.results import Results
-from faultpath.tables import MISSING, Entry, Line, Table
+from faultpath.tables import MISSING
 from faultpath.trials import Status
 
 STILL = Setting()
@@ -34,8 +35,6 @@ PREDICTORS = (DKI, WM_A, WM_U, TRUE_PARAMETER)
 WM_A_SEEN = Cell(SEEN_THROUGH, "wm-a")
 TRUE_PARAMETER_SEEN = Cell(SEEN_THROUGH, "true-parameter")
 WITH_TRUE_CLEARANCE = (WM_A_SEEN, TRUE_PARAMETER_SEEN)
-
-CELLS = (*PREDICTORS, *WITH_TRUE_CLEARANCE)
 
 
 def recording(cell: Cell) -> Recording:
@@ -60,99 +59,100 @@ def own_error(cell: Cell) -> Measurement:
     return Measurement(recording=recording(cell), quantity="position-error", subject=cell.variant)
 
 
-MEASUREMENTS = (*map(common_error, PREDICTORS), *map(own_error, CELLS))
-
 TITLE = "Prediction accuracy and closed-loop performance of four predictors"
-_PUBLISHED = "table_1_prediction_accuracy"
-_ROWS = {"DKI": DKI, "WM-A": WM_A, "WM-U": WM_U, "true-parameter": TRUE_PARAMETER}
-_SEEN_ROWS = {
-    "WM-A/true-clearance": WM_A_SEEN,
-    "true-parameter/true-clearance": TRUE_PARAMETER_SEEN,
-}
+_PAPER = published("table_1_prediction_accuracy")
 
 
-def build(results: Results) -> Built:
-    """Return Table I, and the comparisons that the paper prints below it."""
-    main = Table(
-        name="table-1",
-        title=f"{TITLE} (paper, Table I)",
-        columns=(
-            "Error, common (cm)",
-            "Error, own (cm)",
-            "Success (%)",
-            "Crash (%)",
-            "Timeout (%)",
-            "Time (s)",
-        ),
-        lines=(
-            *(_line(results, key, cell) for key, cell in _ROWS.items()),
-            Line(label="With ground-truth clearance"),
-            *(_line(results, key, cell) for key, cell in _SEEN_ROWS.items()),
-        ),
-        notes=(
-            flown(results, map(of_seed, CELLS)),
-            f"{WINDOWS} Common: on trajectories flown with the true-parameter model; own: on those "
-            "that the row itself flew.",
-            f"Common: {recorded(results, map(common_error, PREDICTORS))}",
-            "Time: median over successful trials.",
-        ),
-    )
-    below = Table(
-        name="table-1-below",
-        title="Span of errors, paired times and seeds (paper, Table I, below)",
-        columns=("Value",),
-        lines=_below(results),
-        notes=(
-            flown(results, PREDICTORS),
-            "Times: median of the differences within jointly successful scenes, n of them, seed 0.",
-            INTERVALS,
-        ),
-    )
-    return main, below
-
-
-def _line(results: Results, key: str, cell: Cell) -> Line:
-    paper = published(_PUBLISHED, key)
-    return Line(
-        label=key.partition("/")[0].replace("true", "True"),
-        entries=(
-            centimetres(printed(paper["error_common_cm"]), results, common_error(cell)),
-            centimetres(printed(paper["error_own_cm"]), results, own_error(cell)),
-            ended(printed(paper["success"]), results, cell, Status.SUCCESS),
-            ended(printed(paper["crash"]), results, cell, Status.CRASH),
-            ended(printed(paper["timeout"]), results, cell, Status.TIMEOUT),
-            time(printed(paper["time_s"], 2), results, cell),
+def _row(key: str, cell: Cell) -> Row:
+    paper = _PAPER[key]
+    ends = (Status.SUCCESS, Status.CRASH, Status.TIMEOUT)
+    return Row(
+        key.partition("/")[0].replace("true", "True"),
+        (
+            centimetres(common_error(cell), paper["error_common_cm"]),
+            centimetres(own_error(cell), paper["error_own_cm"]),
+            *(ended(cell, status, paper[status.value]) for status in ends),
+            time(cell, paper["time_s"]),
         ),
     )
 
 
-def _below(results: Results) -> tuple[Line, ...]:
-    span = printed(published(_PUBLISHED, "error_span"))
-    lines = [Line(label="Largest to smallest common error", entries=(_span(span, results),))]
-    for key in ("DKI", "true-parameter"):
-        paper = published(_PUBLISHED, "paired_time_minus_WM-A_s", key)
-        text = f"{wording.signed(paper['median'], 2)} (n = {paper['n']})"
-        found = _time(text, results, _ROWS[key])
-        lines.append(Line(label=f"Time, {key} minus WM-A (s)", entries=(found,)))
-    for key in ("WM-A", "WM-U"):
-        low, high = published(_PUBLISHED, "success_range_over_seeds", key)
-        found = seed_range(f"{low}–{high}", results, _ROWS[key])
-        lines.append(Line(label=f"Success of {key} over seeds (%)", entries=(found,)))
-    return tuple(lines)
+def _later(key: str, cell: Cell) -> Row:
+    """Median difference in time to WM-A over jointly successful scenes, s, with their number."""
+    quantity, paper = time_difference(cell, WM_A), _PAPER["paired_time_minus_WM-A_s"][key]
+
+    def make(results: Results) -> Made:
+        value, ends = of_quantity(quantity, digits=2).entries(results)
+        return (f"{value.text} {ends.text} (n = {quantity(results).n_scenes})",)
+
+    printed_by_paper = f"{wording.signed(paper['median'], 2)} (n = {paper['n']})"
+    group = Group(make, (printed_by_paper,), (cell, WM_A))
+    return Row(f"Time, {key} minus WM-A (s)", (group,))
 
 
-@guarded
-def _time(results: Results, cell: Cell) -> Entry:
-    """Median difference in time over jointly successful scenes, s, with their number."""
-    found = time_difference(cell, WM_A)(results)
-    value, ends = of_quantity(results, lambda _: found, digits=2)
-    return Entry(text=f"{value.text} {ends.text} (n = {found.n_scenes})")
-
-
-@guarded
-def _span(results: Results) -> Entry:
+def _span(results: Results) -> Made:
     errors = [quantile(results, common_error(cell)) for cell in PREDICTORS]
-    return Entry(text=wording.plain(max(errors) / min(errors)) if min(errors) else MISSING)
+    return (wording.plain(max(errors) / min(errors)) if min(errors) else MISSING,)
 
 
-PAGE = Page("table-1", TITLE, CELLS, MEASUREMENTS, build)
+_SPAN = Group(
+    _span, (printed(_PAPER["error_span"]),), measurements=tuple(map(common_error, PREDICTORS))
+)
+
+PAGE = Page(
+    "table-1",
+    TITLE,
+    (
+        TableSpec(
+            name="table-1",
+            title=f"{TITLE} (paper, Table I)",
+            columns=(
+                "Error, common (cm)",
+                "Error, own (cm)",
+                "Success (%)",
+                "Crash (%)",
+                "Timeout (%)",
+                "Time (s)",
+            ),
+            rows=(
+                _row("DKI", DKI),
+                _row("WM-A", WM_A),
+                _row("WM-U", WM_U),
+                _row("true-parameter", TRUE_PARAMETER),
+                Row("With ground-truth clearance"),
+                _row("WM-A/true-clearance", WM_A_SEEN),
+                _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
+            ),
+            notes=(
+                "{flown}",
+                f"{WINDOWS} Common: on trajectories flown with the true-parameter model; own: on "
+                "those that the row itself flew.",
+                "Common: {recorded}",
+                "Time: median over successful trials.",
+            ),
+        ),
+        TableSpec(
+            name="table-1-below",
+            title="Span of errors, paired times and seeds (paper, Table I, below)",
+            columns=("Value",),
+            rows=(
+                Row("Largest to smallest common error", (_SPAN,)),
+                _later("DKI", DKI),
+                _later("true-parameter", TRUE_PARAMETER),
+                *(
+                    Row(
+                        f"Success of {key} over seeds (%)",
+                        (seed_range(cell, _PAPER["success_range_over_seeds"][key]),),
+                    )
+                    for key, cell in (("WM-A", WM_A), ("WM-U", WM_U))
+                ),
+            ),
+            notes=(
+                "{flown}",
+                "Times: median of the differences within jointly successful scenes, n of them, "
+                "seed 0.",
+                INTERVALS,
+            ),
+        ),
+    ),
+)

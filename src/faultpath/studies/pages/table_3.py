@@ -3,16 +3,13 @@
 The paper averages some rows over three seeds; all others use the first.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 from faultpath.studies.cells import SEEDS, Cell, Setting
-from faultpath.studies.entries import printed, success, successes
-from faultpath.studies.notes import EVERY_NOISE, flown
-from faultpath.studies.page import Built, Page
+from faultpath.studies.entries import successes
+from faultpath.studies.notes import EVERY_NOISE
+from faultpath.studies.page import Page, Row, Rows, TableSpec, rates
 from faultpath.studies.published import published
-from faultpath.studies.results import Results
-from faultpath.tables import Line, Table
 
 LEVELS = ("L0", "L2", "L3")
 ENVIRONMENTS = ("free-space", "obstacles")
@@ -45,103 +42,72 @@ def cell(variant: str, environment: str, level: str) -> Cell:
     return Cell(setting, variant, seeds=seeds)
 
 
-ROWS = (WITHHELD, ZERO, TRAJECTORY, GRU, TRUE)
-CELLS = tuple(
-    cell(variant, environment, level)
-    for environment in ENVIRONMENTS
-    for variant in ROWS
-    for level in LEVELS
-)
-MEASUREMENTS = ()
+ROWS = {
+    WITHHELD: ("Wind-withheld, no input", "wind-withheld/none"),
+    ZERO: ("Wind-conditioned, zero", "wind-conditioned/zero"),
+    TRAJECTORY: ("Wind-conditioned, trajectory GRU", "wind-conditioned/trajectory-GRU"),
+    GRU: ("Wind-conditioned, GRU", "wind-conditioned/GRU"),
+    TRUE: ("Wind-conditioned, ground truth", "wind-conditioned/ground-truth"),
+}
+"""Label and published key of every variant."""
 
 TITLE = "Success under wind, with and without obstacles"
-_PUBLISHED = "table_3_wind"
+_PAPER = published("table_3_wind")
 _HEADINGS = {"free-space": "Free space", "obstacles": "Obstacles"}
-_KEYS = {
-    WITHHELD: "wind-withheld/none",
-    ZERO: "wind-conditioned/zero",
-    TRAJECTORY: "wind-conditioned/trajectory-GRU",
-    GRU: "wind-conditioned/GRU",
-    TRUE: "wind-conditioned/ground-truth",
-}
-_LABELS = {
-    WITHHELD: "Wind-withheld, no input",
-    ZERO: "Wind-conditioned, zero",
-    TRAJECTORY: "Wind-conditioned, trajectory GRU",
-    GRU: "Wind-conditioned, GRU",
-    TRUE: "Wind-conditioned, ground truth",
-}
 
 
-def build(results: Results) -> Built:
-    """Return Table III and its subset of winds that the trajectory GRU never met."""
-    main = Table(
-        name="table-3",
-        title=f"{TITLE} (paper, Table III)",
-        columns=tuple(f"{level} (%)" for level in LEVELS),
-        lines=tuple(line for environment in ENVIRONMENTS for line in _levels(results, environment)),
-        notes=(
-            flown(results, CELLS),
-            "A figure with a decimal is a mean over seeds; the others are of seed 0. Among "
-            "obstacles at L3 every row is such a mean here; in the paper only those of the "
-            f"reconstructions are. {EVERY_NOISE}",
-            "At L0 the true wind is zero; those entries are the zero-input runs.",
-        ),
-    )
-    subset = Table(
-        name="table-3-unseen",
-        title="Winds that the trajectory GRU was not trained on, L3 (paper, Table III, below)",
-        columns=tuple(_HEADINGS[environment] for environment in ENVIRONMENTS),
-        lines=_unseen(results),
-        notes=(
-            f"Successful scenes among those with indices {UNSEEN[0]}–{UNSEEN[-1]}. Trajectory GRU: "
-            "seed by seed; the others: seed 0.",
-        ),
-    )
-    return main, subset
-
-
-def _levels(results: Results, environment: str) -> tuple[Line, ...]:
-    papers = published(_PUBLISHED, environment.replace("-", "_"))
+def _levels(environment: str) -> Rows:
+    papers = _PAPER[environment.replace("-", "_")]
     rows = (
-        Line(
-            label=_LABELS[variant],
-            entries=tuple(
-                success(printed(value), results, cell(variant, environment, level))
-                for value, level in zip(papers[_KEYS[variant]], LEVELS, strict=True)
-            ),
+        rates(label, (cell(variant, environment, level) for level in LEVELS), papers[key])
+        for variant, (label, key) in ROWS.items()
+    )
+    return Row(_HEADINGS[environment]), *rows
+
+
+def _unseen(variant: str, key: str, seeds: tuple[int, ...]) -> Row:
+    papers = _PAPER["unseen_wind_subset_L3"][key]
+    groups = (
+        successes(
+            replace(cell(variant, environment, "L3"), seeds=seeds),
+            UNSEEN,
+            papers[environment.replace("-", "_")],
         )
-        for variant in ROWS
+        for environment in ENVIRONMENTS
     )
-    return Line(label=_HEADINGS[environment]), *rows
+    return Row(ROWS[variant][0], tuple(groups))
 
 
-def _unseen(results: Results) -> tuple[Line, ...]:
-    paper = published(_PUBLISHED, "unseen_wind_subset_L3")
-    rows = (
-        (TRAJECTORY, "trajectory-GRU_seeds", SEEDS),
-        (ZERO, "zero", (0,)),
-        (TRUE, "ground-truth", (0,)),
-    )
-    return tuple(
-        Line(
-            label=_LABELS[variant],
-            entries=tuple(
-                successes(
-                    _by_seed(paper[key][environment.replace("-", "_")]),
-                    results,
-                    replace(cell(variant, environment, "L3"), seeds=seeds),
-                    UNSEEN,
-                )
-                for environment in ENVIRONMENTS
+PAGE = Page(
+    "table-3",
+    TITLE,
+    (
+        TableSpec(
+            name="table-3",
+            title=f"{TITLE} (paper, Table III)",
+            columns=tuple(f"{level} (%)" for level in LEVELS),
+            rows=(*_levels("free-space"), *_levels("obstacles")),
+            notes=(
+                "{flown}",
+                "A figure with a decimal is a mean over seeds; the others are of seed 0. Among "
+                "obstacles at L3 every row is such a mean here; in the paper only those of the "
+                f"reconstructions are. {EVERY_NOISE}",
+                "At L0 the true wind is zero; those entries are the zero-input runs.",
             ),
-        )
-        for variant, key, seeds in rows
-    )
-
-
-def _by_seed(counts: int | Sequence[int]) -> str:
-    return str(counts) if isinstance(counts, int) else "/".join(map(str, counts))
-
-
-PAGE = Page("table-3", TITLE, CELLS, MEASUREMENTS, build)
+        ),
+        TableSpec(
+            name="table-3-unseen",
+            title="Winds that the trajectory GRU was not trained on, L3 (paper, Table III, below)",
+            columns=tuple(_HEADINGS.values()),
+            rows=(
+                _unseen(TRAJECTORY, "trajectory-GRU_seeds", SEEDS),
+                _unseen(ZERO, "zero", (0,)),
+                _unseen(TRUE, "ground-truth", (0,)),
+            ),
+            notes=(
+                f"Successful scenes among those with indices {UNSEEN[0]}–{UNSEEN[-1]}. Trajectory "
+                "GRU: seed by seed; the others: seed 0.",
+            ),
+        ),
+    ),
+)

@@ -1,26 +1,24 @@
 """Table V: from which fault frequency on each repair pays."""
 
-from typing import Any
-
 from faultpath.report import wording
-from faultpath.statistics import BreakEven, break_even
+from faultpath.statistics import break_even
 from faultpath.studies.cells import Cell
-from faultpath.studies.contrasts import attempt
-from faultpath.studies.notes import INTERVALS, flown
-from faultpath.studies.page import Built, Page
+from faultpath.studies.entries import Group, Made
+from faultpath.studies.notes import INTERVALS
+from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
 from faultpath.studies.quantities.differences import together
 from faultpath.studies.results import Contrast, Results
-from faultpath.tables import Entry, Line, Table
+from faultpath.tables import Entry
 
 REPAIRS: dict[str, tuple[Cell, ...]] = {
-    "WM-A": tuple(
-        table_2.cell(model, error) for error in (0.0, 0.1) for model in ("wm-a+dcc", "wm-a")
-    ),
-    "WM-U": tuple(
-        table_2.cell(model, error) for error in (0.0, 0.1) for model in ("wm-u+dcc", "wm-u")
-    ),
+    **{
+        table_2.NAMES[baseline]: tuple(
+            table_2.cell(model, error) for error in (0.0, 0.1) for model in (repair, baseline)
+        )
+        for repair, baseline in table_2.PAIRS
+    },
     **{
         f"GRU/{path}": tuple(
             table_4.cell(method, at) for at in ("correct", path) for method in ("gru+dcc", "gru")
@@ -30,53 +28,30 @@ REPAIRS: dict[str, tuple[Cell, ...]] = {
 }
 """Repair and baseline under correct inputs, then both under the fault; keys as published."""
 
-CELLS = tuple(cell for cells in REPAIRS.values() for cell in cells)
-MEASUREMENTS = ()
-
 TITLE = "From which fault frequency on each repair pays"
-_PUBLISHED = "table_5_decision_record"
-_LABELS = {
-    "GRU/reconstruction-only": "GRU: reconstruction only",
-    "GRU/shared": "GRU: shared with predictor",
-}
 NO_CROSSING = "no crossing"
 
 
-def build(results: Results) -> Built:
-    """Return Table V."""
-    table = Table(
-        name="table-5",
-        title=f"{TITLE} (paper, Table V)",
-        columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]"),
-        lines=tuple(_line(results, key, cells) for key, cells in REPAIRS.items()),
-        notes=(
-            flown(results, CELLS),
-            "Success of the repair minus that of its baseline, under correct inputs (Δ0) and under "
-            "e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency at which the estimates break "
-            "even; no crossing: at none. In brackets: frequencies at which it is not decided who "
-            "is ahead.",
-            "Predictors without wind, GRU at wind L3.",
-            INTERVALS,
-        ),
-    )
-    return (table,)
+def _row(label: str, key: str) -> Row:
+    paper = published("table_5_decision_record", key)
+    repair, baseline, faulty_repair, faulty_baseline = cells = REPAIRS[key]
 
-
-def _line(results: Results, key: str, cells: tuple[Cell, ...]) -> Line:
-    paper = published(_PUBLISHED, key)
-    texts = (
-        wording.signed(paper["delta_0_pp"]),
-        wording.signed(paper["delta_f_pp"]),
-        _published_frequency(paper),
-    )
-
-    def entries() -> tuple[Entry, ...]:
-        repair, baseline, faulty_repair, faulty_baseline = cells
+    def make(results: Results) -> Made:
         correct, faulty = together(results, (repair, baseline), (faulty_repair, faulty_baseline))
-        result = break_even(correct.draws, faulty.draws)
-        return _difference(correct), _difference(faulty), Entry(text=_frequency(result))
+        found = break_even(correct.draws, faulty.draws)
+        crossing = wording.break_even(found).replace(" %", "")
+        return (
+            _difference(correct),
+            _difference(faulty),
+            NO_CROSSING if found.kind == "empty" else crossing,
+        )
 
-    return Line(label=_LABELS.get(key, key), entries=attempt(entries, texts))
+    crossing, p_star = NO_CROSSING, paper["p_star_percent"]
+    if p_star is not None:
+        low, high = paper["ci95"]
+        crossing = f"{p_star} [{low}, {high}]"
+    texts = (wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"]), crossing)
+    return Row(label, (Group(make, texts, cells),))
 
 
 def _difference(contrast: Contrast) -> Entry:
@@ -84,15 +59,29 @@ def _difference(contrast: Contrast) -> Entry:
     return Entry(text=text, detected=bool(contrast.detected_sign))
 
 
-def _frequency(result: BreakEven) -> str:
-    return NO_CROSSING if result.kind == "empty" else wording.break_even(result).replace(" %", "")
-
-
-def _published_frequency(paper: dict[str, Any]) -> str:
-    if paper["p_star_percent"] is None:
-        return NO_CROSSING
-    low, high = paper["ci95"]
-    return f"{paper['p_star_percent']} [{low}, {high}]"
-
-
-PAGE = Page("table-5", TITLE, CELLS, MEASUREMENTS, build)
+PAGE = Page(
+    "table-5",
+    TITLE,
+    (
+        TableSpec(
+            name="table-5",
+            title=f"{TITLE} (paper, Table V)",
+            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]"),
+            rows=(
+                _row("WM-A", "WM-A"),
+                _row("WM-U", "WM-U"),
+                _row("GRU: reconstruction only", "GRU/reconstruction-only"),
+                _row("GRU: shared with predictor", "GRU/shared"),
+            ),
+            notes=(
+                "{flown}",
+                "Success of the repair minus that of its baseline, under correct inputs (Δ0) and "
+                "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency at which the "
+                "estimates break even; no crossing: at none. In brackets: frequencies at which it "
+                "is not decided who is ahead.",
+                "Predictors without wind, GRU at wind L3.",
+                INTERVALS,
+            ),
+        ),
+    ),
+)
