@@ -21,8 +21,7 @@ from faultpath.quadrotor.evidence.recording import blocks, recorded
 from faultpath.quadrotor.models import predictor
 from faultpath.quadrotor.plant import PlantState, TorchPlant
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.training.quality_predictors import position_errors
-from faultpath.quadrotor.training.replay import correct
+from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
 from faultpath.quadrotor.vehicle_batch import Vehicle
@@ -51,7 +50,7 @@ def main() -> int:
 
 def _predicted(windows: Windows) -> Tensor:
     model = predictor("true-parameter", None)
-    return position_errors(model, windows, correct(model, windows), "zero")[-1]
+    return position_errors(model, windows, wind="zero")[-1]
 
 
 def _replayed(windows: Windows, intervals: int) -> Tensor:

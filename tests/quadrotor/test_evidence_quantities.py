@@ -14,9 +14,9 @@ from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.training.playback import CODE
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath.quadrotor.training.quality_predictors import position_errors
-from faultpath.quadrotor.training.replay import CODE, correct
+from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
 
 torch.set_num_threads(1)
@@ -70,11 +70,9 @@ def test_an_identity_fault_gives_exactly_no_response_and_changes_no_error(record
 def test_position_errors_are_those_of_the_one_replay(recorded):
     subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
     with torch.inference_mode():
-        every = position_errors(
-            subject.predictor, recorded.windows, correct(subject.predictor, recorded.windows)
-        )
+        every = position_errors(subject.predictor, recorded.windows)
     found = ask(recorded, "position-error", "wm-a")
-    np.testing.assert_allclose(found, every[-1].double().numpy(), rtol=1e-4, atol=1e-6)
+    assert np.array_equal(found, every[-1].double().numpy())
 
 
 def test_the_wind_input_is_the_variant_s(recorded):
@@ -153,7 +151,7 @@ def test_a_shuffle_gives_every_code_to_another_window(recorded):
     subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
     with torch.inference_mode():
         plain, shuffled, again, other = (
-            replace(subject, seed=seed).deliver(recorded.windows, faults, "name")[CODE].T
+            replace(subject, seed=seed).at_present(recorded.windows, faults, "name")[CODE].T
             for seed, faults in (
                 (0, ()),
                 (0, ("history_code:shuffle",)),

@@ -16,20 +16,20 @@ from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS
 from faultpath.quadrotor.predictors import KinematicIntegrator
+from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork
 from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.playback import at_present
 from faultpath.quadrotor.training.quality import Checkpoints, measure
 from faultpath.quadrotor.training.quality_intervals import Episodes
-from faultpath.quadrotor.training.quality_predictors import position_errors, supply
-from faultpath.quadrotor.training.quality_reconstructions import levels
 from faultpath.quadrotor.training.quality_results import Quality
+from faultpath.quadrotor.training.quality_rows import estimate, levels, position_errors
 from faultpath.quadrotor.training.reconstruction_task import (
     CHECK_ERROR,
     MODELS,
     ReconstructionTask,
     _Samples,
 )
-from faultpath.quadrotor.training.replay import correct, estimate
 from faultpath.quadrotor.training.windows import windows_of
 from faultpath.quadrotor.wind import WIND_LEVELS
 
@@ -167,21 +167,22 @@ def test_an_error_of_zero_is_no_error_to_the_bit(name, windy):
     made = PREDICTORS[name].load(name, None)
     if name.startswith("wm"):
         made.network.load_state_dict(blank(name, 0).state_dict())
-    consumers = made.consumers()
-    plain, off = correct(made, windy), supply(windy, consumers, 0.1)
     with torch.inference_mode():
-        same = position_errors(made, windy, supply(windy, consumers, 0.0))
-        assert torch.equal(same, position_errors(made, windy, plain))
-        assert not torch.equal(same, position_errors(made, windy, off))
+        plain = at_present(windy, made, None, {"wind": "true_wind"}).positions()[..., -1]
+        expected = (plain - windy.position[:, -1]).norm(dim=0)
+        assert torch.equal(position_errors(made, windy, 0.0)[-1], expected)
+        assert not torch.equal(position_errors(made, windy, 0.1)[-1], expected)
 
 
 def test_a_delivered_error_scales_mass_up_and_thrust_down_at_every_consumer(windy):
-    consumers = PREDICTORS["wm-a"].load("wm-a", None).consumers()
-    told = supply(windy, consumers, 0.2)
-    assert {channel for channel, _ in told} == {"mass", "thrust_scale"}
-    for (channel, _), value in told.items():
+    made = PREDICTORS["wm-a"].load("wm-a", None)
+    with torch.inference_mode():
+        present = at_present(windy, made, None, {}, [calibration(0.2)])
+    struck = {tap for tap in present.told if tap[0] in windy.calibration}
+    assert {consumer for _, consumer in struck} >= {"predictor.dynamics", "predictor.history"}
+    for channel, consumer in struck:
         true, factor = (windy.mass_kg, 1.2) if channel == "mass" else (windy.thrust_scale, 0.8)
-        torch.testing.assert_close(value, factor * true)
+        torch.testing.assert_close(present[channel, consumer], factor * true)
 
 
 def test_scores_without_an_error_are_those_of_the_horizon_and_of_the_table(quality):
@@ -198,7 +199,7 @@ def test_scores_without_an_error_are_those_of_the_horizon_and_of_the_table(quali
 
 def test_errors_grow_from_nothing_along_the_horizon(windy):
     made = KinematicIntegrator()
-    errors = position_errors(made, windy, correct(made, windy))
+    errors = position_errors(made, windy)
     assert errors.shape == (20, len(windy))
     assert errors[0].max() < 0.02  # one interval of 50 ms
     assert errors[-1].median() > 10 * errors[0].median()
@@ -256,16 +257,13 @@ def test_a_network_is_measured_as_its_fit_validates_it(data, windy, quality):
 
 
 def test_an_estimate_reads_nothing_after_the_present(windy):
-    told = supply(windy, DisturbanceObserver().consumers(), 0.0)
-    plain = estimate(DisturbanceObserver(), windy, told)
+    plain = estimate(DisturbanceObserver(), windy)
     future = {
-        name: torch.cat(
-            (value[..., :keep, :], torch.full_like(value[..., keep:, :], torch.nan)), -2
-        )
+        name: torch.cat((value[..., :keep, :], torch.full_like(value[..., keep:, :], 1e3)), -2)
         for name, keep in (("velocity", 13), ("rotation", 13), ("rate", 13), ("command", 12))
         for value in (getattr(windy, name),)
     }
-    assert torch.equal(estimate(DisturbanceObserver(), replace(windy, **future), told), plain)
+    assert torch.equal(estimate(DisturbanceObserver(), replace(windy, **future)), plain)
     assert plain.isfinite().all()
 
 

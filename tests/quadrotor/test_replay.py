@@ -1,4 +1,4 @@
-"""A recorded window tells a model what the flight told it, to the bit."""
+"""A recorded window tells a model what the flight told it, and a fit sees the same, to the bit."""
 
 from dataclasses import fields
 
@@ -6,13 +6,17 @@ import pytest
 import torch
 
 from faultpath.quadrotor.evidence.inputs import Subject
+from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay
 from faultpath.quadrotor.training.closed_loop import record_flights
+from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.training.playback import at_present
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath.quadrotor.training.windows import HISTORY, cut, places
+from faultpath.quadrotor.training.reconstruction_task import _calibration, _history
+from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
 
 torch.set_num_threads(1)
 
@@ -29,33 +33,76 @@ def parts(inputs: PredictorInputs, row: int) -> dict[str, torch.Tensor]:
     return found
 
 
-@pytest.mark.parametrize("variant", ["wm-a-wind/gru", "wm-u", "true-parameter/true-wind"])
-def test_a_window_tells_the_predictor_what_the_flight_did(variant, monkeypatch):
-    flown: list[PredictorInputs] = []
-    replayed: list[PredictorInputs] = []
-    for module, seen in ((prediction, flown), (replay, replayed)):
+def assert_same(here: PredictorInputs, row: int, there: PredictorInputs, beside: int) -> None:
+    one, other = parts(here, row), parts(there, beside)
+    assert set(one) == set(other)
+    assert len(one) > 6
+    for name, value in one.items():
+        assert torch.equal(value, other[name]), name
 
-        def spy(reads, take, original=module.predictor_inputs, seen=seen):
+
+@pytest.fixture
+def told(monkeypatch) -> list[PredictorInputs]:
+    """All that predictors are told, by the module of the loop and by fits alike."""
+    seen: list[PredictorInputs] = []
+    for module in (prediction, replay):
+
+        def spy(reads, take, original=module.predictor_inputs):
             seen.append(original(reads, take))
             return seen[-1]
 
         monkeypatch.setattr(module, "predictor_inputs", spy)
+    return seen
+
+
+@pytest.fixture(scope="module")
+def windows() -> Windows:
+    """As many windows of collected flights as fill whole vectors."""
+    flown = FlightData.decode(
+        "test",
+        encode_rows(range(16), flights := fly("wind", range(16), 0, FlightSettings())),
+        encode_episodes(range(16), flights),
+    )
+    found = cut(flown)
+    return found.take(torch.arange(32))
+
+
+@pytest.mark.parametrize("variant", ["wm-a-wind/gru", "wm-u", "true-parameter/true-wind"])
+def test_a_window_tells_the_predictor_what_the_flight_did(variant, told):
     system = Quadrotor.parse(wind="L3", environment="free-space", clearance="true")
     scene = system.library("selection").scenes[0].id
     flights = record_flights(system, variant, (scene,), 0)
+    flown = tuple(told)
+    told.clear()
     pool = FlightData.decode(
         "x", encode_rows(range(1), flights), encode_episodes(range(1), flights)
     )
     windows, presents = cut(pool, stride=2), places(pool, stride=2)[:, 2] + HISTORY
-    subject = Subject.load(system, variant, 0)
     with torch.inference_mode():
-        delivered = subject.deliver(windows, (), "recording")
-        replay.predict(subject.predictor, windows, delivered)
-    (once,) = replayed
+        Subject.load(system, variant, 0).at_present(windows, (), "recording")
+    assert len(told) == HISTORY + 1
     assert len(windows) > 3
     for row, present in enumerate(presents.tolist()):
-        here, there = parts(once, row), parts(flown[present], 0)
-        assert set(here) == set(there)
-        assert len(here) > 6
-        for name, value in here.items():
-            assert torch.equal(value, there[name]), (name, present)
+        assert_same(told[-1], row, flown[present], 0)
+
+
+@pytest.mark.parametrize("name", ["wm-a", "wm-u+dcc", "wm-a-wind", "true-parameter", "dki-drag"])
+def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
+    model = PREDICTORS[name].load(name, 0)
+    with torch.inference_mode():
+        present = at_present(windows, model, None, {"wind": "true_wind"})
+        played, inputs = present.positions(), told[-1]
+        fitted = list(replay.predict(model, windows, replay.correct(model, windows)))
+    assert inputs is not told[-1]
+    for row in range(len(windows)):
+        assert_same(told[-1], row, inputs, row)
+    assert torch.equal(torch.stack([state.position[..., 0] for state in fitted], -1), played)
+
+
+@pytest.mark.parametrize("name", ["gru", "gru-withheld"])
+def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
+    model = RECONSTRUCTIONS[name].load(name, 0)
+    with torch.inference_mode():
+        played = at_present(windows, None, model, {"wind": "reconstructed_wind"}).wind()
+        supplied = _calibration(windows) if model.network.calibrated else None
+        assert torch.equal(model.network.estimate(*_history(windows), supplied), played)

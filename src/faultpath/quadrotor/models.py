@@ -3,7 +3,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from types import MappingProxyType
+from typing import Generic, TypeVar
 
 import torch
 
@@ -24,89 +26,71 @@ from faultpath.quadrotor.reconstruction import (
     WindNetwork,
 )
 
-PredictorLoader = Callable[[str, int | None], Predictor]
-ReconstructionLoader = Callable[[str, int | None], Reconstruction]
+Model = TypeVar("Model", Predictor, Reconstruction)
 
 
 @dataclass(frozen=True)
-class PredictorKind:
-    """A predictor by name."""
+class Kind(Generic[Model]):
+    """A predictor or a wind reconstruction by name."""
 
     description: str
-    load: PredictorLoader
-    """`load(name, seed)`; without a seed the weights are blank: enough to know what it reads."""
+    build: Callable[[], Model]
+    """Makes it, with blank weights where it has any: enough to know what it reads."""
+
+    def load(self, name: str, seed: int | None, folder: Path | None = None) -> Model:
+        """Return it as trained with a seed, by default from the package; blank for `None`.
+
+        Raises `UserError` where there is no checkpoint, or it cannot be read.
+        """
+        made = self.build()
+        if seed is not None and isinstance(made, _LEARNED):
+            load_checkpoint(made.network, checkpoint_path(name, seed, folder))
+        return made
 
 
-@dataclass(frozen=True)
-class ReconstructionKind:
-    """A wind reconstruction by name."""
-
-    description: str
-    load: ReconstructionLoader
+_LEARNED = (AnchoredPredictor, UnanchoredPredictor, RecurrentReconstruction)
 
 
-def _anchored(wind: bool) -> PredictorLoader:
-    def load(name: str, seed: int | None) -> Predictor:
-        network = AnchoredPredictor.build_network()
-        if seed is not None:
-            load_checkpoint(network, checkpoint_path(name, seed))
-        return AnchoredPredictor(network, wind)
-
-    return load
+def _anchored(wind: bool) -> Callable[[], Predictor]:
+    return lambda: AnchoredPredictor(AnchoredPredictor.build_network(), wind)
 
 
-def _unanchored(name: str, seed: int | None) -> Predictor:
-    network = UnanchoredPredictor.build_network()
-    if seed is not None:
-        load_checkpoint(network, checkpoint_path(name, seed))
-    return UnanchoredPredictor(network)
+def _unanchored() -> Predictor:
+    return UnanchoredPredictor(UnanchoredPredictor.build_network())
 
 
-def _analytic(build: Callable[[], Predictor]) -> PredictorLoader:
-    return lambda name, seed: build()
+def _recurrent(calibrated: bool) -> Callable[[], Reconstruction]:
+    return lambda: RecurrentReconstruction(WindNetwork(calibrated))
 
 
-def _recurrent(calibrated: bool) -> ReconstructionLoader:
-    def load(name: str, seed: int | None) -> Reconstruction:
-        network = WindNetwork(calibrated)
-        if seed is not None:
-            load_checkpoint(network, checkpoint_path(name, seed))
-        return RecurrentReconstruction(network)
-
-    return load
-
-
-PREDICTORS: Mapping[str, PredictorKind] = MappingProxyType(
+PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
     {
-        "dki": PredictorKind("kinematic integrator", _analytic(KinematicIntegrator)),
-        "dki-drag": PredictorKind(
-            "kinematic integrator with nominal drag",
-            _analytic(lambda: KinematicIntegrator(drag=True)),
+        "dki": Kind("kinematic integrator", KinematicIntegrator),
+        "dki-drag": Kind(
+            "kinematic integrator with nominal drag", lambda: KinematicIntegrator(drag=True)
         ),
-        "true-parameter": PredictorKind("the vehicle's own parameters", _analytic(TrueParameter)),
-        "wm-a": PredictorKind("anchored model", _anchored(wind=False)),
-        "wm-a+dcc": PredictorKind("anchored model, calibration noise", _anchored(wind=False)),
-        "wm-u": PredictorKind("unanchored model", _unanchored),
-        "wm-u+dcc": PredictorKind("unanchored model, calibration noise", _unanchored),
-        "wm-a-wind": PredictorKind("anchored model, wind-conditioned", _anchored(wind=True)),
-        "wm-a-nowind": PredictorKind("anchored model, wind withheld", _anchored(wind=False)),
+        "true-parameter": Kind("the vehicle's own parameters", TrueParameter),
+        "wm-a": Kind("anchored model", _anchored(wind=False)),
+        "wm-a+dcc": Kind("anchored model, calibration noise", _anchored(wind=False)),
+        "wm-u": Kind("unanchored model", _unanchored),
+        "wm-u+dcc": Kind("unanchored model, calibration noise", _unanchored),
+        "wm-a-wind": Kind("anchored model, wind-conditioned", _anchored(wind=True)),
+        "wm-a-nowind": Kind("anchored model, wind withheld", _anchored(wind=False)),
     }
 )
 
-RECONSTRUCTIONS: Mapping[str, ReconstructionKind] = MappingProxyType(
+RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
     {
-        "dob": ReconstructionKind(
-            "the disturbance observer", lambda name, seed: DisturbanceObserver()
-        ),
-        "gru": ReconstructionKind("the learned reconstruction", _recurrent(calibrated=True)),
-        "gru+dcc": ReconstructionKind(
+        "dob": Kind("the disturbance observer", DisturbanceObserver),
+        "gru": Kind("the learned reconstruction", _recurrent(calibrated=True)),
+        "gru+dcc": Kind(
             "the learned reconstruction, trained with calibration noise",
             _recurrent(calibrated=True),
         ),
-        "gru-withheld": ReconstructionKind(
+        "gru-withheld": Kind(
             "a learned reconstruction without calibration", _recurrent(calibrated=False)
         ),
-        "gru-trajectory": ReconstructionKind(
+        "gru-trajectory": Kind(
             "a reconstruction that learned from closed-loop flights, without calibration",
             _recurrent(calibrated=False),
         ),

@@ -58,7 +58,8 @@ Roll = Callable[[PredictorInputs, Tensor], Rollout]
 def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
     """Return what rolls a predictor out on `device`: compiled where a kernel stands for it.
 
-    A compiled one keeps the weights that the predictor has now.
+    A compiled one keeps the weights that the predictor has now. It works along the candidates of a
+    scene: of one alone there is nothing to work along, so torch takes all scenes at once.
     """
     built = native.kernels_on(device)
     if built is None:
@@ -70,6 +71,8 @@ def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
     loop = horizon_loop(built, predictor)
 
     def roll(inputs: PredictorInputs, commands: Tensor) -> Rollout:
+        if commands.shape[-1] == 1:
+            return rollout(predictor, inputs, commands)
         positions, velocities, rotation, rate = loop(named(inputs), commands)
         final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
         return Rollout(positions, velocities, final)

@@ -21,12 +21,9 @@ from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.modules.clearance import Perception
-from faultpath.quadrotor.modules.estimator import ExactEstimator
-from faultpath.quadrotor.modules.history import HistoryEncoder
 from faultpath.quadrotor.modules.planning import Planning
-from faultpath.quadrotor.modules.prediction import Prediction
+from faultpath.quadrotor.modules.prediction import modelled
 from faultpath.quadrotor.modules.vehicle import VehiclePlant
-from faultpath.quadrotor.modules.wind import WindReconstruction
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.presets import calibration, noisy_state
@@ -139,15 +136,8 @@ class Quadrotor(LoopSystem):
         choice, place = self.choices[variant], self.options.place
         predictor = choice.load_predictor(seed, place)
         reconstruction = choice.load_reconstruction(seed, place)
-        found: list[Module] = [
-            ExactEstimator(),
-            Prediction(predictor, place),
-            Planning(choice.load_planner(seed, self.options), place),
-        ]
-        if reconstruction is not None:
-            found.append(WindReconstruction(reconstruction, place))
-        if "history" in predictor.reads:
-            found.append(HistoryEncoder(predictor, place))
+        found = modelled(predictor, reconstruction, place)
+        found.append(Planning(choice.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
             found.append(Perception(lambda: DepthClearance(clearance_model(place), place)))
         return found

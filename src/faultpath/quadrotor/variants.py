@@ -9,6 +9,7 @@ variant with the predictor of the options.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import torch
 
@@ -18,8 +19,7 @@ from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
-    PredictorKind,
-    ReconstructionKind,
+    Kind,
     predictor,
     reconstruction,
 )
@@ -96,7 +96,7 @@ class Choice:
             words = f"{words}; {self.brought[self.planner].description} plans"
         return Wiring(f"{words}.", bindings)
 
-    def _said(self, name: str, shipped: Mapping[str, PredictorKind | ReconstructionKind]) -> str:
+    def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
         return (self.brought.get(name) or shipped[name]).description
 
 

@@ -1,12 +1,11 @@
-"""What the taps of a variant deliver on recorded windows, under faults."""
+"""A variant with its models on recorded windows, under faults."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 
-import torch
 from torch import Tensor
 
 from faultpath.errors import UserError
@@ -14,20 +13,12 @@ from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, H
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training.replay import (
-    CODE,
-    WIND,
-    DeliveredInputs,
-    by_batch,
-    deliver,
-    encode,
-    estimate,
-)
-from faultpath.quadrotor.training.windows import HISTORY, Windows
+from faultpath.quadrotor.training.playback import CODE, HELD, Present, at_present
+from faultpath.quadrotor.training.windows import Windows
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Variant
 
-_BY_WINDOW = frozenset({"mass", "thrust_scale", WIND[0]})
+_BY_WINDOW = HELD | {"wind"}
 _BY_RECORDING = frozenset({CODE[0]})
 _IN_TIME = (Delay, Drift, Dropout, Freeze, Hold)
 
@@ -59,27 +50,26 @@ class Subject:
         )
 
     def check(self, faults: Sequence[str]) -> None:
-        """Raise the `UserError` that `deliver` would raise about these faults on any windows."""
+        """Raise the `UserError` that `at_present` would raise about these faults on any windows."""
         for found in self._parse(faults):
-            self._taps(("any",), found)
+            self._taps("any", found)
 
-    def deliver(self, windows: Windows, faults: Sequence[str], recording: str) -> DeliveredInputs:
-        """Return what the taps deliver on windows of the recording of that name.
+    def at_present(self, windows: Windows, faults: Sequence[str], recording: str) -> Present:
+        """Return what the variant makes of windows of the recording of that name.
 
         `UserError` for a fault that does not fit the variant, or of a channel or in a way that
         windows do not have.
         """
         by_window, by_recording = self._parse(faults)
-        taps = self._taps(windows.ids, by_window)
-        delivered = self._delivered(taps, windows.calibration)
-        if WIND[1] in self.variant.consumers:
-            wind = self._wind(taps.bindings["wind"], windows, delivered)
-            delivered |= self._delivered(taps, {"wind": wind.T})
-        taps.verify(last_step=0)
-        if CODE[1] in self.variant.consumers:
-            code = by_batch(partial(encode, self.predictor), windows, delivered, padded=True)
-            delivered[CODE] = self._exchanged(code.T, recording, by_recording)
-        return delivered
+        return at_present(
+            windows,
+            self.predictor,
+            self.reconstruction,
+            self.variant.bindings,
+            by_window,
+            self.seed,
+            partial(self._exchanged, recording, by_recording),
+        )
 
     def _parse(self, texts: Sequence[str]) -> tuple[list[AnyFault], list[AnyFault]]:
         """Return the faults that strike windows one by one, and those that strike all at once."""
@@ -112,16 +102,13 @@ class Subject:
                 )
         return by_window, by_recording
 
-    def _taps(
-        self,
-        rows: tuple[str, ...],
-        faults: Sequence[AnyFault],
-        shapes: Mapping[str, tuple[int, ...]] | None = None,
-    ) -> Taps:
+    def _taps(self, scene: str, faults: Sequence[AnyFault], *codes: int) -> Taps:
+        """Return taps with one scene; `codes`: the shape of its history codes."""
+        source = self.system.interface.channel(CODE[0]).sources[0]
         return Taps(
-            self.system.interface.shaped(shapes or {}),
+            self.system.interface.shaped({source: codes} if codes else {}),
             faults,
-            scenes=rows,
+            scenes=(scene,),
             dt_s=self.system.control_dt_s,
             seed=self.seed,
             bindings=self.variant.bindings,
@@ -129,27 +116,15 @@ class Subject:
             privileged=self.variant.privileged,
         )
 
-    def _delivered(
-        self, taps: Taps, readings: Mapping[str, Tensor]
-    ) -> dict[tuple[str, str], Tensor]:
-        return deliver(taps, self.system.interface, self.variant.consumers, readings)
-
-    def _wind(self, source: str, windows: Windows, delivered: DeliveredInputs) -> Tensor:
-        """Return what the source of the wind channel holds at the present, `[3, W]`."""
-        if self.reconstruction is not None:
-            return estimate(self.reconstruction, windows, delivered, padded=True)
-        truth = windows.wind_mps[:, HISTORY]
-        return truth if source == "true_wind" else torch.zeros_like(truth)
-
-    def _exchanged(self, code: Tensor, recording: str, faults: Sequence[AnyFault]) -> Tensor:
+    def _exchanged(self, recording: str, faults: Sequence[AnyFault], codes: Tensor) -> Tensor:
         """Return history codes `[W, 32]` as delivered.
 
         For this tap the whole recording is one scene. A shuffle permutes a scene's own reading,
         and so exchanges the codes of windows: each is one that the predictor meets in flight, but
         of another history.
         """
-        (source,) = self.system.interface.channel(CODE[0]).sources
-        taps = self._taps((recording,), faults, {source: tuple(code.shape)})
-        delivered = taps.deliver(*CODE, Reading(code[None], source, 0), 0)
+        taps = self._taps(recording, faults, *codes.shape)
+        reading = Reading(codes[None], taps.bindings[CODE[0]], 0)
+        delivered = taps.deliver(*CODE, reading, 0)
         taps.verify(last_step=0)
         return delivered[0]

@@ -1,18 +1,24 @@
 """The quantities of a measurement, each a number a window."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.evidence import Measured, Measurement, Quantity
-from faultpath.quadrotor.evidence.compensation import nominal, wind_term
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.recording import Recorded, quadrotor
-from faultpath.quadrotor.predictors import Calibration, Predictor
-from faultpath.quadrotor.state import padded_lanes
-from faultpath.quadrotor.training.replay import WIND, DeliveredInputs, by_batch, predict
+from faultpath.quadrotor.predictors.drag import LinearDrag
+from faultpath.quadrotor.reconstruction import (
+    Delivered,
+    DisturbanceObserver,
+    ObserverMemory,
+    Sensed,
+)
+from faultpath.quadrotor.training.playback import Present, at_present
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
 
@@ -40,35 +46,38 @@ def measured(measurement: Measurement, recorded: Recorded) -> Measured:
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
 
 
+def _subject(asked: Measurement) -> Subject:
+    return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
+
+
+def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:
+    return subject.at_present(windows, asked.faults, asked.recording.name)
+
+
 def _position_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    delivered = _delivered(subject, asked, windows)
-    return (final_positions(subject.predictor, windows, delivered) - windows.position[:, -1]).norm(
-        dim=0
-    )
+    last = _present(subject, asked, windows).positions()[..., -1]
+    return (last - windows.position[:, -1]).norm(dim=0)
 
 
 def _position_response(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
     correct = asked.model_copy(update={"faults": ()})
     here, there = (
-        final_positions(subject.predictor, windows, _delivered(subject, each, windows))
-        for each in (correct, asked)
+        _present(subject, each, windows).positions()[..., -1] for each in (correct, asked)
     )
     return (there - here).norm(dim=0)
 
 
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    delivered = _delivered(subject, asked, windows)
-    calibration = Calibration(
-        *(delivered[channel, "predictor.dynamics"] for channel in windows.calibration)
-    )
+    present = _present(subject, asked, windows)
+    told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
+    believed = replace(windows, mass_kg=told["mass"], thrust_scale=told["thrust_scale"])
     return (
-        (_nominal(windows, calibration) - _nominal(windows, _true(windows)))
-        + _wind_term_difference(windows, delivered)
+        (_nominal(believed) - _nominal(windows)) + _wind_term_difference(present, windows)
     ).norm(dim=0)
 
 
 def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(windows, _delivered(subject, asked, windows)).norm(dim=0)
+    return _wind_term_difference(_present(subject, asked, windows), windows).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -79,35 +88,35 @@ _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]
 }
 
 
-def final_positions(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) -> Tensor:
-    """Return the predicted position after the last step, `[3, W]`, m, world frame."""
+class _NominalAcceleration(DisturbanceObserver):
+    """Gives, in the place of the wind, the acceleration a_0 that the observer explains itself.
 
-    def final(windows: Windows, delivered: DeliveredInputs) -> Tensor:
-        *_, last = predict(predictor, windows, delivered)
-        return last.position[..., 0]
+    Paper, Section "Calibration-Dependent Compensation". What the observer takes out of an
+    acceleration is thus put back here.
+    """
 
-    return by_batch(final, windows, delivered, padded=True)
-
-
-def _subject(asked: Measurement) -> Subject:
-    return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
-
-
-def _delivered(subject: Subject, asked: Measurement, windows: Windows) -> DeliveredInputs:
-    return subject.deliver(windows, asked.faults, asked.recording.name)
+    @override
+    def update(self, memory: ObserverMemory, delivered: Delivered) -> ObserverMemory:
+        explained = self.nominal(memory, Sensed.of(delivered))
+        return replace(super().update(memory, delivered), wind_mps=explained)
 
 
-def _wind_term_difference(windows: Windows, delivered: DeliveredInputs) -> Tensor:
-    map_mass = delivered["mass", "predictor.wind_map"]
-    truth = wind_term(windows, windows.mass_kg, windows.wind_mps[:, HISTORY])
-    return wind_term(windows, map_mass, delivered[WIND].T) - truth
+def _nominal(windows: Windows) -> Tensor:
+    """Return a_0 over the interval that ends at the present, `[3, W]`, m/s^2.
+
+    An observer told the calibration of these windows follows the whole history, for the thrust
+    that the motors hold; the start of its belief has decayed by a factor of a million.
+    """
+    bindings = {"wind": "reconstructed_wind"}
+    return at_present(windows, None, _NominalAcceleration(), bindings).wind()
 
 
-def _true(windows: Windows) -> Calibration:
-    return Calibration(windows.mass_kg, windows.thrust_scale)
+def _wind_term_difference(present: Present, windows: Windows) -> Tensor:
+    """Return how far B_eta w is from the true one at the present, `[3, W]`, m/s^2."""
 
+    def term(map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:
+        drag = LinearDrag().force(windows.rotation[:, :, HISTORY], wind_mps)  # nominal drag
+        return drag / map_mass_kg
 
-def _nominal(windows: Windows, calibration: Calibration) -> Tensor:
-    lanes = padded_lanes(len(windows))
-    wide = Calibration(calibration.mass_kg[lanes], calibration.thrust_scale[lanes])
-    return nominal(windows.take(lanes), wide)[:, : len(windows)]
+    believed = term(present["mass", "predictor.wind_map"], present.wind())
+    return believed - term(windows.mass_kg, windows.wind_mps[:, HISTORY])

@@ -41,7 +41,7 @@ class RecurrentReconstruction(Reconstruction):
 
     def __init__(self, network: WindNetwork) -> None:
         self.reads: frozenset[Read] = _HISTORY.union(_HEAD if network.calibrated else ())
-        self._network = network.eval()
+        self.network = network.eval()
 
     def begin(self, delivered: Delivered) -> Memory:
         """Start without a completed interval; see `Reconstruction.begin`."""
@@ -65,10 +65,10 @@ class RecurrentReconstruction(Reconstruction):
         known: RecurrentMemory = memory
         if not known.commands.shape[1]:
             return torch.zeros_like(known.states[:3, 0])
-        return self._network.estimate(known.states, known.commands, known.calibration)
+        return self.network.estimate(known.states, known.commands, known.calibration)
 
     def _calibration(self, delivered: Delivered) -> Tensor | None:
-        if not self._network.calibrated:
+        if not self.network.calibrated:
             return None
         return torch.stack([delivered[read] for read in _HEAD]).float()
 

@@ -6,9 +6,9 @@ from torch import Tensor
 
 from faultpath.faults import Coupled, Fault, UniformScale
 from faultpath.interface import Interface
-from faultpath.quadrotor.training.replay import DeliveredInputs, deliver
+from faultpath.quadrotor.training.replay import DeliveredInputs
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.taps import Taps
+from faultpath.taps import Reading, Taps
 
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
@@ -71,7 +71,14 @@ class Corruption:
         consumer that it names.
         """
         taps = self._taps(epoch)
-        delivered = deliver(taps, self._interface, self._consumers, readings)
+        delivered = {
+            (channel, consumer): taps.deliver(
+                channel, consumer, Reading(value, taps.bindings[channel], 0), 0
+            )
+            for channel, value in readings.items()
+            for consumer in self._interface.channel(channel).consumers
+            if consumer in self._consumers
+        }
         taps.verify(last_step=0)
         return delivered
 

@@ -7,20 +7,14 @@ import torch
 from pydantic import JsonValue
 
 from faultpath.errors import UserError
-from faultpath.quadrotor import models
 from faultpath.quadrotor.card import ModelCard, read_card, stem
 from faultpath.quadrotor.checkpoint import (
     checkpoint_path,
     load_checkpoint,
     shipped_folder,
 )
-from faultpath.quadrotor.predictors import AnchoredPredictor, Predictor, UnanchoredPredictor
-from faultpath.quadrotor.reconstruction import (
-    Reconstruction,
-    RecurrentReconstruction,
-    WindNetwork,
-)
-from faultpath.quadrotor.training import quality_predictors, quality_reconstructions
+from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS, Kind, Model
+from faultpath.quadrotor.training import quality_rows
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
 from faultpath.quadrotor.training.pool import Pool, read_pool
 from faultpath.quadrotor.training.quality_intervals import RESAMPLES, Episodes
@@ -32,7 +26,11 @@ from faultpath.quadrotor.training.quality_results import (
     ReconstructionQuality,
     Settings,
 )
-from faultpath.quadrotor.training.reconstruction_task import MODELS
+from faultpath.quadrotor.training.quality_rows import (
+    levels,
+    measure_predictor,
+    measure_reconstruction,
+)
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, cut
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.wind import WIND_LEVELS
@@ -54,35 +52,22 @@ class Checkpoints:
         self.missing = tuple(job.stem for job in jobs if job.stem not in there)
         self.present = tuple((job.entry.name, job.seed) for job in jobs if job.stem in there)
 
-    def seeds(self, name: str) -> Sequence[int | None]:
-        """Return the seeds of a model that are there; `None` alone for one that learns nothing."""
-        if name not in _LEARNED:
-            return (None,)
-        return [seed for found, seed in self.present if found == name]
+    def load(self, name: str, kind: Kind[Model]) -> dict[int | None, Model]:
+        """Return a model by seed, as far as it is there; `None` alone where nothing is learned.
+
+        `UserError` for weights that cannot be read.
+        """
+        seeds = [seed for found, seed in self.present if found == name]
+        every = seeds if name in _LEARNED else [None]
+        return {seed: kind.load(name, seed, self._folder) for seed in every}
 
     def cards(self) -> list[ModelCard]:
         """Return the cards of all that is there; `UserError` for a damaged one."""
         return [read_card(self._path(stem(name, seed))) for name, seed in self.present]
 
-    def predictor(self, name: str, seed: int | None) -> Predictor:
-        """Return a predictor with its weights; `UserError` when they cannot be read."""
-        made = models.PREDICTORS[name].load(name, None)
-        if seed is not None:
-            assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
-            load_checkpoint(made.network, checkpoint_path(name, seed, self._folder))
-        return made
-
-    def reconstruction(self, name: str, seed: int | None) -> Reconstruction:
-        """Return a reconstruction with its weights; `UserError` when they cannot be read."""
-        if seed is None:
-            return models.RECONSTRUCTIONS[name].load(name, None)
-        network = WindNetwork(MODELS[name].calibrated)
-        load_checkpoint(network, checkpoint_path(name, seed, self._folder))
-        return RecurrentReconstruction(network)
-
     def clearance(self) -> dict[str, JsonValue] | None:
         """Return how good the clearance model is, `None` without one."""
-        if not self.seeds(CLEARANCE.name):
+        if (CLEARANCE.name, 0) not in self.present:
             return None
         from faultpath.quadrotor.perception import ClearanceModel
         from faultpath.quadrotor.training.clearance_task import evaluate
@@ -114,8 +99,19 @@ def measure(data: Path, folder: Path | None = None, progress: Progress | None = 
     held_out = {name: cut(pool).split()[1] for name, pool in pools.items()}
     episodes = {name: Episodes(name, windows.episode.numpy()) for name, windows in held_out.items()}
     with torch.inference_mode():
-        predictors = _predictors(checkpoints, held_out, episodes, tell)
-        reconstructions = _reconstructions(checkpoints, held_out, episodes, tell)
+        predictors: list[PredictorQuality] = []
+        for row in quality_rows.PREDICTORS:
+            if loaded := checkpoints.load(row.name, PREDICTORS[row.name]):
+                tell(f"{row.name}, {row.pool}, {row.wind} wind")
+                measured = measure_predictor(row, loaded, held_out[row.pool], episodes[row.pool])
+                predictors.append(measured)
+        reconstructions: list[ReconstructionQuality] = []
+        for row in quality_rows.RECONSTRUCTIONS:
+            if loaded := checkpoints.load(row.name, RECONSTRUCTIONS[row.name]):
+                tell(row.name)
+                pool = row.pool
+                found = measure_reconstruction(row, loaded, held_out[pool], episodes[pool])
+                reconstructions.append(found)
         tell(CLEARANCE.name)
         clearance = checkpoints.clearance()
     return Quality(
@@ -135,41 +131,6 @@ def measure(data: Path, folder: Path | None = None, progress: Progress | None = 
     )
 
 
-def _predictors(
-    checkpoints: Checkpoints,
-    windows: dict[str, Windows],
-    episodes: dict[str, Episodes],
-    tell: Progress,
-) -> list[PredictorQuality]:
-    found = []
-    for row in quality_predictors.ROWS:
-        if seeds := checkpoints.seeds(row.name):
-            tell(f"{row.name}, {row.pool}, {row.wind} wind")
-            loaded = {seed: checkpoints.predictor(row.name, seed) for seed in seeds}
-            found.append(
-                quality_predictors.measure(row, loaded, windows[row.pool], episodes[row.pool])
-            )
-    return found
-
-
-def _reconstructions(
-    checkpoints: Checkpoints,
-    windows: dict[str, Windows],
-    episodes: dict[str, Episodes],
-    tell: Progress,
-) -> list[ReconstructionQuality]:
-    pool = quality_reconstructions.POOL
-    found = []
-    for name in quality_reconstructions.NAMES:
-        if seeds := checkpoints.seeds(name):
-            tell(name)
-            loaded = {seed: checkpoints.reconstruction(name, seed) for seed in seeds}
-            found.append(
-                quality_reconstructions.measure(name, loaded, windows[pool], episodes[pool])
-            )
-    return found
-
-
 def _check_data(cards: Sequence[ModelCard], pools: dict[str, Pool]) -> None:
     for card in cards:
         for name, pool in pools.items():
@@ -183,7 +144,7 @@ def _check_data(cards: Sequence[ModelCard], pools: dict[str, Pool]) -> None:
 
 
 def _pool(pool: Pool, windows: Windows, episodes: int) -> PoolUsed:
-    level = quality_reconstructions.levels(windows)
+    level = levels(windows)
     return PoolUsed(
         rows_sha256=pool.provenance.rows_sha256,
         windows=len(windows),
@@ -198,6 +159,6 @@ def _settings() -> Settings:
         horizon=HORIZON,
         step_s=CONTROL_DT_S,
         resamples=RESAMPLES,
-        calibration_errors=quality_predictors.ERRORS,
+        calibration_errors=quality_rows.ERRORS,
         level_mean_mps={name: level.mean_mps for name, level in WIND_LEVELS.items()},
     )

@@ -16,14 +16,9 @@ from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.reconstruction import (
-    RecurrentMemory,
-    RecurrentReconstruction,
-)
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
-from faultpath.quadrotor.training.replay import correct, remembered
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
 from faultpath.streams import generator
@@ -72,7 +67,7 @@ class _Samples:
 
     @classmethod
     def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
-        intervals, latest = network.inputs(*_history(windows, network))
+        intervals, latest = network.inputs(*_history(windows))
         return cls(
             intervals, latest, _calibration(windows), network.target(_wind(windows)), windows.ids
         )
@@ -105,7 +100,7 @@ class ReconstructionTask(Task):
 
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs and target from the training ones."""
-        history = _history(training, self._scaled)
+        history = _history(training)
         self._scaled.measure(*history, _calibration(training), _wind(training))
         self._training = _Samples.of(training, self._scaled)
         self._validation = _Samples.of(validation, self._scaled)
@@ -211,11 +206,10 @@ _DESCRIPTIONS = {
 }
 
 
-def _history(windows: Windows, network: WindNetwork) -> tuple[Tensor, Tensor]:
+def _history(windows: Windows) -> tuple[Tensor, Tensor]:
     """Return the states `[18, 13, W]` and commands `[4, 12, W]` that the module remembers."""
-    module = RecurrentReconstruction(network)
-    memory: RecurrentMemory = remembered(module, windows, correct(module, windows))
-    return memory.states, memory.commands
+    parts = (windows.position, windows.velocity, windows.rotation.flatten(0, 1), windows.rate)
+    return torch.cat(parts)[:, : HISTORY + 1], windows.command[:, :HISTORY]
 
 
 def _calibration(windows: Windows) -> Tensor:

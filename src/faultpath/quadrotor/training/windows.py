@@ -11,6 +11,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.predictors import Physics
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS
 from faultpath.quadrotor.training.pool import FlightData, read_pool
@@ -83,6 +84,16 @@ class Windows:
         """Return state `k` (0..32) of every window."""
         return State(
             self.position[:, k], self.velocity[:, k], self.rotation[:, :, k], self.rate[:, k]
+        )
+
+    def physics(self, k: int) -> Physics:
+        """Return the vehicles' own parameters, and what their motors hold at state `k`."""
+        return Physics(
+            self.inertia_kgm2,
+            self.torque_scale,
+            self.motor_time_constant_s,
+            self.drag_kgps,
+            self.motor_thrust_n[k],
         )
 
     def split(self, fraction_validation: float = 0.05) -> tuple[Windows, Windows]:
