@@ -15,9 +15,9 @@ from faultpath.errors import UserError
 from faultpath.quadrotor import wind
 from faultpath.quadrotor.training import collection, flight
 from faultpath.quadrotor.training.collection import collect
-from faultpath.quadrotor.training.flight import COMPONENTS
 from faultpath.quadrotor.training.pool import episodes_path, read_pool
 from faultpath.quadrotor.training.provenance import code_sha256, provenance_path, read_provenance
+from faultpath.quadrotor.training.recorded import COMPONENTS
 
 SMALL = {"nominal": 5, "wind": 7}
 

@@ -6,14 +6,9 @@ import torch
 
 from faultpath.quadrotor.training import flight, perturbation
 from faultpath.quadrotor.training.controller import ControllerSettings
-from faultpath.quadrotor.training.flight import (
-    COMPONENTS,
-    EPISODE_STEPS,
-    SIGNALS,
-    FlightSettings,
-    fly,
-)
+from faultpath.quadrotor.training.flight import EPISODE_STEPS, FlightSettings, fly
 from faultpath.quadrotor.training.perturbation import PerturbationSettings
+from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     CONTROL_RATE_HZ,

@@ -1,17 +1,33 @@
-"""Training episodes: what is drawn for each, and how a batch of them is flown."""
+"""Training episodes: what is drawn for each, and how a batch of them flies in the loop."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
+from typing_extensions import override
 
+from faultpath.loop import (
+    Batch,
+    Inputs,
+    Loop,
+    Memory,
+    Module,
+    Outputs,
+    Plant,
+    Progress,
+    consumers,
+    graph,
+)
 from faultpath.quadrotor import native, so3, wind
-from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
+from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.plant import Plant as VehiclePlant
+from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import (
@@ -21,7 +37,9 @@ from faultpath.quadrotor.training.controller import (
     WaypointController,
 )
 from faultpath.quadrotor.training.perturbation import PerturbationSettings
+from faultpath.quadrotor.training.recorded import ACTION, Flights, record
 from faultpath.quadrotor.vehicle import (
+    CONTROL_DT_S,
     CONTROL_RATE_HZ,
     PLANT_RATE_HZ,
     STEPS_PER_CONTROL,
@@ -30,21 +48,10 @@ from faultpath.quadrotor.vehicle import (
 )
 from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.streams import generator
+from faultpath.taps import Taps
 
 EPISODE_S = 6.0  # paper, Section IV-A
 EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)
-
-SIGNALS = {
-    "position": ("x_m", "y_m", "z_m"),
-    "velocity": ("vx_mps", "vy_mps", "vz_mps"),
-    "rotation": tuple(f"r{i}{j}" for i in range(3) for j in range(3)),
-    "rate": ("roll_rate_radps", "pitch_rate_radps", "yaw_rate_radps"),
-    "command": ("thrust_n", "roll_command_radps", "pitch_command_radps", "yaw_command_radps"),
-    "wind_mps": ("wind_x_mps", "wind_y_mps", "wind_z_mps"),
-    "motor_thrust_n": ("motor_thrust_n",),
-}
-"""What is recorded at each control instant, and the names of its components."""
-COMPONENTS = tuple(name for names in SIGNALS.values() for name in names)
 
 
 class FlightSettings(BaseModel):
@@ -66,19 +73,6 @@ class FlightSettings(BaseModel):
 
 
 @dataclass(frozen=True)
-class Flights:
-    """What a batch of episodes left behind."""
-
-    values: np.ndarray
-    """float32 [C, N + 1, B] at the control instants, in the order of `COMPONENTS`; a command
-    stands at the instant from which it acts, and is not a number at the last one."""
-    steps: np.ndarray
-    """Control steps of each episode before it ended, [B]. Its states are 0..steps; what comes
-    after them is not part of it."""
-    vehicles: tuple[VehicleParameters, ...]
-
-
-@dataclass(frozen=True)
 class _Start:
     """What is drawn for one episode."""
 
@@ -89,6 +83,102 @@ class _Start:
     """[T, 3] at the plant's steps, m/s; `None` is still air."""
 
 
+class Airspace:
+    """A batch of training flights in free air, padded to whole vectors; it moves itself."""
+
+    def __init__(
+        self, plant: VehiclePlant, starts: Sequence[_Start], lanes: Tensor, settings: FlightSettings
+    ) -> None:
+        self.lanes = lanes
+        self.plant_state = plant.start(_stack([start.state for start in starts]).take(lanes))
+        self.running = torch.ones(len(lanes), dtype=torch.bool)
+        self.steps = torch.zeros(len(lanes), dtype=torch.long)
+        """Control steps that ended in bounds."""
+        self._plant = plant
+        self._winds = _winds(starts)
+        self._settings = settings
+        self._step = 0
+
+    @property
+    def wind_mps(self) -> Tensor:
+        """Wind at this moment, `[3, L]`, m/s, world frame."""
+        return self._blown(1)[0]
+
+    def advance(self, command: Tensor) -> None:
+        """Fly one control interval under `command` `[4, L]` and see which flights diverged."""
+        self.plant_state = self._plant.advance(
+            self.plant_state, command, self._blown(STEPS_PER_CONTROL)
+        )
+        self._step += 1
+        self.running &= _in_bounds(self.plant_state.state, self._settings)
+        self.steps += self.running
+
+    def _blown(self, count: int) -> Tensor:
+        first = self._step * STEPS_PER_CONTROL
+        return self._winds[first : first + count].double()[..., self.lanes]
+
+
+class TrainingFlights(Plant):
+    """Training flights as the plant of the loop; all last as long, diverged or not."""
+
+    name = "vehicle"
+    reads = frozenset({ACTION})
+    shows = ("airspace",)
+
+    def __init__(self, airspace: Airspace) -> None:
+        self.steps = EPISODE_STEPS
+        self._airspace = airspace
+
+    def start(self, batch: Batch) -> Airspace:
+        """Return the flights, which have just begun."""
+        del batch
+        return self._airspace
+
+    def sense(self, state: Airspace) -> Outputs:
+        """Return the whole truth: nobody else senses here."""
+        return {"airspace": state}
+
+    def advance(self, state: Airspace, inputs: Inputs) -> Airspace:
+        """Fly one control interval under the command that reaches the actuators."""
+        state.advance(inputs[ACTION].T[:, state.lanes])
+        return state
+
+    @override
+    def over(self, state: Airspace, step: int) -> bool:
+        return False
+
+    def progress(self, state: Airspace) -> Progress:
+        """Return which flights are in bounds so far; none arrives anywhere."""
+        running = state.running[: int(state.lanes.max()) + 1]
+        none = torch.zeros_like(running)
+        return Progress(running, none, ~running, state.steps[: len(running)] / CONTROL_RATE_HZ)
+
+    def conditions(self, state: Airspace) -> tuple[Sequence[str], Sequence[str]]:
+        """Return nothing: episodes are no pairs."""
+        return (), ()
+
+
+class Collecting(Module):
+    """The waypoint controller in the planner's place; it knows the truth past all taps."""
+
+    name, writes = "planner", ("commanded_action",)
+    truths = ("airspace",)
+
+    def __init__(self, vehicle: Vehicle, course: Course, arrival_m: float) -> None:
+        self._controller = partial(WaypointController, vehicle, course, arrival_m)
+
+    @override
+    def begin(self, batch: Batch) -> Memory:
+        return self._controller()
+
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Return the perturbed command, `[B, 4]`, N and rad/s."""
+        controller: WaypointController = memory
+        now: Airspace = inputs.truth("airspace")
+        command = controller.command(inputs.step, now.plant_state.state, now.wind_mps)
+        return {"commanded_action": command[:, : len(inputs.running)].T}, controller
+
+
 @torch.inference_mode()
 @native.using(native.PORTABLE)
 def fly(
@@ -96,7 +186,7 @@ def fly(
     episodes: Sequence[int],
     seed: int,
     settings: FlightSettings,
-    build: Callable[[Vehicle], Plant] = TorchPlant,
+    build: Callable[[Vehicle], VehiclePlant] = TorchPlant,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 
@@ -107,30 +197,16 @@ def fly(
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
     course = Course.stack([start.course for start in starts]).take(lanes)
-    winds = _winds(starts)
-    plant = build(vehicle)
-    controller = WaypointController(vehicle, course, settings.controller.arrival_m)
-    now = plant.start(_stack([start.state for start in starts]).take(lanes))
-
-    values = torch.full((len(COMPONENTS), EPISODE_STEPS + 1, len(starts)), torch.nan)
-    running = torch.ones(len(lanes), dtype=torch.bool)
-    steps = torch.zeros(len(lanes), dtype=torch.long)
-    for step in range(EPISODE_STEPS):
-        first = step * STEPS_PER_CONTROL
-        block = winds[first : first + STEPS_PER_CONTROL].double()[..., lanes]
-        command = controller.command(step, now.state, block[0])
-        _record(values[:, step], now, command, block[0])
-        now = plant.advance(now, command, block)
-        running &= _in_bounds(now.state, settings)
-        steps += running
-    last = winds[EPISODE_STEPS * STEPS_PER_CONTROL].double()[:, lanes]
-    none = torch.full((4, len(lanes)), torch.nan, dtype=torch.float64)
-    _record(values[:, EPISODE_STEPS], now, none, last)
-    return Flights(
-        values.numpy(),
-        steps[: len(starts)].numpy(),
-        tuple(start.vehicle for start in starts),
-    )
+    airspace = Airspace(build(vehicle), starts, lanes, settings)
+    interface = quadrotor_interface()
+    modules = [Collecting(vehicle, course, settings.controller.arrival_m)]
+    parts = graph(interface, TrainingFlights(airspace), modules)
+    batch = Batch(tuple(f"{pool}/{episode}" for episode in episodes), seed, CONTROL_DT_S)
+    taps = Taps(interface, scenes=batch.scenes, dt_s=batch.dt_s, consumers=consumers(parts.parts))
+    instants = Loop(interface, parts).execute(batch, taps)
+    values, _ = record(((now, now.state) for now in instants), len(starts), EPISODE_STEPS)
+    steps = airspace.steps[: len(starts)].numpy()
+    return Flights(values, steps, tuple(start.vehicle for start in starts))
 
 
 def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Start:
@@ -191,21 +267,6 @@ def _winds(starts: Sequence[_Start]) -> Tensor:
             if start.winds is not None:
                 out[..., lane] = torch.from_numpy(start.winds)
     return out
-
-
-def _record(into: Tensor, now: PlantState, command: Tensor, wind_mps: Tensor) -> None:
-    """Write one control instant of all lanes into `into` [C, B]."""
-    state = now.state
-    parts = (
-        state.position,
-        state.velocity,
-        state.rotation.flatten(0, 1),
-        state.rate,
-        command,
-        wind_mps,
-        now.thrusts.sum(0, keepdim=True),
-    )
-    into.copy_(torch.cat(parts)[:, : into.shape[1]])
 
 
 def _in_bounds(state: State, settings: FlightSettings) -> Tensor:

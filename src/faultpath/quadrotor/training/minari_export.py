@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.flight import COMPONENTS, EPISODE_STEPS, SIGNALS
+from faultpath.quadrotor.training.flight import EPISODE_STEPS
 from faultpath.quadrotor.training.pool import Pool, read_pool
+from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
 from faultpath.quadrotor.vehicle import COLLECTIVE_MAX_N, RATE_LIMIT_RADPS
 
 _OBSERVED = ("position", "velocity", "rotation", "rate")

@@ -17,8 +17,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS, Flights
 from faultpath.quadrotor.training.provenance import Provenance, provenance_path, read_provenance
+from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath.quadrotor.vehicle import CONTROL_DT_S, VehicleParameters
 from faultpath.store import atomic, read_table
 

@@ -13,8 +13,8 @@ from torch import Tensor
 
 from faultpath.quadrotor.predictors import Physics
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.training.flight import COMPONENTS, SIGNALS
 from faultpath.quadrotor.training.pool import FlightData, read_pool
+from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
 
 HISTORY = 12  # paper, Section IV-A
 HORIZON = 20  # paper, Section IV-A
