@@ -30,11 +30,6 @@ def files() -> Mapping[Path, str]:
     }
 
 
-def fill(part: str, *names: str) -> str:
-    """Return the text of a block: `machine`, `summary`, or the `rows` of some comparisons."""
-    return "\n\n".join(_PARTS[part](load(), *names))
-
-
 def rows(results: Results, *names: str) -> Iterator[str]:
     """Yield the table of some comparisons, what there is to say of its rows, and of what age."""
     records = [record for record in results.records if record.comparison in names]
@@ -123,8 +118,9 @@ def _target(target: Target | None) -> str:
     return f"{target.sense} {number(target.value)}{of}"
 
 
-_PARTS: Mapping[str, Callable[..., Iterator[str]]] = {
-    "machine": lambda results: _machine(results.machine),
-    "summary": _summary,
-    "rows": rows,
+KIND: Mapping[str, Callable[..., str]] = {
+    "machine": lambda: "\n\n".join(_machine(load().machine)),
+    "summary": lambda: "\n\n".join(_summary(load())),
+    "rows": lambda *names: "\n\n".join(rows(load(), *names)),
 }
+"""The blocks of the page; `rows` takes the names of comparisons."""

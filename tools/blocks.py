@@ -2,23 +2,34 @@
 
 import re
 import shlex
-from collections.abc import Callable
+import shutil
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
 from pathlib import Path
+from string import Formatter
+from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import decision, wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
-from faultpath.tables import Table, line
+from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.markdown import grid
 
 ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / "docs" / "reference"
+
+
+TAKE_AGAIN = "take the run again"
+M = TypeVar("M", bound=BaseModel)
+Row = Mapping[str, Any]
+Columns = Mapping[str, str | Callable[[Row], str]]
+"""The columns of a table, from left to right: what each says of a row, as the template of a text
+(in backticks where it is a name) or a function."""
 
 
 class Wrong(Exception):
@@ -42,18 +53,88 @@ class Run:
         return len(arms) * self.record.question.n_scenes * len(self.record.question.seeds)
 
 
+def parsed(path: Path, model: type[M], again: str) -> M:
+    """Return what a file holds; `Wrong` where it cannot be read, with what to do `again`."""
+    try:
+        return model.model_validate_json(path.read_bytes())
+    except (OSError, ValidationError) as error:
+        reason = "missing" if isinstance(error, OSError) else f"of another version ({error})"
+        raise Wrong(f"{path} is {reason}: {again}") from None
+
+
+def copied(files: Iterable[str], folder: Path, target: Path) -> None:
+    """Copy files of a finished run; `Wrong` where it has not got them all."""
+    absent = [file for file in files if not (folder / file).is_file()]
+    if absent:
+        raise Wrong(f"{folder} holds no finished run: it has no {', '.join(absent)}")
+    target.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        shutil.copyfile(folder / file, target / file)
+
+
 @cache
 def load(name: str) -> Run | None:
     """Return a reference run, `None` where there is none; `Wrong` for a damaged one."""
     folder = REFERENCE / name
     if not (folder / "record.json").is_file():
         return None
-    try:
-        record = DecisionRecord.model_validate_json((folder / "record.json").read_bytes())
-        origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    except (OSError, ValidationError) as error:
-        raise Wrong(f"docs/reference/{name} cannot be read; take the run again ({error})") from None
-    return Run(name, record, origin)
+    record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
+    return Run(name, record, parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN))
+
+
+class _Words(Formatter):
+    """Formats fields of a row; what is not there is a dash.
+
+    A number takes its digits after the colon, `{error:3}`, with `+` always its sign; `%` makes
+    whole per cent of a fraction.
+    """
+
+    def get_field(self, field_name: str, args: Any, kwargs: Any) -> Any:
+        try:
+            return super().get_field(field_name, args, kwargs)
+        except (KeyError, TypeError):
+            return None, field_name
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        if value is None:
+            return MISSING
+        if not isinstance(value, float) or not format_spec:
+            return format(value, format_spec)
+        if format_spec == "%":
+            return wording.percent(value)
+        words = wording.signed if format_spec.startswith("+") else wording.plain
+        return words(value, int(format_spec))
+
+
+def told(column: str | Callable[[Row], str], row: Row) -> str:
+    """Return what a column says of a row."""
+    return _Words().vformat(column, (), row) if isinstance(column, str) else column(row)
+
+
+def tabled(
+    corner: str, rows: Iterable[Row], columns: Columns, *, code: bool = False, words: str = ""
+) -> str:
+    """Return a Markdown table of rows, each under its `name`, and its `aside` where it has one.
+
+    Names are set as code on request; `words` is a column of prose.
+    """
+
+    def entry(text: str) -> Entry:
+        name = text.startswith("`")
+        return Entry(text=text.strip("`") if name else text, name=name)
+
+    lines = (
+        line(
+            row["name"],
+            *(entry(told(column, row)) for column in columns.values()),
+            name=code,
+            aside=row.get("aside", ""),
+        )
+        for row in rows
+    )
+    heads = tuple(columns)
+    prose = tuple(head for head in heads if head == words)
+    return grid(Table(corner=corner, columns=heads, words=prose, lines=tuple(lines)))
 
 
 def missing(name: str) -> str:
@@ -121,21 +202,20 @@ def origin(run: Run) -> str:
 def times(*names: str) -> str:
     """Return how long runs took, one a row; those that are not there have a line below."""
     runs = [(name, load(name)) for name in names]
-    lines = tuple(
-        line(
-            str(run.record.question.n_scenes),
-            str(run.trials),
-            duration(run),
-            run.provenance.processor.replace("(R)", ""),
-            str(run.provenance.workers),
-        )
+    rows = [
+        {
+            "name": str(run.record.question.n_scenes),
+            "trials": run.trials,
+            "time": duration(run),
+            "processor": run.provenance.processor.replace("(R)", ""),
+            "workers": run.provenance.workers,
+        }
         for _, run in runs
         if run is not None
-    )
-    heads = ("Trials", "Time", "Processor", "Workers")
-    table = Table(corner="Scenes", columns=heads, words=("Processor",), lines=lines)
-    absent = [missing(name) for name, run in runs if run is None]
-    return "\n\n".join([*([grid(table)] if lines else []), *absent])
+    ]
+    columns = {head: f"{{{head.lower()}}}" for head in ("Trials", "Time", "Processor", "Workers")}
+    table = tabled("Scenes", rows, columns, words="Processor") if rows else ""
+    return "\n\n".join(filter(None, [table, *(missing(name) for name, run in runs if not run)]))
 
 
 def duration(run: Run) -> str:

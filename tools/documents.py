@@ -16,16 +16,16 @@ line of its own; `KINDS` lists the kinds. `PAGES` are the files that are made wh
 import argparse
 import os
 import re
-import shutil
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import blocks
 import learning_blocks
 import paper_blocks
 import platform_blocks
-from blocks import REFERENCE, ROOT, Wrong, load
+from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images
 
 from faultpath.door.saved import MADE_FROM
@@ -37,14 +37,14 @@ from benchmarks import page as performance
 TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
 """All that `faultpath report` reads of a run folder and writes there."""
 
-KINDS: Mapping[str, Callable[..., str]] = {
+KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
-    "learning": learning_blocks.fill,
-    "paper": paper_blocks.paper,
-    "performance": performance.fill,
+    "learning": learning_blocks.KIND,
+    "paper": paper_blocks.KIND,
+    "performance": performance.KIND,
     "platform": platform_blocks.fill,
 }
-"""What fills a block, by its kind; takes the arguments that the block names."""
+"""What fills a block, by its kind, or by kind and part; takes the other words of its name."""
 
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
@@ -75,10 +75,15 @@ def documents() -> list[Path]:
 
 def fill(name: str, document: Path) -> str:
     """Return what belongs into the block `name` of a document."""
-    kind, *arguments = name.split(":")
-    if kind not in KINDS:
-        raise Wrong(f"there is no kind of block '{kind}': use {', '.join(KINDS)}")
-    text = KINDS[kind](*arguments)
+    found, words = KINDS, name.split(":")
+    while isinstance(found, Mapping):
+        kind, *words = words or [""]
+        if kind not in found:
+            raise Wrong(
+                f"{document.name}: there is no block '{kind}' in '{name}': use {', '.join(found)}"
+            )
+        found = found[kind]
+    text = found(*words)
     for word, folder in (("{images}", IMAGES), ("{reference}", REFERENCE)):
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
     return text
@@ -150,13 +155,9 @@ def pictures() -> list[tuple[str, str]]:
 def take(what: str) -> None:
     """Make a run folder a reference run, from `NAME=FOLDER`."""
     name, separator, folder = what.partition("=")
-    absent = [file for file in TAKEN if not (Path(folder) / file).is_file()]
-    if not separator or not name or absent:
-        raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run, with {', '.join(TAKEN)}")
-    target = REFERENCE / name
-    target.mkdir(parents=True, exist_ok=True)
-    for file in TAKEN:
-        shutil.copyfile(Path(folder) / file, target / file)
+    if not separator or not name:
+        raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run")
+    copied(TAKEN, Path(folder), REFERENCE / name)
     run = load(name)
     if run is not None and run.provenance.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")

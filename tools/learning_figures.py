@@ -2,11 +2,17 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from learning_curves import BOTTOM, HEIGHT, LABELS, Curve, Panel, draw, top_of
 
-from faultpath.quadrotor.training.quality_results import PredictorQuality, PredictorScore, Quality
+from faultpath.quadrotor.training.quality_results import (
+    PredictorQuality,
+    PredictorScore,
+    Quality,
+    ReconstructionScore,
+)
 from faultpath.report.scale import Axis, tick_label
 from faultpath.report.svg import Svg
 from faultpath.report.wording import signed
@@ -23,11 +29,6 @@ def rows_of(quality: Quality, pool: str) -> list[PredictorQuality]:
     return [row for row in quality.predictors if row.pool == pool]
 
 
-def label(row: PredictorQuality) -> str:
-    """Return what a predictor is called: its name, and that it is told of no wind."""
-    return f"{row.name}, zero wind" if row.wind == ZERO_WIND else row.name
-
-
 def horizon(quality: Quality) -> str:
     """Return the median error after each step, in still air and in wind."""
     step = quality.settings.step_s
@@ -38,48 +39,38 @@ def horizon(quality: Quality) -> str:
 
     ticks = [(end * i / 4, f"{end * i / 4:g}") for i in range(5)]
     panels = [
-        Panel(f"{air}: median position error, m", "time ahead, s", ticks, curves, dots=False)
-        for air, pool in (("Still air", "nominal"), ("Wind", "wind"))
-        for curves in ([_curve(row, points) for row in rows_of(quality, pool)],)
+        Panel(title, "time ahead, s", ticks, _curves(rows_of(quality, pool), points), dots=False)
+        for title, pool in (
+            ("Still air: median position error, m", "nominal"),
+            ("Wind: median position error, m", "wind"),
+        )
     ]
     return _pair(_same_height(panels), "Position error over the prediction horizon")
 
 
-def calibration(quality: Quality, pool: str) -> str:
+def calibration(pool: str, quality: Quality) -> str:
     """Return median and 90th percentile of the last error over the calibration error."""
-    panels = [
-        Panel(
-            f"{name} of the 20-step position error, m",
-            "calibration error e",
-            _error_ticks(quality),
-            [_curve(row, _under_error(field)) for row in rows_of(quality, pool)],
-        )
-        for name, field in (("Median", "median_m"), ("90th percentile", "p90_m"))
-    ]
+    panels = _under_error(
+        quality,
+        rows_of(quality, pool),
+        {
+            "Median of the 20-step position error, m": "median_m",
+            "90th percentile of the 20-step position error, m": "p90_m",
+        },
+    )
     return _pair(_same_height(panels), f"Position error under calibration error, {pool} pool")
 
 
 def reconstruction(quality: Quality) -> str:
     """Return the error of the wind, and its vertical shift, over the calibration error."""
-    panels = [
-        Panel(
-            title,
-            "calibration error e",
-            _error_ticks(quality),
-            [
-                Curve(
-                    row.name,
-                    _under_error(field)(row.mean),
-                    [_under_error(field)(score) for score in row.seeds.values()],
-                )
-                for row in quality.reconstructions
-            ],
-        )
-        for title, field in (
-            ("Error of the wind (RMSE), m/s", "rmse_mps"),
-            ("Mean shift of the vertical wind, m/s", "vertical_shift_mps"),
-        )
-    ]
+    panels = _under_error(
+        quality,
+        quality.reconstructions,
+        {
+            "Error of the wind (RMSE), m/s": "rmse_mps",
+            "Mean shift of the vertical wind, m/s": "vertical_shift_mps",
+        },
+    )
     return _pair(panels, "Reconstructed wind under calibration error")
 
 
@@ -87,21 +78,14 @@ def levels(quality: Quality) -> str:
     """Return the error of the reconstructed wind by wind level."""
     speeds = quality.settings.level_mean_mps
 
-    def points(by_level: Mapping[str, float]) -> list[tuple[float, float]]:
-        return [(speeds[name], error) for name, error in by_level.items()]
+    def points(score: ReconstructionScore) -> list[tuple[float, float]]:
+        return [(speeds[name], error) for name, error in score.by_level.items()]
 
     panel = Panel(
         "Error of the reconstructed wind (RMSE), m/s",
         "wind level, and its mean wind in m/s",
         [(speed, f"{name}: {speed:g}") for name, speed in speeds.items()],
-        [
-            Curve(
-                row.name,
-                points(row.mean.by_level),
-                [points(score.by_level) for score in row.seeds.values()],
-            )
-            for row in quality.reconstructions
-        ],
+        _curves(quality.reconstructions, points),
     )
     svg = Svg(640, BOTTOM, "Error of the reconstructed wind by wind level", SEEDS)
     draw(svg, panel, LEFT, 640 - LABELS)
@@ -184,16 +168,29 @@ def _whiskers(
         svg.circle((middle, y), 4, "dot open")
 
 
-def _curve(row: PredictorQuality, points: Callable[[PredictorScore], Any]) -> Curve:
-    return Curve(label(row), points(row.mean), [points(score) for score in row.seeds.values()])
+def _under_error(quality: Quality, rows: Sequence[Any], fields: Mapping[str, str]) -> list[Panel]:
+    """Return a panel for each title: a field of what was measured, over the calibration error."""
+    ticks = [(error, signed(error)) for error in quality.settings.calibration_errors]
+
+    def points(field: str) -> Callable[[Any], list[tuple[float, float]]]:
+        return lambda score: [(each.error, getattr(each, field)) for each in score.under_error]
+
+    return [
+        Panel(title, "calibration error e", ticks, _curves(rows, points(field)))
+        for title, field in fields.items()
+    ]
 
 
-def _under_error(field: str) -> Callable[[Any], list[tuple[float, float]]]:
-    return lambda score: [(each.error, getattr(each, field)) for each in score.under_error]
-
-
-def _error_ticks(quality: Quality) -> list[tuple[float, str]]:
-    return [(error, signed(error)) for error in quality.settings.calibration_errors]
+def _curves(rows: Sequence[Any], points: Callable[[Any], Any]) -> list[Curve]:
+    """Return the curve of each row, and those of its seeds; a predictor may be told no wind."""
+    return [
+        Curve(
+            f"{row.name}, zero wind" if getattr(row, "wind", "") == ZERO_WIND else row.name,
+            points(row.mean),
+            [points(score) for score in row.seeds.values()],
+        )
+        for row in rows
+    ]
 
 
 def _same_height(panels: Sequence[Panel]) -> list[Panel]:
@@ -212,11 +209,11 @@ PICTURES: Mapping[str, tuple[str, Callable[[Quality], str | None]]] = {
     "horizon": ("Median position error over the horizon", horizon),
     "calibration-nominal": (
         "Position error under calibration error in still air",
-        lambda quality: calibration(quality, "nominal"),
+        partial(calibration, "nominal"),
     ),
     "calibration-wind": (
         "Position error under calibration error in wind",
-        lambda quality: calibration(quality, "wind"),
+        partial(calibration, "wind"),
     ),
     "wind-levels": ("Error of the reconstructed wind by wind level", levels),
     "calibration-reconstruction": ("Reconstructed wind under calibration error", reconstruction),

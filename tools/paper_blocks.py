@@ -1,18 +1,18 @@
 """What the marked blocks of the documents show of the shipped reproduction of the paper."""
 
 import json
-from collections.abc import Callable
-from functools import cache
+from collections.abc import Callable, Iterable
+from functools import cache, partial
 from pathlib import Path
+from typing import TypeVar
 
-from blocks import REFERENCE, ROOT, Wrong
-from pydantic import ValidationError
+from blocks import REFERENCE, ROOT, TAKE_AGAIN, Wrong, copied, parsed, tabled
 
-from faultpath.record import ClaimVerdict, Reproduction, RunProvenance
+from faultpath.record import Reproduction, RunProvenance
 from faultpath.report.reproduction import ledger_markdown
-from faultpath.tables import Table, line
-from faultpath.tables.markdown import block, grid
+from faultpath.tables.markdown import block
 
+T = TypeVar("T")
 SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
@@ -25,22 +25,14 @@ def load() -> tuple[Reproduction, RunProvenance] | None:
     """Return the shipped run, `None` where there is none; `Wrong` for a damaged one."""
     if not (SHIPPED / FILES[0]).is_file():
         return None
-    try:
-        found = Reproduction.model_validate_json((SHIPPED / FILES[0]).read_bytes())
-        origin = RunProvenance.model_validate_json((SHIPPED / FILES[1]).read_bytes())
-    except (OSError, ValidationError) as error:
-        raise Wrong(f"{SHIPPED} cannot be read; take the run again ({error})") from None
-    return found, origin
+    found = parsed(SHIPPED / FILES[0], Reproduction, TAKE_AGAIN)
+    return found, parsed(SHIPPED / FILES[1], RunProvenance, TAKE_AGAIN)
 
 
-def paper(part: str, *names: str) -> str:
-    """Return a part of the shipped run; `Wrong` for one that there is not."""
+def _part(fill: Callable[..., str], *names: str) -> str:
+    """Return a part of the shipped run."""
     run = load()
-    if run is None:
-        return "*The paper has not been flown yet.*"
-    if part not in _PARTS:
-        raise Wrong(f"the paper has no part '{part}': use {', '.join(_PARTS)}")
-    return _PARTS[part](*run, *names)
+    return fill(*run, *names) if run else "*The paper has not been flown yet.*"
 
 
 def _counts(found: Reproduction, origin: RunProvenance) -> str:
@@ -53,13 +45,9 @@ def _counts(found: Reproduction, origin: RunProvenance) -> str:
     )
 
 
-def _ledger(found: Reproduction, origin: RunProvenance) -> str:
-    return ledger_markdown(found.ledger)
-
-
 def _claim(found: Reproduction, origin: RunProvenance, name: str) -> str:
     """Return every statement of one claim."""
-    claim = _by_id(found, name)
+    claim = _named(found.ledger.claims, name, "id")
     lines = [f"**{claim.id}, {claim.verdict}.** {claim.claim}. The paper: {claim.paper}.", ""]
     for part in claim.parts:
         numbers = "" if part.estimate is None else f": {part.estimate:.3g} {part.unit}"
@@ -70,24 +58,30 @@ def _claim(found: Reproduction, origin: RunProvenance, name: str) -> str:
 
 
 def _table(found: Reproduction, origin: RunProvenance, name: str) -> str:
-    tables = {table.name: table for table in found.tables}
-    if name not in tables:
-        raise Wrong(f"the paper has no table '{name}': use {', '.join(tables)}")
-    return block(tables[name])
+    return block(_named(found.tables, name, "name"))
 
 
-def _motors(found: Reproduction, origin: RunProvenance) -> str:
+def _named(parts: Iterable[T], name: str, key: str) -> T:
+    """Return the part of that name; `Wrong` where there is none."""
+    known = {getattr(part, key): part for part in parts}
+    if name not in known:
+        raise Wrong(f"the paper has no '{name}': use {', '.join(known)}")
+    return known[name]
+
+
+def _motors(_: Reproduction, origin: RunProvenance) -> str:
     """Return what `tools/motor_state.py` measured."""
     try:
         measured = json.loads((REFERENCE / "motor-state.json").read_text("utf-8"))
     except FileNotFoundError:
         return "*Not measured yet: run tools/motor_state.py.*"
-    lines = [line("true-parameter predictor", f"{measured['predictor_cm']:.1f}")]
-    for intervals, error in measured["plant_cm"].items():
-        lines.append(line(f"plant, motors followed for {intervals} intervals", f"{error:.1f}"))
-    heads = ("Median 20-step position error (cm)",)
+    rows = [{"name": "true-parameter predictor", "error": measured["predictor_cm"]}] + [
+        {"name": f"plant, motors followed for {intervals} intervals", "error": error}
+        for intervals, error in measured["plant_cm"].items()
+    ]
+    columns = {"Median 20-step position error (cm)": "{error:1}"}
     return (
-        f"{grid(Table(corner='Predicted by', columns=heads, lines=tuple(lines)))}\n\n"
+        f"{tabled('Predicted by', rows, columns)}\n\n"
         f"{measured['windows']:,} windows of the selection library, flown with the "
         "true-parameter model. Made by `python tools/motor_state.py RUN_FOLDER`."
     )
@@ -111,30 +105,21 @@ def _origin(found: Reproduction, origin: RunProvenance) -> str:
     )
 
 
-def _by_id(found: Reproduction, name: str) -> ClaimVerdict:
-    for claim in found.ledger.claims:
-        if claim.id == name:
-            return claim
-    raise Wrong(f"there is no claim '{name}'")
-
-
 def take(folder: Path, reference: Path) -> None:
     """Ship a run of the whole paper: `Wrong` when it is not finished."""
-    absent = [file for file in (*FILES, *PAGES) if not (folder / file).is_file()]
-    if absent:
-        raise Wrong(f"{folder} holds no finished reproduction: it has no {', '.join(absent)}")
-    for place, files in ((SHIPPED, FILES), (reference / "paper", PAGES)):
-        place.mkdir(parents=True, exist_ok=True)
-        for file in files:
-            (place / file).write_bytes((folder / file).read_bytes())
+    copied(FILES, folder, SHIPPED)
+    copied(PAGES, folder, reference / "paper")
 
 
-_PARTS: dict[str, Callable[..., str]] = {
-    "counts": _counts,
-    "ledger": _ledger,
-    "claim": _claim,
-    "table": _table,
-    "origin": _origin,
-    "motors": _motors,
-    "picture": _picture,
+KIND: dict[str, Callable[..., str]] = {
+    name: partial(_part, fill)
+    for name, fill in {
+        "counts": _counts,
+        "ledger": lambda found, origin: ledger_markdown(found.ledger),
+        "claim": _claim,
+        "table": _table,
+        "origin": _origin,
+        "motors": _motors,
+        "picture": _picture,
+    }.items()
 }

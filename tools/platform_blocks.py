@@ -1,12 +1,12 @@
 """The tables of `docs/design/platform.md`, from the records of the platform search."""
 
 import json
+from operator import itemgetter
 
-from blocks import ROOT, Wrong
+from blocks import ROOT, Wrong, tabled
 
 from faultpath.quadrotor.platform import platform, platform_hash
-from faultpath.tables import MISSING, Table, line
-from faultpath.tables.markdown import grid
+from faultpath.tables import MISSING
 
 RECORDS = ROOT / "docs" / "design" / "platform-search"
 
@@ -30,18 +30,16 @@ def searched(results: list[dict]) -> str:
     """Return the counts of a search: a row a setting, a column a cell."""
     cells = list(dict.fromkeys(r["cell"] for r in results))
     keys = list(dict.fromkeys(key for r in results for key in r["point"]))
-    rows: dict[tuple, dict[str, str]] = {}
+    rows: dict[str, dict] = {}
     for r in results:
-        point = (r["planner"], *(str(r["point"].get(key, MISSING)) for key in keys))
-        rows.setdefault(point, {})[r["cell"]] = _counts(r)
-    lines = (
-        line(point[0], *point[1:], *(found.get(cell, "") for cell in cells))
-        for point, found in rows.items()
-    )
-    table = Table(corner="planner", columns=(*keys, *cells), lines=tuple(lines))
+        setting = {"name": r["planner"], **{key: str(r["point"].get(key, MISSING)) for key in keys}}
+        row = rows.setdefault(json.dumps(setting), {**setting, **dict.fromkeys(cells, "")})
+        row[r["cell"]] = _counts(r)
+    columns = {key: itemgetter(key) for key in (*keys, *cells)}
+    table = tabled("planner", rows.values(), columns)
     scenes = " or ".join(str(n) for n in sorted({r["scenes"] for r in results}))
     return (
-        f"{grid(table)}\n\nSuccess / crash / timeout in {scenes} selection scenes; in brackets "
+        f"{table}\n\nSuccess / crash / timeout in {scenes} selection scenes; in brackets "
         "the median time of a success, s."
     )
 
@@ -64,10 +62,9 @@ def frozen(record: dict) -> str:
     }
     if "perception" in record["platform"]:
         parts["perception"] = record["platform"]["perception"]
-    lines = (
-        line(name, ", ".join(f"{key} {value}" for key, value in values.items()))
+    rows = [
+        {"name": name, "settings": ", ".join(f"{key} {value}" for key, value in values.items())}
         for name, values in parts.items()
-    )
-    heads = ("settings",)
-    table = Table(corner="frozen", columns=heads, words=heads, lines=tuple(lines))
-    return f"{grid(table)}\n\nHash `{record['hash']}`."
+    ]
+    table = tabled("frozen", rows, {"settings": "{settings}"}, words="settings")
+    return f"{table}\n\nHash `{record['hash']}`."

@@ -191,7 +191,7 @@ def test_pictures_and_runs_are_linked_from_where_the_document_is(readme) -> None
     [
         ("<!-- begin:table:toy -->\n", "stands alone"),
         ("<!-- begin:table:toy -->\n<!-- end:table:dock -->", "stands alone"),
-        ("<!-- begin:tabel:toy -->\n<!-- end:tabel:toy -->", "no kind of block 'tabel'"),
+        ("<!-- begin:tabel:toy -->\n<!-- end:tabel:toy -->", "no block 'tabel'"),
         ("<!-- begin:code:examples/dock.py:x -->\n<!-- end:code:examples/dock.py:x -->", "no part"),
     ],
 )
