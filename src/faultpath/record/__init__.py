@@ -2,7 +2,7 @@
 
 from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
 from faultpath.record.decide import decide, primary_path
-from faultpath.record.family import CORRECT, SHARED, Decided, Family, decide_paths
+from faultpath.record.family import CORRECT, SHARED, Family, decide_paths
 from faultpath.record.model import (
     Cell,
     Change,
@@ -27,7 +27,6 @@ __all__ = [
     "Change",
     "ClaimVerdict",
     "Configuration",
-    "Decided",
     "DecisionRecord",
     "Effect",
     "Family",

@@ -6,7 +6,7 @@ from statistics import median
 from faultpath.errors import UserError
 from faultpath.record import breakeven_words, words
 from faultpath.record.compared import PathTrials, compared
-from faultpath.record.family import CORRECT, SHARED, Arms, Decided, Family, decide_paths, percent
+from faultpath.record.family import CORRECT, SHARED, Arms, Family, decide_paths, percent
 from faultpath.record.headline import headline
 from faultpath.record.model import (
     Cell,
@@ -20,14 +20,15 @@ from faultpath.record.model import (
 )
 from faultpath.record.secondary import secondary
 from faultpath.statistics import (
+    Contrast,
     Estimate,
     Resamples,
     break_even,
     detectable,
-    discordant_by_seed,
-    mcnemar_mid_p,
     mixture_curve,
 )
+from faultpath.statistics.distributions import sign_mid_p_value
+from faultpath.statistics.estimate import Discordant
 from faultpath.trials.outcome import Status
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
@@ -142,18 +143,19 @@ def _effect(
     untested: Collection[str],
 ) -> Effect:
     repair, baseline = trials.arms
-    counts = discordant_by_seed(repair, baseline).per_seed
     found = family.effects[path]
-    made = found.decision
+    assert found.counts is not None
+    assert found.test is not None
+    counts = found.counts.per_seed
     others = secondary(trials.pairs, resamples)
     effect = Effect(
         path=path,
-        success=_scoped(about, found.comparison.estimate),
-        sign=made.sign if made else 0,
-        test=found.comparison.test.name,
-        p_value=found.comparison.test.p_value,
-        adjusted_p_value=made.adjusted_p if made else None,
-        mid_p_value=mcnemar_mid_p(counts[0]).p_value if len(counts) == 1 else None,
+        success=_scoped(about, found),
+        sign=found.sign,
+        test=found.test.name,
+        p_value=found.test.p_value,
+        adjusted_p_value=found.decision.adjusted_p if found.decision else None,
+        mid_p_value=_mid_p(*counts) if len(counts) == 1 else None,
         scenes=len(trials.pairs.scenes),
         void_pairs=trials.pairs.void,
         wins=tuple(count.first_only for count in counts),
@@ -172,30 +174,36 @@ def _effect(
     return effect.model_copy(update={"words": words.effect_words(about, effect)})
 
 
-def _detectable(about: words.About, found: Decided, arms: Arms) -> float | None:
+def _detectable(about: words.About, found: Contrast, arms: Arms) -> float | None:
     """Return the least difference that the rule finds at the level that Holm left this contrast.
 
     None is known for newly trained models, whose spread a few seeds do not give.
     """
     if found.decision is None or about.question.generalise == "models":
         return None
-    return detectable(*arms, alpha=found.decision.critical_p).value
+    return detectable(*arms, alpha=found.decision.critical_p)
 
 
-def _scoped(about: words.About, estimate: Estimate) -> Estimate:
-    return estimate.model_copy(update={"estimand": words.estimand(about.question)})
+def _mid_p(counts: Discordant) -> float:
+    return sign_mid_p_value(counts.first_only, counts.second_only)
+
+
+def _scoped(about: words.About, contrast: Contrast) -> Estimate:
+    estimand = words.estimand(about.question)
+    return contrast.estimate().model_copy(update={"estimand": estimand})
 
 
 def _change(about: words.About, path: str, family: Family, effects: Sequence[Effect]) -> Change:
     found, of = family.changes[path], {effect.path: effect for effect in effects}
+    assert found.test is not None
     assert found.decision is not None
     change = Change(
         isolated=path,
         shared=SHARED,
-        change=_scoped(about, found.comparison.estimate),
-        sign=found.decision.sign,
-        test=found.comparison.test.name,
-        p_value=found.decision.p_value,
+        change=_scoped(about, found),
+        sign=found.sign,
+        test=found.test.name,
+        p_value=found.test.p_value,
         adjusted_p_value=found.decision.adjusted_p,
         turn=family.turns[path],
         words="",
@@ -207,7 +215,7 @@ def _change(about: words.About, path: str, family: Family, effects: Sequence[Eff
 def _break_even(
     about: words.About, path: str, family: Family, effects: Sequence[Effect]
 ) -> PathBreakEven:
-    ends = family.effects[CORRECT].effect, family.effects[path].effect
+    ends = family.effects[CORRECT], family.effects[path]
     result = break_even(*ends)
     of = {effect.path: effect for effect in effects}
     said = breakeven_words.clause(about.question, result.regions, of[CORRECT], of[path])

@@ -6,19 +6,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record.model import Extreme, Turn
+from faultpath.record.model import Extreme
 from faultpath.statistics import (
-    Comparison,
-    Decision,
+    Contrast,
     Resamples,
-    compare,
+    Turn,
+    change,
     decide_family,
-    difference_of_effects,
     fewest_scenes,
     success_effect,
+    tested,
     turn,
 )
-from faultpath.statistics import Effect as Draws
 
 CORRECT = "correct"
 SHARED = "shared"
@@ -31,27 +30,12 @@ Arms = tuple[Bools, Bools]
 
 
 @dataclass(frozen=True)
-class Decided:
-    """One contrast of the family: its numbers, and what the whole family makes of it."""
-
-    effect: Draws
-    comparison: Comparison
-    decision: Decision | None
-    """`None` where it is not in the family, because nothing was tested."""
-
-    @property
-    def sign(self) -> int:
-        """Side that is decided; 0 for neither."""
-        return self.decision.sign if self.decision else 0
-
-
-@dataclass(frozen=True)
 class Family:
     """Every contrast of an audit with its decision."""
 
-    effects: Mapping[str, Decided]
-    """By path."""
-    changes: Mapping[str, Decided]
+    effects: Mapping[str, Contrast]
+    """By path; without a decision where nothing was tested."""
+    changes: Mapping[str, Contrast]
     """Shared minus isolated, by the isolated path."""
     turns: Mapping[str, Turn]
     extremes: Mapping[str, Extreme | None]
@@ -85,31 +69,20 @@ def decide_paths(
     # Only what speaks of newly trained models resamples.
     drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=10_000 if models else 1)
     effects = {
-        path: success_effect(repair, baseline, drawn, resample_seeds=models)
+        path: tested(success_effect(repair, baseline, drawn, resample_seeds=models))
         for path, (repair, baseline) in success.items()
     }
-    changes = {
-        path: difference_of_effects(effects[path], effects[SHARED])
-        for path in _isolated([path for path in effects if path not in untested])
-    }
-    compared = {path: compare(effect) for path, effect in effects.items()}
-    changed = {path: compare(effect) for path, effect in changes.items()}
-    family = {("effect", path): c for path, c in compared.items() if path not in untested}
-    family |= {("change", path): c for path, c in changed.items()}
-    made = decide_family({"/".join(key): c for key, c in family.items()}, alpha)
+    isolated = _isolated([path for path in effects if path not in untested])
+    changes = {path: tested(change(effects[path], effects[SHARED])) for path in isolated}
+    family = {f"effect/{path}": e for path, e in effects.items() if path not in untested}
+    family |= {f"change/{path}": c for path, c in changes.items()}
+    made = decide_family(family, alpha)
+    effects = {path: made.get(f"effect/{path}", effect) for path, effect in effects.items()}
+    changes = {path: made[f"change/{path}"] for path in changes}
     return Family(
-        effects={
-            path: Decided(effect, compared[path], made.get(f"effect/{path}"))
-            for path, effect in effects.items()
-        },
-        changes={
-            path: Decided(effect, changed[path], made[f"change/{path}"])
-            for path, effect in changes.items()
-        },
-        turns={
-            path: turn(made[f"effect/{path}"], made[f"effect/{SHARED}"], made[f"change/{path}"])
-            for path in changes
-        },
+        effects=effects,
+        changes=changes,
+        turns={path: turn(effects[path], effects[SHARED], c) for path, c in changes.items()},
         extremes={path: _extreme(*arms) for path, arms in success.items()},
         hypotheses=len(family),
         scenes_needed=fewest_scenes(len(family), alpha),

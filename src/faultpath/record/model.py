@@ -4,14 +4,11 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.statistics import BreakEven, Estimate
+from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 
-Sign = Literal[-1, 0, 1]
-"""1: decided for the repair; -1: decided for the baseline; 0: not decided."""
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 Generalise = Literal["scenes", "models"]
-Turn = Literal["reversal", "interaction", "none"]
 
 
 class _Frozen(BaseModel):
@@ -93,7 +90,7 @@ class Effect(_Frozen):
     success: Estimate
     """Percentage points."""
     sign: Sign
-    """What the family of all paths decides."""
+    """What the family of all paths decides: 1 for the repair, -1 for the baseline, 0 nothing."""
     test: str
     p_value: float
     adjusted_p_value: float | None

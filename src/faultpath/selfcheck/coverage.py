@@ -112,8 +112,8 @@ class ModelsCoverage:
             apart = stream.random((self.scenes, self.seeds))
             wins = np.where(alike < 0.5, together, apart) < rates
             none = np.zeros_like(wins)
-            low, high = success_effect(wins, none, resamples, resample_seeds=True).interval()
-            covered += low - _SLACK <= truth <= high + _SLACK
+            found = success_effect(wins, none, resamples, resample_seeds=True).interval
+            covered += found is not None and found[0] - _SLACK <= truth <= found[1] + _SLACK
         setting = {
             "scenes": self.scenes,
             "seeds": self.seeds,

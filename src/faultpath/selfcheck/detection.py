@@ -78,7 +78,7 @@ class DetectionAtTheReported:
 
     def _reported(self, difference: Floats) -> float | None:
         """Return the least detectable difference, a fraction, of outcomes [scenes, seeds]."""
-        least = detectable(difference > 0.0, difference < 0.0, alpha=self.alpha).value
+        least = detectable(difference > 0.0, difference < 0.0, alpha=self.alpha)
         return None if least is None else least / 100.0
 
     def _at(self, difference: float) -> Population:

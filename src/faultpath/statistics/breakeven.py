@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.effect import Effect, check_joint, percentile_interval
+from faultpath.statistics.contrast import Contrast, check_joint, percentile_interval
 from faultpath.statistics.estimate import BreakEven, Region
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.score import interval, quantile, rejects
@@ -34,7 +34,7 @@ def break_even_point(delta_0: float, delta_f: float) -> float | None:
     return delta_0 / (delta_0 - delta_f) + 0.0
 
 
-def break_even(correct: Effect, faulty: Effect, level: float = 0.95) -> BreakEven:
+def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> BreakEven:
     """Return at which fault frequencies who is ahead is decided, and at which it is not.
 
     ``correct`` and ``faulty`` are effects on the same scenes, without and with the fault. At every
@@ -63,7 +63,7 @@ def break_even(correct: Effect, faulty: Effect, level: float = 0.95) -> BreakEve
 
 
 def mixture_curve(
-    correct: Effect, faulty: Effect, points: int = 41, level: float = 0.95
+    correct: Contrast, faulty: Contrast, points: int = 41, level: float = 0.95
 ) -> tuple[tuple[float, float, float, float], ...]:
     """Return ``(p, expected difference, low, high)`` at evenly spaced fault frequencies p."""
     mixture = _Mixture(correct, faulty, level)
@@ -78,7 +78,7 @@ def mixture_curve(
 class _Mixture:
     """What is known of the difference at fault frequencies."""
 
-    def __init__(self, correct: Effect, faulty: Effect, level: float) -> None:
+    def __init__(self, correct: Contrast, faulty: Contrast, level: float) -> None:
         check_joint(correct, faulty)
         self.ends = correct, faulty
         self.level = level

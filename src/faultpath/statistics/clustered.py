@@ -6,13 +6,12 @@ seed; a quantile is taken over the windows of each seed, and then the mean over 
 VI: "mean of per-seed window medians").
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.effect import Effect
-from faultpath.statistics.estimate import SCENES
+from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.statistics.resamples import Resamples
 
@@ -40,42 +39,22 @@ class WindowQuantiles:
         label = "windows/" + "/".join(map(str, names))
         self.resamples = Resamples.draw(label, len(names), seed=seed, n_resamples=n_resamples)
 
-    def value(self, values: Numbers, q: float, unit: str = "") -> Effect:
+    def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
         """Return the quantile ``q`` of ``values``."""
         array = self._checked(by_scene_and_seed(values), q)
         return self._effect(self._quantiles(array, q), unit, f"quantile {q:g} over windows")
 
-    def difference(self, first: Numbers, second: Numbers, q: float, unit: str = "") -> Effect:
-        """Return the quantile ``q`` of ``first`` minus that of ``second``, on the same windows."""
-        return self._compare(
-            first, second, q, np.subtract, unit, f"difference of quantiles {q:g} over windows"
-        )
-
-    def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Effect:
+    def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Contrast:
         """Return the natural logarithm of the ratio of two quantiles, which must be positive.
 
-        Without a difference it is 0, as for other effects. Over seeds it is the mean logarithm.
+        Without a difference it is 0, as for other contrasts. Over seeds it is the mean logarithm.
         """
-        return self._compare(
-            first,
-            second,
-            q,
-            lambda one, two: np.log(_positive(one)) - np.log(_positive(two)),
-            "log",
-            f"log ratio of quantiles {q:g} over windows",
-        )
-
-    def _compare(
-        self,
-        first: Numbers,
-        second: Numbers,
-        q: float,
-        how: Callable[[Floats, Floats], Floats],
-        unit: str,
-        what: str,
-    ) -> Effect:
-        one, two = (self._quantiles(self._checked(array, q), q) for array in paired(first, second))
-        return self._effect(np.asarray(how(one, two), dtype=np.float64), unit, what)
+        arms = paired(first, second)
+        one, two = (self._quantiles(self._checked(array, q), q) for array in arms)
+        if not ((one > 0.0).all() and (two > 0.0).all()):
+            raise ValueError("a ratio needs quantiles above 0 in every resample")
+        what = f"log ratio of quantiles {q:g} over windows"
+        return self._effect(np.log(one) - np.log(two), "log", what)
 
     def _checked(self, values: Floats, q: float) -> Floats:
         if not 0.0 < q < 1.0:
@@ -101,15 +80,14 @@ class WindowQuantiles:
         parts = [part for block in blocks for part in _cut(block, len(values))]
         return np.concatenate([_quantile(ordered, part @ reached, q) for part in parts])
 
-    def _effect(self, quantiles: Floats, unit: str, what: str) -> Effect:
+    def _effect(self, quantiles: Floats, unit: str, what: str) -> Contrast:
         means = quantiles.mean(axis=1)
-        return Effect(
+        return Contrast(
             value=float(means[0]),
             draws=means[1:],
             per_seed=tuple(float(value) for value in quantiles[0]),
             unit=unit,
             method=f"{what}, percentile bootstrap of scenes",
-            estimand=SCENES,
             n_scenes=self.resamples.n_scenes,
             n_seeds=quantiles.shape[1],
             resamples=self.resamples,
@@ -133,9 +111,3 @@ def _quantile(ordered: Floats, reached: Floats, q: float) -> Floats:
 def _cut(block: Floats, n_windows: int) -> list[NDArray[np.float64]]:
     step = max(1, 100_000 // n_windows)
     return [block[first : first + step] for first in range(0, len(block), step)]
-
-
-def _positive(quantiles: Floats) -> Floats:
-    if not (quantiles > 0.0).all():
-        raise ValueError("a ratio needs quantiles above 0 in every resample")
-    return quantiles

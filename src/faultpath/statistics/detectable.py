@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 
 from faultpath.statistics.distributions import clopper_pearson_upper
-from faultpath.statistics.estimate import Detectable
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.power import rule_power, seed_mixture, simulated_power
 
@@ -20,25 +20,23 @@ _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
 
 
 def detectable(
-    first: Numbers, second: Numbers, *, alpha: float = 0.05, power: float = 0.8
-) -> Detectable:
+    first: Numbers, second: Numbers, *, alpha: float = ALPHA, power: float = 0.8
+) -> float | None:
     """Return the detectable difference in success (pp) of binary arms [scenes, seeds].
 
-    As many pairs are taken to be discordant as were, or with all of them on one side what the
-    difference needs; without any, the upper end of the 95 % Clopper-Pearson interval of their
-    share. Seeds agree within a scene as often as was seen; copies of a seed count once.
+    None where the test cannot reject at ``alpha`` with that power, whatever the difference. As many
+    pairs are taken to be discordant as were, or with all of them on one side what the difference
+    needs; without any, the upper end of the 95 % Clopper-Pearson interval of their share. Seeds
+    agree within a scene as often as was seen; copies of a seed count once.
     """
     one, two = paired_binary(first, second)
-    n_scenes, n_seeds = one.shape
+    n_scenes = len(one)
     seeds = np.unique(one - two, axis=1)
     rate, alike = float(np.abs(seeds).mean()), 1.0
-    notes: list[str] = []
     if rate == 0.0:
         rate = clopper_pearson_upper(0, n_scenes)
-        notes.append(f"no discordant pair; at most {100.0 * rate:.1f} % are (Clopper-Pearson)")
     elif seeds.shape[1] > 1:
         alike = _alike(seeds)
-        notes.append(f"in {100.0 * alike:.0f} % of scenes all seeds end alike, as far as told")
 
     def reached(difference: float) -> float:
         share = min(1.0, max(rate, difference))
@@ -47,21 +45,8 @@ def detectable(
         values, chances = seed_mixture(seeds.shape[1], share, difference / share, alike)
         return simulated_power(n_scenes, values, chances, alpha)
 
-    difference = _least(lambda size: reached(size) >= power)
-    if difference is not None and difference > rate:
-        notes.append("discordant rate raised to the difference, all discordants on one side")
-    return Detectable(
-        value=None if difference is None else 100.0 * difference,
-        reason=_never(n_scenes, alpha, power) if difference is None else None,
-        alpha=alpha,
-        power=power,
-        method=f"power of {'exact McNemar' if n_seeds == 1 else 'the sign test'} and the score "
-        f"interval, {'exact' if alike == 1.0 else 'simulated'}",
-        n_scenes=n_scenes,
-        n_seeds=n_seeds,
-        discordant_rate=rate,
-        note="; ".join(notes) or None,
-    )
+    least = _least(lambda size: reached(size) >= power)
+    return None if least is None else 100.0 * least
 
 
 def _alike(seeds: Floats) -> float:
@@ -77,13 +62,6 @@ def _alike(seeds: Floats) -> float:
     discordant = n_scenes * float(np.abs(seeds).mean())
     seen = discordant - by_chance + _PRIOR_SCENES
     return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
-
-
-def _never(n_scenes: int, alpha: float, power: float) -> str:
-    return (
-        f"with {n_scenes} scenes the test cannot reject at {alpha:.2g} with power {power:g}, "
-        "whatever the difference"
-    )
 
 
 def _least(reaches: Callable[[float], bool]) -> float | None:

@@ -3,15 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.effect import Effect, check_scenes
-from faultpath.statistics.estimate import SCENES
+from faultpath.statistics.contrast import Contrast, check_scenes
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.statistics.resamples import Resamples
 
 
 def median_effect(
     first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples, unit: str = "s"
-) -> Effect:
+) -> Contrast:
     """Return the median over scenes of the within-scene difference, where both arms count.
 
     ``first``, ``second`` and ``joint`` are [scenes, seeds] (or [scenes]); ``joint`` is true where
@@ -28,7 +27,7 @@ def median_effect(
     if not used.any():
         raise ValueError("no scene is jointly successful, so there is no median difference")
     means = difference[used].sum(axis=1) / mask[used].sum(axis=1)
-    return Effect(
+    return Contrast(
         value=float(np.median(means)),
         draws=_resampled_medians(means, np.flatnonzero(used), resamples),
         per_seed=tuple(
@@ -38,7 +37,6 @@ def median_effect(
         ),
         unit=unit,
         method="median of paired differences, percentile bootstrap of scenes",
-        estimand=SCENES,
         n_scenes=int(used.sum()),
         n_seeds=mask.shape[1],
         resamples=resamples,

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
+from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.score import quantile, reach, rejects
 from faultpath.streams import generator
@@ -16,8 +17,13 @@ AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 
 
+def fewest_scenes(hypotheses: int, alpha: float = ALPHA) -> int:
+    """Return how many scenes a family needs at least for its tests to detect anything at all."""
+    return int(np.ceil(1.0 + np.log2(hypotheses / alpha) - 1e-12))
+
+
 def rule_power(
-    n_scenes: int, discordant_rate: float, difference: float, alpha: float = 0.05
+    n_scenes: int, discordant_rate: float, difference: float, alpha: float = ALPHA
 ) -> float:
     """Return the exact power of exact McNemar at ``alpha`` together with Tango's 95 % interval.
 

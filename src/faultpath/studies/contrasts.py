@@ -93,7 +93,7 @@ def comparison(
 
 
 def _entries(contrast: Contrast) -> Made:
-    least = contrast.detectable.value
+    least = contrast.detectable
     return (
         Entry(text=wording.signed(contrast.success.value), detected=bool(contrast.detected_sign)),
         wording.interval(contrast.success) or MISSING,

@@ -7,21 +7,17 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
+from faultpath.statistics import Contrast as Difference
 from faultpath.statistics import (
-    Comparison,
-    Detectable,
-    Effect,
     Estimate,
     Resamples,
     SeedCounts,
-    TestResult,
-    compare,
-    detectable,
-    discordant_by_seed,
     mean_effect,
     success_effect,
     success_rate,
+    tested,
 )
+from faultpath.statistics.estimate import PairedTest
 from faultpath.studies.cells import Cell
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 
@@ -38,41 +34,39 @@ class Contrast:
     resamples: Resamples
 
     @cached_property
-    def draws(self) -> Effect:
-        """Difference in success with its bootstrap draws, percentage points."""
-        return success_effect(self.pairs.first.success, self.pairs.second.success, self.resamples)
-
-    @cached_property
-    def comparison(self) -> Comparison:
-        """Difference in success with its interval and the paper's test."""
-        return compare(self.draws)
+    def draws(self) -> Difference:
+        """Difference in success with interval and test, percentage points."""
+        success = self.pairs.first.success, self.pairs.second.success
+        return tested(success_effect(*success, self.resamples))
 
     @property
     def success(self) -> Estimate:
         """Difference in success, percentage points."""
-        return self.comparison.estimate
+        return self.draws.estimate()
 
     @property
     def counts(self) -> SeedCounts:
         """Scenes in which only one of the two succeeded, seed by seed."""
-        return discordant_by_seed(self.pairs.first.success, self.pairs.second.success)
+        assert self.draws.counts is not None
+        return self.draws.counts
 
     @property
-    def test(self) -> TestResult:
+    def test(self) -> PairedTest:
         """The paper's test: exact McNemar for one seed, else the sign test on scene means."""
-        return self.comparison.test
+        assert self.draws.test is not None
+        return self.draws.test
 
     @property
-    def detectable(self) -> Detectable:
+    def detectable(self) -> float | None:
         """The least difference in success that this contrast could have detected."""
-        return detectable(self.pairs.first.success, self.pairs.second.success)
+        return self.draws.least
 
     @property
     def detected_sign(self) -> int:
         """Side of 0 on which interval and test agree that the difference lies; 0 for neither."""
-        return self.comparison.side
+        return self.draws.detected
 
-    def terminal_distance(self) -> Effect:
+    def terminal_distance(self) -> Difference:
         """Mean difference in the distance to the goal at the end, metres, all paired scenes."""
         first, second = self.pairs.first, self.pairs.second
         if first.terminal_distance_m is None or second.terminal_distance_m is None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import compare, decide_family, difference_of_effects
+from faultpath.statistics import change, decide_family, tested, turn
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath.studies.quantities.differences import Pair, together
 from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
@@ -45,25 +45,25 @@ class TurnsDown:
         return Judged("undecided", why)
 
 
-def turn(before: Pair, after: Pair) -> Callable[[Results], Turn]:
+def turned(before: Pair, after: Pair) -> Callable[[Results], Turn]:
     """Return the change of a difference in success from one pair of cells to another."""
 
     def found(results: Results) -> Turn:
-        one, two = together(results, before, after)
-        difference = difference_of_effects(one.draws, two.draws)
-        change = of_effect(difference)
-        family = {"before": one.comparison, "after": two.comparison, "change": compare(difference)}
+        one, two = (contrast.draws for contrast in together(results, before, after))
+        difference = change(one, two)
+        shown = of_effect(difference)
+        family = {"before": one, "after": two, "change": tested(difference)}
         decided = decide_family(family)
         return Turn(
-            value=change.value,
-            interval=change.interval,
-            unit=change.unit,
-            n_scenes=change.n_scenes,
-            mde=change.mde,
+            value=shown.value,
+            interval=shown.interval,
+            unit=shown.unit,
+            n_scenes=shown.n_scenes,
+            mde=shown.mde,
             counts=f"{one.counts}, then {two.counts}",
-            before=one.detected_sign,
-            after=two.detected_sign,
-            turned=decided["before"].sign > 0 > decided["after"].sign,
+            before=one.detected,
+            after=two.detected,
+            turned=turn(*decided.values()) == "reversal" and decided["before"].sign > 0,
         )
 
     return found

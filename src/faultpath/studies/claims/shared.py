@@ -1,7 +1,7 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turn
+from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turned
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages.table_4 import cell, change
@@ -47,7 +47,7 @@ CLAIMS: dict[str, Statements] = {
     "C26": (
         Statement(
             "success of GRU+DCC minus GRU, from reconstruction-only to shared,",
-            turn(_repair(ISOLATED), _repair(SHARED)),
+            turned(_repair(ISOLATED), _repair(SHARED)),
             TurnsDown(),
         ),
         Statement(

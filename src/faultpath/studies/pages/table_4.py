@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, TypeAlias
 
 from faultpath.report import wording
-from faultpath.statistics import Effect
+from faultpath.statistics import Contrast as Difference
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
 from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
 from faultpath.studies.entries import Group, bracket, of_quantity
@@ -20,7 +20,7 @@ NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}
 """Names in print."""
 METHODS = tuple(NAMES)
 ERROR = 0.1
-_Effect: TypeAlias = Callable[[Contrast], Effect]
+_Effect: TypeAlias = Callable[[Contrast], Difference]
 
 PATHS: dict[str, tuple[str, ...]] = {
     "correct": (),

@@ -7,16 +7,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import (
-    Effect,
-    Resamples,
-    detectable,
-    discordant_by_seed,
-    median_effect,
-    success_effect,
-    success_test,
-    weighted_sum,
-)
+from faultpath.statistics import Contrast as Difference
+from faultpath.statistics import Resamples, median_effect, success_effect, tested, weighted_sum
 from faultpath.studies.cells import Cell
 from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity, of_effect
 from faultpath.studies.results import Contrast, NotRun, Results
@@ -60,13 +52,13 @@ def time(first: Cell, second: Cell) -> Quantity:
     return found
 
 
-def success_draws(contrast: Contrast) -> Effect:
+def success_draws(contrast: Contrast) -> Difference:
     """Return the difference in success with its draws."""
     return contrast.draws
 
 
 def combined(
-    *terms: tuple[float, Pair], effect: Callable[[Contrast], Effect] = success_draws
+    *terms: tuple[float, Pair], effect: Callable[[Contrast], Difference] = success_draws
 ) -> Quantity:
     """Return a weighted sum of differences over common scenes, on shared resamples."""
 
@@ -100,16 +92,16 @@ def _joint(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
 
 def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:
     """Return the difference of two binary arms [scenes, seeds] with the paper's test."""
-    effect = success_effect(first, second, resamples)
+    effect = tested(success_effect(first, second, resamples))
     return Found(
         value=effect.value,
-        interval=effect.estimate().interval if effect.n_scenes >= MIN_SCENES else None,
+        interval=effect.interval if effect.n_scenes >= MIN_SCENES else None,
         unit=effect.unit,
         n_scenes=effect.n_scenes,
-        test=success_test(first, second),
-        mde=detectable(first, second).value,
+        test=effect.test,
+        mde=effect.least,
         telling_mde=TELLING_PP,
-        counts=str(discordant_by_seed(first, second)),
+        counts=str(effect.counts),
     )
 
 

@@ -3,18 +3,14 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import Effect, TestResult, fewest_scenes
-from faultpath.statistics.distributions import normal_quantile
+from faultpath.statistics import Contrast, fewest_scenes
+from faultpath.statistics.estimate import PairedTest
 from faultpath.studies.results import Results
 
 MIN_SCENES = fewest_scenes(1)
 """With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
-HALF_WIDTH = normal_quantile(0.975)
-"""Standard errors from the middle of a 95 % interval to its ends."""
-MULTIPLE = HALF_WIDTH + normal_quantile(0.8)
-"""Standard errors that a difference must have to be detected at 0.05 with 80 % power."""
 
 POINT_SCENES = 50
 """From so many scenes on an estimate decides where the paper's own does: half of the paper's
@@ -34,7 +30,7 @@ class Found:
     """Ends of the 95 % interval; `None` where none is known or too few scenes give it."""
     unit: str
     n_scenes: int
-    test: TestResult | None = None
+    test: PairedTest | None = None
     """The paper's test, for outcomes that are yes or no."""
     mde: float | None = None
     """Least difference from 0 that would have been detected, in `unit`."""
@@ -82,27 +78,20 @@ class Found:
         """Side that the test finds ahead; without a test, the side of the interval."""
         if self.test is None:
             return self.side
-        if not self.test.rejects():
-            return 0
-        return 1 if self.test.counts.first_only > self.test.counts.second_only else -1
+        return self.test.leans if self.test.rejects() else 0
 
 
 Quantity = Callable[[Results], Found]
 """Works a quantity out; raises `NotRun` or `Undecidable`."""
 
 
-def of_effect(effect: Effect, telling_mde: float | None = None) -> Found:
+def of_effect(effect: Contrast, telling_mde: float | None = None) -> Found:
     """Return an effect without a test: its interval decides, and gives the standard error."""
-    enough = effect.n_scenes >= MIN_SCENES
-    low, high = effect.interval()
-    # What has no bound has a bootstrap interval, whose ends say less of its spread than the draws.
-    bounded = effect.scenes is not None
-    spread = (high - low) / (2.0 * HALF_WIDTH) if bounded else float(effect.draws.std())
     return Found(
         value=effect.value,
-        interval=(low, high) if enough else None,
+        interval=effect.interval if effect.enough else None,
         unit=effect.unit,
         n_scenes=effect.n_scenes,
-        mde=MULTIPLE * spread if enough and spread > ROUNDING else None,
+        mde=effect.least,
         telling_mde=telling_mde,
     )

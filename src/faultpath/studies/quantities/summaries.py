@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import spearman, success_rate
+from faultpath.statistics import success_rate
 from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.quantities.differences import together
 from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
@@ -14,6 +14,7 @@ from faultpath.studies.quantities.windows import Subject, difference_of_quantile
 from faultpath.studies.results import Results
 
 Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 
 
 def at_lower_success(
@@ -63,10 +64,27 @@ def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
     def found(results: Results) -> Found:
         rates = [results.rate(cell) for cell, _ in cells]
         measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
-        value = spearman(np.array([rate.value for rate in rates]), measured).value
+        value = spearman(np.array([rate.value for rate in rates]), measured)
         if value is None:
             raise Undecidable("one side is the same in all cells")
         n_scenes = min(rate.n_scenes for rate in rates)
         return Found(value, None, "rank correlation", n_scenes)
 
     return found
+
+
+def spearman(one: Floats, two: Floats) -> float | None:
+    """Return Spearman's rank correlation of two [n] arrays; None where one side is constant.
+
+    It has no p-value: cells are not a sample.
+    """
+    if np.ptp(one) == 0.0 or np.ptp(two) == 0.0:
+        return None
+    value = float(np.corrcoef(_ranks(one), _ranks(two))[0, 1])
+    return min(1.0, max(-1.0, value))
+
+
+def _ranks(values: Floats) -> Floats:
+    """Return ranks from 1; equal values share their mean rank."""
+    _, place, times = np.unique(values, return_inverse=True, return_counts=True)
+    return (np.cumsum(times) - (times - 1) / 2.0)[place]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
-from faultpath.statistics import Effect, WindowQuantiles, weighted_sum
+from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
 from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
 from faultpath.studies.results import NotRun, Results
 
@@ -63,7 +63,7 @@ def ratio(first: Subject, second: Subject) -> Quantity:
     return found
 
 
-def quantiles(results: Results, q: float, *subjects: Subject) -> list[Effect]:
+def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
     """Return a quantile of each subject on shared resamples, over the seeds that all have.
 
     A subject of one seed stands beside all seeds of the others. `NotRun` when a subject was not
@@ -121,7 +121,7 @@ def _check_windows(results: Results, measurements: list[Measurement]) -> None:
 
 
 @lru_cache(maxsize=512)
-def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Effect:
+def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
     """Return the mean over seeds of a quantile; a claim asks for the same one many times."""
     effects = [_quantile(evidence, measurement, q) for measurement in subject]
     mean = weighted_sum([1 / len(effects)] * len(effects), effects)
@@ -130,7 +130,7 @@ def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Effect:
 
 
 @lru_cache(maxsize=512)
-def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Effect:
+def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Contrast:
     found: Measured = evidence.values(measurement)
     values: NDArray[np.float64] = found.values
     return _resampled(found.scenes).value(values, q, QUANTITIES[measurement.quantity])

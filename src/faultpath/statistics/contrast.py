@@ -1,0 +1,241 @@
+"""The one type of what paired arms show: a difference with its interval, its test and its decision.
+
+A ``Contrast`` keeps what it was made from scene by scene, so that contrasts on the same scenes can
+be subtracted, weighted and turned into a break-even frequency jointly.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from faultpath.statistics.detectable import detectable
+from faultpath.statistics.distributions import normal_quantile
+from faultpath.statistics.estimate import (
+    SCENES,
+    SCENES_AND_SEEDS,
+    Decision,
+    Discordant,
+    Estimate,
+    PairedTest,
+    SeedCounts,
+    Sign,
+)
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.score import SceneValues, combined
+
+MIN_SCENES = fewest_scenes(1)
+"""With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
+ROUNDING = 1e-12
+"""Draws that spread no more than this are all the same."""
+_DIGITS = 9
+"""Of weighted sums, so that contrasts which cancel leave exactly 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contrast:
+    """A difference over scenes, first minus second, or what else scenes show, as one arm's value.
+
+    ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
+    alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval: in
+    place of the bootstrap's for given seeds, and beside it for new ones. What has neither has no
+    interval. ``arms`` are both arms' outcomes [scenes, seeds] where these are yes or no.
+    """
+
+    value: float
+    unit: str
+    n_scenes: int
+    method: str = ""
+    estimand: str = SCENES
+    n_seeds: int = 1
+    per_seed: tuple[float, ...] = ()
+    draws: Floats = field(default_factory=lambda: np.empty(0), repr=False)
+    resamples: Resamples | None = field(default=None, repr=False)
+    arms: tuple[Floats, Floats] | None = field(default=None, repr=False)
+    scenes: SceneValues | None = field(default=None, repr=False)
+    against_zero: bool = True
+    """Whether 0 is no difference; not so for rates, ratios and what is counted."""
+    test: PairedTest | None = None
+    """See `tested`; without one the interval decides."""
+    decision: Decision | None = None
+    """What its family makes of it; `None` outside of one."""
+    notable: float | None = None
+    """Where a greater difference than this could have been missed, detecting none says nothing."""
+
+    @property
+    def counts(self) -> SeedCounts | None:
+        """Return seed by seed in how many scenes only one of the arms succeeded."""
+        return None if self.arms is None else discordant_by_seed(*self.arms)
+
+    @property
+    def resampled(self) -> bool:
+        """Return whether the interval rests on ``draws``, alone or beside the score."""
+        return self.scenes is None or self.estimand == SCENES_AND_SEEDS
+
+    def ends(self, level: float) -> tuple[float, float] | None:
+        """Return the score interval, or where outcomes have no bound the percentile interval.
+
+        For newly trained models it is the hull of both, which holds what either does.
+        """
+        ends = [] if self.scenes is None else [self.scenes.interval(level)]
+        if self.resampled and self.draws.size:
+            ends.append(percentile_interval(self.draws, level))
+        return (min(low for low, _ in ends), max(high for _, high in ends)) if ends else None
+
+    @cached_property
+    def interval(self) -> tuple[float, float] | None:
+        """The 95 % interval."""
+        return self.ends(0.95)
+
+    def estimate(self, level: float = 0.95) -> Estimate:
+        """Return the value with its interval at ``level``, to be stored."""
+        low, high = (self.interval if level == 0.95 else self.ends(level)) or (None, None)
+        resamples = self.resamples.n_resamples if self.resamples else 0
+        return Estimate(
+            value=self.value,
+            low=low,
+            high=high,
+            level=level,
+            unit=self.unit,
+            method=self.method + (f", {resamples} resamples" if self.resampled else ""),
+            estimand=self.estimand,
+            n_scenes=self.n_scenes,
+            n_seeds=self.n_seeds,
+            counts=self.counts,
+            per_seed=self.per_seed,
+        )
+
+    @property
+    def side(self) -> Sign:
+        """Return the side of 0 on which the whole interval lies; 0 when it touches 0."""
+        low, high = self.interval or (0.0, 0.0)
+        return 1 if low > 0 else -1 if high < 0 else 0
+
+    @property
+    def enough(self) -> bool:
+        """Return whether there are scenes enough to decide anything."""
+        return self.n_scenes >= MIN_SCENES
+
+    @property
+    def rejected(self) -> Sign:
+        """Return the side that the test finds ahead; without a test, that of the interval."""
+        if self.test is None:
+            return self.side if self.enough else 0
+        return self.test.leans if self.test.rejects() else 0
+
+    @property
+    def detected(self) -> Sign:
+        """Return the side on which interval and test agree, at the level of this test alone."""
+        return self.rejected if self.rejected == self.side else 0
+
+    @property
+    def sign(self) -> Sign:
+        """Return the side that is decided in its family; 0 for neither."""
+        return self.decision.sign if self.decision else 0
+
+    @cached_property
+    def least(self) -> float | None:
+        """The least difference from 0 that would have been detected with 80 % power, in ``unit``.
+
+        None where no difference would, or where 0 is not what it is set against.
+        """
+        if self.arms is not None:
+            return detectable(*self.arms)
+        if not (self.against_zero and self.enough and self.interval):
+            return None
+        half_width = normal_quantile(0.975)  # of a 95 % interval, in standard errors
+        # What has no bound has a bootstrap interval, whose ends say less of its spread than draws.
+        low, high = self.interval
+        bounded = self.scenes is not None
+        error = (high - low) / (2.0 * half_width) if bounded else float(self.draws.std())
+        return (half_width + normal_quantile(0.8)) * error if error > ROUNDING else None
+
+
+def percentile_interval(draws: Floats, level: float = 0.95) -> tuple[float, float]:
+    """Return the central ``level`` percentile interval of ``draws`` [resamples].
+
+    The upper end is taken as the mirrored lower end of the negated draws, so that swapping the
+    arms mirrors the interval to the bit.
+    """
+    if not 0.0 < level < 1.0:
+        raise ValueError(f"the level of an interval lies between 0 and 1, not at {level}")
+    tail = (1.0 - level) / 2.0
+    low = float(np.quantile(draws, tail))
+    high = 0.0 - float(np.quantile(-draws, tail))
+    return low + 0.0, high
+
+
+def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Contrast:
+    """Return a weighted sum of contrasts on the same scenes, scene by scene and draw by draw.
+
+    ``ValueError`` for contrasts on other resamples, in other units or with another estimand.
+    """
+    first, *others = contrasts
+    for other in others:
+        check_joint(first, other)
+    parts = [each.scenes for each in contrasts if each.scenes is not None]
+    alike = len({each.n_seeds for each in contrasts}) == 1
+    by_seed = zip(*(each.per_seed for each in contrasts), strict=True) if alike else ()
+    scenes = combined(weights, parts) if len(parts) == len(contrasts) else None
+    return replace(
+        first,
+        value=_dot(weights, [each.value for each in contrasts]),
+        draws=np.dot(weights, [each.draws for each in contrasts]).round(_DIGITS),
+        per_seed=tuple(_dot(weights, values) for values in by_seed),
+        method="score on scene differences (Tango's, cluster-robust)"
+        if scenes is not None and not first.resampled
+        else f"combined effects, {first.method}",
+        n_seeds=max(each.n_seeds for each in contrasts),
+        arms=None,
+        scenes=scenes,
+        test=None,
+        decision=None,
+        notable=None,
+    )
+
+
+def _dot(weights: Sequence[float], values: Sequence[float]) -> float:
+    return round(sum(w * v for w, v in zip(weights, values, strict=True)), _DIGITS) + 0.0
+
+
+def change(before: Contrast, after: Contrast) -> Contrast:
+    """Return how much a contrast changes, for example from reconstruction-only to shared."""
+    return weighted_sum((-1.0, 1.0), (before, after))
+
+
+def discordant_by_seed(first: Floats, second: Floats) -> SeedCounts:
+    """Count per seed the scenes in which only one of two binary arms [scenes, seeds] succeeded."""
+    return SeedCounts(
+        per_seed=tuple(
+            Discordant(
+                first_only=int((column > 0).sum()),
+                second_only=int((column < 0).sum()),
+                n_pairs=len(column),
+            )
+            for column in (first - second).T
+        )
+    )
+
+
+def check_scenes(n_scenes: int, resamples: Resamples) -> None:
+    """Refuse outcomes of another number of scenes than was resampled."""
+    if n_scenes != resamples.n_scenes:
+        raise ValueError(
+            f"the outcomes have {n_scenes} scenes, the resamples {resamples.label!r} have "
+            f"{resamples.n_scenes}"
+        )
+
+
+def check_joint(one: Contrast, two: Contrast) -> None:
+    """Refuse contrasts that cannot be combined scene by scene."""
+    if one.resamples is None or two.resamples is None or not one.resamples.same_as(two.resamples):
+        raise ValueError("effects are joint only on the same resamples; draw them once and share")
+    if one.unit != two.unit:
+        raise ValueError(f"effects in {one.unit!r} and {two.unit!r} cannot be combined")
+    if one.estimand != two.estimand:
+        raise ValueError("one effect resamples seeds and the other does not")
+    if one.estimand == SCENES_AND_SEEDS and one.n_seeds != two.n_seeds:
+        raise ValueError("effects that resample seeds need the same seeds")
