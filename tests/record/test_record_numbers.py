@@ -333,7 +333,7 @@ def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the
 def test_a_secondary_outcome_that_does_not_vary_has_no_interval():
     (effect,) = record({CORRECT: (40, 20, 5)}).effects
     assert effect.min_clearance_m is not None
-    assert effect.min_clearance_m.interval is None
+    assert (effect.min_clearance_m.low, effect.min_clearance_m.high) == (None, None)
     assert "no interval" in effect.min_clearance_m.method
 
 

@@ -136,7 +136,7 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
     rates = {(c.path, c.variant): plain(c.success_percent) for c in record.cells}
     for effect in record.effects:
         row = rows[effect.path]
-        low, high = effect.success.interval or (0.0, 0.0)
+        low, high = effect.success.low or 0.0, effect.success.high or 0.0
         assert row[1] == rates[effect.path, "gru"]
         assert row[2] == rates[effect.path, "gru-dcc"]
         assert row[3] == signed(effect.success.value)
@@ -156,7 +156,7 @@ def test_secondary_outcomes_and_cells_are_shown(source: ReportInput, html: str) 
     for effect in source.record.effects:
         for estimate in (effect.time_s, effect.terminal_distance_m, effect.min_clearance_m):
             assert estimate is not None
-            low, high = estimate.interval or (0.0, 0.0)
+            low, high = estimate.low or 0.0, estimate.high or 0.0
             value = signed(estimate.value, 2)
             value = value[1:] if float(f"{estimate.value:.2f}") == 0 else value
             assert f"{value} [{_zero(plain(low, 2))}, {_zero(plain(high, 2))}]" in html

@@ -77,7 +77,7 @@ def test_exact_coverage_is_that_of_the_intervals_themselves():
             chance /= float(np.prod(np.arange(1, count + 1)))
         scene = np.arange(6)
         arms = scene < first, (scene >= first) & (scene < first + second)
-        low, high = success_effect(*arms, resamples).interval()
+        low, high = success_effect(*arms, resamples).interval
         expected += chance * (low <= 100 * population.mean <= high)
     measured = IntervalCoverage(6, population, runs=0).measure()
     assert (measured.runs, measured.rate) == (0, pytest.approx(expected))

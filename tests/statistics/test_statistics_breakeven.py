@@ -9,12 +9,12 @@ from faultpath.statistics import (
     BreakEven,
     Resamples,
     break_even,
-    break_even_point,
     mean_effect,
     mixture_curve,
     success_effect,
     weighted_sum,
 )
+from faultpath.statistics.breakeven import break_even_point
 
 N = 100
 RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)
@@ -134,15 +134,15 @@ def test_the_curves_band_holds_0_exactly_where_the_set_is(counts, shift):
             if region.low < p < region.high:
                 assert np.sign(value) == region.sign
     first, *_, last = mixture_curve(correct, faulty)
-    assert first[2:] == pytest.approx(correct.interval(), abs=1e-6)
-    assert last[2:] == pytest.approx(faulty.interval(), abs=1e-6)
+    assert first[2:] == pytest.approx(correct.interval, abs=1e-6)
+    assert last[2:] == pytest.approx(faulty.interval, abs=1e-6)
 
 
 def test_the_set_is_that_of_single_mixtures():
     correct, faulty = effect(2, 20), effect(25, 3, first_scene=30)
     ((low, high),) = break_even(correct, faulty).pieces
     for p, held in ((low - 1e-3, False), (low + 1e-3, True), (high - 1e-3, True)):
-        ends = weighted_sum((1 - p, p), (correct, faulty)).interval()
+        ends = weighted_sum((1 - p, p), (correct, faulty)).interval
         assert (ends[0] <= 0 <= ends[1]) is held
 
 
@@ -156,7 +156,7 @@ def test_unbounded_outcomes_use_the_bootstrap():
     assert 0.2 < low < result.p_star < high < 0.5
     assert [region.sign for region in result.regions] == [-1, 1]
     _, _, *ends = mixture_curve(correct, faulty, points=2)[0]
-    assert tuple(ends) == correct.interval()
+    assert tuple(ends) == correct.interval
 
 
 @pytest.mark.parametrize(
@@ -203,8 +203,8 @@ def test_six_single_wins_decide_no_frequency_for_newly_trained_models():
 def test_the_band_for_newly_trained_models_is_that_of_the_effects_and_of_the_set(losses):
     correct, faulty = models(2, losses), models(40, 1)
     curve = mixture_curve(correct, faulty, points=101)
-    assert curve[0][2:] == pytest.approx(correct.interval())
-    assert curve[-1][2:] == pytest.approx(faulty.interval())
+    assert curve[0][2:] == pytest.approx(correct.interval)
+    assert curve[-1][2:] == pytest.approx(faulty.interval)
     ((first, last),) = break_even(correct, faulty).pieces
     for p, _, low, high in curve:
         assert low < high

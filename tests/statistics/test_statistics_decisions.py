@@ -8,55 +8,50 @@ from scipy.stats import binomtest, ttest_1samp
 from statsmodels.stats.multitest import multipletests
 
 from faultpath.statistics import (
-    Comparison,
-    Decision,
-    Discordant,
-    Estimate,
+    Contrast,
     Resamples,
-    TestResult,
-    compare,
+    change,
     decide_family,
-    difference_of_effects,
     fewest_scenes,
     mean_effect,
     success_effect,
     success_rate,
-    success_test,
     turn,
+    with_test,
 )
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import Decision, PairedTest
 
 N = 40
 RESAMPLES = Resamples.draw("decisions", N, n_resamples=400)
 
 
-def comparison(p_value, low=1.0, high=2.0, leans=1):
-    value = (low + high) / 2
-    estimate = Estimate(
-        value=value, low=low, high=high, method="m", estimand="e", n_scenes=9, n_seeds=1
-    )
-    counts = Discordant(first_only=2, second_only=1)
-    test = TestResult(name="t", p_value=p_value, counts=counts)
-    return Comparison(estimate=estimate, test=test, leans=leans)
+def contrast(p_value, low=1.0, high=2.0, leans=1):
+    """Return a contrast with these ends of its interval and this test."""
+    draws = np.repeat([low, high], 50)
+    return Contrast((low + high) / 2, "pp", 9, draws=draws, test=PairedTest("t", p_value, leans))
 
 
 @pytest.mark.parametrize("n_seeds", [1, 3])
 def test_an_effect_is_tested_as_the_paper_tests_it(n_seeds):
     first, second = np.random.default_rng(0).random((2, N, n_seeds)) < [[[0.7]], [[0.5]]]
-    found = compare(success_effect(first, second, RESAMPLES))
-    assert found.test == success_test(first, second)
-    assert found.estimate == success_effect(first, second, RESAMPLES).estimate()
+    found = with_test(success_effect(first, second, RESAMPLES)).test
+    scenes = (first.astype(int) - second).sum(axis=1)
+    wins, losses = int((scenes > 0).sum()), int((scenes < 0).sum())
+    assert found.name == ("exact McNemar" if n_seeds == 1 else "sign test on scene means")
+    assert (found.p_value, found.leans) == (sign_p_value(wins, losses), 1)
 
 
-def test_a_difference_of_effects_is_tested_by_the_signs_of_scene_differences():
+def test_a_change_is_tested_by_the_signs_of_scene_differences():
     rng = np.random.default_rng(1)
     arms = rng.random((4, N, 3)) < 0.5
     one, two = (success_effect(*pair, RESAMPLES) for pair in (arms[:2], arms[2:]))
-    change = compare(difference_of_effects(one, two))
+    found = with_test(change(one, two)).test
     means = (arms[2].astype(int) - arms[3] - arms[0] + arms[1]).sum(axis=1)
     wins, losses = int((means > 0).sum()), int((means < 0).sum())
-    assert (change.test.counts.first_only, change.test.counts.second_only) == (wins, losses)
-    assert change.test.p_value == pytest.approx(binomtest(wins, wins + losses).pvalue)
-    assert change.test.name == "sign test on scene differences"
+    assert found.leans == np.sign(wins - losses)
+    assert found.p_value == pytest.approx(binomtest(wins, wins + losses).pvalue)
+    assert found.name == "sign test on scene differences"
 
 
 def test_interval_and_test_have_to_point_the_same_way():
@@ -67,30 +62,31 @@ def test_interval_and_test_have_to_point_the_same_way():
     difference = np.zeros((N, 5), int)
     difference[:30, 0] = 1
     difference[30:] = -1
-    found = compare(success_effect(difference > 0, difference < 0, RESAMPLES))
+    found = with_test(success_effect(difference > 0, difference < 0, RESAMPLES))
     assert found.test.rejects()
-    assert found.leans == 1
-    assert found.estimate.value < 0
-    assert (found.agreed, found.side) == (0, 0)
-    contrary = comparison(0.0001, low=-3.0, high=-1.0, leans=1)
-    assert contrary.estimate.detected_sign == -1
+    assert found.test.leans == 1
+    assert found.value < 0
+    assert found.detected == 0
+    contrary = contrast(0.0001, low=-3.0, high=-1.0, leans=1)
+    assert contrary.side == -1
+    assert contrary.detected == 0
     assert decide_family({"it": contrary})["it"].sign == 0
 
 
 def test_what_has_no_test_is_refused():
     with pytest.raises(ValueError, match="has no test"):
-        compare(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"))
+        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"))
     with pytest.raises(ValueError, match="has no test"):
-        compare(success_rate(np.ones(N), RESAMPLES))
+        with_test(success_rate(np.ones(N), RESAMPLES))
 
 
 @settings(deadline=None)
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_the_adjustment_is_holms(p_values):
-    decided = decide_family({str(i): comparison(p) for i, p in enumerate(p_values)})
+    family = decide_family({str(i): contrast(p) for i, p in enumerate(p_values)})
     rejected, adjusted, *_ = multipletests(p_values, alpha=0.05, method="holm")
-    for i, each in enumerate(decided.values()):
-        assert each.adjusted_p == pytest.approx(adjusted[i])
+    for i, each in enumerate(family.values()):
+        assert each.decision.adjusted_p == pytest.approx(adjusted[i])
         if abs(adjusted[i] - 0.05) > 1e-12:
             assert (each.sign == 1) == rejected[i]
 
@@ -104,16 +100,16 @@ def test_the_critical_p_is_where_the_decision_turns(p_values, data):
 
     def decide(p):
         values = [*p_values[:place], p, *p_values[place + 1 :]]
-        return decide_family({str(i): comparison(v) for i, v in enumerate(values)})[name]
+        return decide_family({str(i): contrast(v) for i, v in enumerate(values)})[name]
 
-    critical = decide(p_values[place]).critical_p
+    critical = decide(p_values[place]).decision.critical_p
     assert 0.05 / len(p_values) <= critical <= 0.05
     assert decide(critical * (1 - 1e-9)).sign == 1
     assert decide(critical * (1 + 1e-9)).sign == 0
 
 
-def decision(sign):
-    return Decision(sign=sign, p_value=0.5, adjusted_p=0.5, critical_p=0.05)
+def decided(sign):
+    return Contrast(0.0, "pp", 9, decision=Decision(sign, adjusted_p=0.5, critical_p=0.05))
 
 
 @pytest.mark.parametrize(
@@ -130,7 +126,7 @@ def decision(sign):
     ],
 )
 def test_a_reversal_is_two_detected_effects_of_opposite_sign(isolated, shared, change, expected):
-    assert turn(*map(decision, (isolated, shared, change))) == expected
+    assert turn(*map(decided, (isolated, shared, change))) == expected
 
 
 @pytest.mark.parametrize("hypotheses", [1, 2, 3, 5, 7, 16])
@@ -144,8 +140,8 @@ def test_fewest_scenes_is_where_a_unanimous_test_first_suffices(hypotheses):
 def test_few_scenes_detect_nothing_however_one_sided(n):
     resamples = Resamples.draw("few", n, n_resamples=100)
     ones = np.ones(n)
-    found = compare(success_effect(ones, 0 * ones, resamples))
-    assert found.side == 0
+    found = with_test(success_effect(ones, 0 * ones, resamples))
+    assert found.detected == 0
     assert decide_family({"only": found})["only"].sign == 0
 
 
@@ -153,12 +149,12 @@ def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
     effect = success_effect(first, second, RESAMPLES, resample_seeds=True)
-    found = compare(effect)
+    found = with_test(effect)
     assert found.test.name == "t test of the seeds' effects"
     assert found.test.p_value == pytest.approx(ttest_1samp(effect.per_seed, 0).pvalue)
-    assert found.leans == 1
-    assert "percentile bootstrap of scenes and seeds" in found.estimate.method
-    assert found.estimate.estimand.startswith("new scenes like these and models newly trained")
+    assert found.test.leans == 1
+    assert "percentile bootstrap of scenes and seeds" in found.method
+    assert found.estimand.startswith("new scenes like these and models newly trained")
 
 
 def test_trainings_that_agree_to_the_digit_are_not_certain():
@@ -166,9 +162,9 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     difference = np.zeros((N, 2))
     difference[:10] = 1
     effect = success_effect(difference, 0 * difference, RESAMPLES, resample_seeds=True)
-    assert 0.005 < compare(effect).test.p_value < 0.05
+    assert 0.005 < with_test(effect).test.p_value < 0.05
     none = success_effect(0 * difference, 0 * difference, RESAMPLES, resample_seeds=True)
-    assert compare(none).test.p_value == 1.0
+    assert with_test(none).test.p_value == 1.0
 
 
 def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
@@ -176,9 +172,9 @@ def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
     wins = np.zeros((100, 3))
     wins[np.arange(6), np.arange(6) % 3] = 1
     resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = compare(success_effect(wins, 0 * wins, resamples, resample_seeds=True))
+    found = with_test(success_effect(wins, 0 * wins, resamples, resample_seeds=True))
     assert found.test.rejects()
-    assert found.leans == 1
-    assert found.side == 0
+    assert found.test.leans == 1
+    assert found.detected == 0
     wins[:12] = 1
-    assert compare(success_effect(wins, 0 * wins, resamples, resample_seeds=True)).side == 1
+    assert with_test(success_effect(wins, 0 * wins, resamples, resample_seeds=True)).detected == 1

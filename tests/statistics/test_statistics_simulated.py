@@ -12,17 +12,15 @@ from scipy.stats import binomtest
 from faultpath.statistics import (
     Resamples,
     break_even,
-    compare,
+    change,
     decide_family,
-    difference_of_effects,
-    discordant,
-    mcnemar_mid_p,
     mean_effect,
     median_effect,
     success_effect,
-    success_test,
     turn,
+    with_test,
 )
+from faultpath.statistics.distributions import sign_mid_p_value
 
 N, RUNS = 100, 1000
 RESAMPLES = Resamples.draw("simulated", N, n_resamples=2000)
@@ -60,16 +58,18 @@ def effects(seed, population, n_seeds):
 def test_type_one_error_of_the_exact_tests(population, n_seeds):
     """Exact tests keep below 5 %; discreteness may take them to 1 %, a broken test to 0 or 10."""
     rng = np.random.default_rng(10 + n_seeds)
-    rejected = [success_test(*sample(rng, population, n_seeds)).rejects() for _ in range(RUNS)]
+    drawn = (sample(rng, population, n_seeds) for _ in range(RUNS))
+    rejected = [with_test(success_effect(*arms, RESAMPLES)).test.rejects() for arms in drawn]
     assert 0.01 - noise(0.01) < np.mean(rejected) <= 0.05 + noise(0.05)
 
 
 def test_type_one_error_of_mid_p():
     """Mid-p is less conservative: nearer 5 % than the exact test, never far above it."""
     rng = np.random.default_rng(20)
-    counts = [discordant(*sample(rng, NO_EFFECT, 1)) for _ in range(RUNS)]
-    mid = np.mean([mcnemar_mid_p(c).rejects() for c in counts])
-    exact = np.mean([binomtest(c.first_only, c.total).pvalue <= 0.05 for c in counts])
+    arms = (sample(rng, NO_EFFECT, 1) for _ in range(RUNS))
+    counts = [(int((one & ~two).sum()), int((two & ~one).sum())) for one, two in arms]
+    mid = np.mean([sign_mid_p_value(*c) <= 0.05 for c in counts])
+    exact = np.mean([binomtest(c[0], sum(c)).pvalue <= 0.05 for c in counts])
     assert exact < mid <= 0.05 + noise(0.05)
 
 
@@ -77,7 +77,7 @@ def test_type_one_error_of_mid_p():
 @pytest.mark.parametrize("population", [NO_EFFECT, NO_MEAN_EFFECT, LARGE_EFFECT, COST])
 def test_coverage_of_the_score_interval(population, n_seeds):
     true = effect_pp(population)
-    intervals = [e.interval() for e in effects(30 + n_seeds, population, n_seeds)]
+    intervals = [e.interval for e in effects(30 + n_seeds, population, n_seeds)]
     covered = np.mean([low <= true <= high for low, high in intervals])
     assert 0.94 - noise(0.95) <= covered <= 0.97 + noise(0.95)
 
@@ -100,9 +100,8 @@ def test_reversal_is_rarely_claimed_where_there_is_none():
 
 
 def turned(isolated, shared):
-    change = difference_of_effects(isolated, shared)
-    found = {"isolated": isolated, "shared": shared, "change": change}
-    return turn(**decide_family({name: compare(effect) for name, effect in found.items()}))
+    found = {"isolated": isolated, "shared": shared, "change": change(isolated, shared)}
+    return turn(**decide_family({name: with_test(effect) for name, effect in found.items()}))
 
 
 def test_coverage_of_the_median_interval():
@@ -113,7 +112,7 @@ def test_coverage_of_the_median_interval():
         second = rng.random(N)
         first = second + rng.exponential(size=N)
         effect = median_effect(first, second, rng.random(N) < 0.65, RESAMPLES)
-        low, high = effect.estimate().interval
+        low, high = effect.interval
         covered += low <= np.log(2) <= high
     assert 0.93 - noise(0.95, runs) <= covered / runs <= 0.97 + noise(0.95, runs)
 
@@ -133,7 +132,7 @@ def test_coverage_over_new_seeds_needs_the_crossed_bootstrap(n_seeds, least):
             effect = mean_effect(
                 first, np.zeros_like(first), RESAMPLES, "m", resample_seeds=crossed
             )
-            low, high = effect.estimate().interval
+            low, high = effect.interval
             covered[crossed] += low <= 0.5 <= high
     assert least - noise(least, runs) <= covered[True] / runs <= 0.97
     assert covered[False] / runs < covered[True] / runs - 0.05

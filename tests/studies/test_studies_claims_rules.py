@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from faultpath.statistics import (
-    Discordant,
-    Effect,
+    Contrast,
     Resamples,
-    TestResult,
-    difference_of_effects,
+    change,
     mean_effect,
     success_effect,
     weighted_sum,
 )
+from faultpath.statistics.estimate import PairedTest
 from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
 from faultpath.studies.claims.reversals import Turn, TurnsDown
 from faultpath.studies.claims.rules import (
@@ -29,7 +28,7 @@ from faultpath.studies.claims.rules import (
     less_than,
     more_than,
 )
-from faultpath.studies.quantities.found import MULTIPLE, POINT_SCENES, Found, of_effect
+from faultpath.studies.quantities.found import POINT_SCENES, Found, of_effect
 
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
@@ -39,8 +38,7 @@ def found(
 ) -> Found:
     """Return a difference at the middle of its interval, with a test that finds its side ahead."""
     value = 0.0 if interval is None else sum(interval) / 2
-    counts = Discordant(first_only=9 if value > 0 else 1, second_only=1 if value > 0 else 9)
-    test = None if p_value is None else TestResult(name="sign", p_value=p_value, counts=counts)
+    test = None if p_value is None else PairedTest("sign", p_value, 1 if value > 0 else -1)
     return Found(value, interval, "pp", 100, test, mde, telling_mde=20.0)
 
 
@@ -260,7 +258,7 @@ def test_a_statement_begins_with_its_subject(rule: Rule[Found]) -> None:
     assert "success of A minus B" in rule.words("success of A minus B")
 
 
-def effect(values: list[float]) -> Effect:
+def effect(values: list[float]) -> Contrast:
     array = np.array(values)
     return mean_effect(array, np.zeros_like(array), Resamples.draw("toy", len(values)), "m")
 
@@ -268,7 +266,6 @@ def effect(values: list[float]) -> Effect:
 def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
     one = effect([float(i) for i in range(10)])
     assert of_effect(one).mde == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
-    assert pytest.approx(2.80, abs=0.002) == MULTIPLE
 
 
 def test_what_does_not_vary_detects_nothing() -> None:
@@ -286,11 +283,8 @@ def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
     """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
     drawn = Resamples.draw("claims", 25)
     arms = np.ones((25, 1), dtype=bool)
-    change = difference_of_effects(
-        success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)
-    )
-    found = of_effect(change)
+    found = of_effect(change(success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)))
     assert found.interval is not None
     low, high = found.interval
-    assert found.mde == pytest.approx(MULTIPLE * (high - low) / (2 * 1.959964), rel=1e-5)
+    assert found.mde == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
     assert found.mde > high

@@ -246,7 +246,7 @@ def test_the_ceiling_counts_scenes_that_end_alike_everywhere() -> None:
 def test_detection_sensitivity_gives_the_least_detectable_difference() -> None:
     table = tables(page("detection-sensitivity"), run(won(lambda cell: 10)))
     results = run(won(lambda cell: 10))
-    least = results.contrast(table_1.DKI, table_1.WM_A).detectable.value
+    least = results.contrast(table_1.DKI, table_1.WM_A).detectable
     assert least is not None
     shown = line(table["detection-sensitivity"], "DKI minus WM-A, seed 0")
     assert texts(shown) == ["0.0", "[−16.1, 16.1]", "0:0", "1.000", f"{least:.1f}"]

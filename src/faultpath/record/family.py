@@ -15,8 +15,8 @@ from faultpath.statistics import (
     decide_family,
     fewest_scenes,
     success_effect,
-    tested,
     turn,
+    with_test,
 )
 
 CORRECT = "correct"
@@ -69,11 +69,11 @@ def decide_paths(
     # Only what speaks of newly trained models resamples.
     drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=10_000 if models else 1)
     effects = {
-        path: tested(success_effect(repair, baseline, drawn, resample_seeds=models))
+        path: with_test(success_effect(repair, baseline, drawn, resample_seeds=models))
         for path, (repair, baseline) in success.items()
     }
     isolated = _isolated([path for path in effects if path not in untested])
-    changes = {path: tested(change(effects[path], effects[SHARED])) for path in isolated}
+    changes = {path: with_test(change(effects[path], effects[SHARED])) for path in isolated}
     family = {f"effect/{path}": e for path, e in effects.items() if path not in untested}
     family |= {f"change/{path}": c for path, c in changes.items()}
     made = decide_family(family, alpha)

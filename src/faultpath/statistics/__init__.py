@@ -4,7 +4,7 @@ from faultpath.statistics.bootstrap import mean_effect, success_effect, success_
 from faultpath.statistics.breakeven import break_even, mixture_curve
 from faultpath.statistics.clustered import WindowQuantiles
 from faultpath.statistics.contrast import Contrast, change, percentile_interval, weighted_sum
-from faultpath.statistics.decisions import Turn, decide_family, tested, turn
+from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
 from faultpath.statistics.detectable import detectable
 from faultpath.statistics.estimate import BreakEven, Estimate, Region, SeedCounts, Sign
 from faultpath.statistics.medians import median_effect
@@ -32,7 +32,7 @@ __all__ = [
     "percentile_interval",
     "success_effect",
     "success_rate",
-    "tested",
     "turn",
     "weighted_sum",
+    "with_test",
 ]

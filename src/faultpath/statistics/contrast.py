@@ -59,7 +59,7 @@ class Contrast:
     against_zero: bool = True
     """Whether 0 is no difference; not so for rates, ratios and what is counted."""
     test: PairedTest | None = None
-    """See `tested`; without one the interval decides."""
+    """See `with_test`; without one the interval decides."""
     decision: Decision | None = None
     """What its family makes of it; `None` outside of one."""
     notable: float | None = None

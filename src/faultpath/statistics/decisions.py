@@ -13,7 +13,7 @@ from faultpath.statistics.estimate import ALPHA, SCENES_AND_SEEDS, Decision, Pai
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 
 
-def tested(contrast: Contrast) -> Contrast:
+def with_test(contrast: Contrast) -> Contrast:
     """Return a contrast with its test, the paper's for given models.
 
     For given models: exact McNemar (one seed), else the sign test on what scenes differ by. For

@@ -45,8 +45,10 @@ class SceneValues:
     def paired(cls, values: Floats, bound: float, scale: float = 1.0) -> "SceneValues":
         """Return differences between two arms; what was not observed lies within `reach`."""
         kinds, counts = np.unique(values, return_counts=True)
-        far = float(reach(kinds, counts.astype(np.float64), bound))
-        return cls(values=values, bound=bound, far=far, scale=scale)
+        often = counts.astype(np.float64)
+        # Summed in both orders, since swapping the arms turns the order round.
+        far = max(reach(kinds, often, bound), reach(kinds[::-1], often[::-1], bound))
+        return cls(values=values, bound=bound, far=float(far), scale=scale)
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the score interval of the mean, in the unit of the effect."""

@@ -15,7 +15,7 @@ from faultpath.statistics import (
     mean_effect,
     success_effect,
     success_rate,
-    tested,
+    with_test,
 )
 from faultpath.statistics.estimate import PairedTest
 from faultpath.studies.cells import Cell
@@ -37,7 +37,7 @@ class Contrast:
     def draws(self) -> Difference:
         """Difference in success with interval and test, percentage points."""
         success = self.pairs.first.success, self.pairs.second.success
-        return tested(success_effect(*success, self.resamples))
+        return with_test(success_effect(*success, self.resamples))
 
     @property
     def success(self) -> Estimate:

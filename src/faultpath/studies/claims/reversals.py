@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from faultpath.statistics import change, decide_family, tested, turn
+from faultpath.statistics import change, decide_family, turn, with_test
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath.studies.quantities.differences import Pair, together
 from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
@@ -52,7 +52,7 @@ def turned(before: Pair, after: Pair) -> Callable[[Results], Turn]:
         one, two = (contrast.draws for contrast in together(results, before, after))
         difference = change(one, two)
         shown = of_effect(difference)
-        family = {"before": one, "after": two, "change": tested(difference)}
+        family = {"before": one, "after": two, "change": with_test(difference)}
         decided = decide_family(family)
         return Turn(
             value=shown.value,

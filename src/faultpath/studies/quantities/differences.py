@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import Contrast as Difference
-from faultpath.statistics import Resamples, median_effect, success_effect, tested, weighted_sum
+from faultpath.statistics import Resamples, median_effect, success_effect, weighted_sum, with_test
 from faultpath.studies.cells import Cell
 from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity, of_effect
 from faultpath.studies.results import Contrast, NotRun, Results
@@ -92,7 +92,7 @@ def _joint(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
 
 def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:
     """Return the difference of two binary arms [scenes, seeds] with the paper's test."""
-    effect = tested(success_effect(first, second, resamples))
+    effect = with_test(success_effect(first, second, resamples))
     return Found(
         value=effect.value,
         interval=effect.interval if effect.n_scenes >= MIN_SCENES else None,
