@@ -12,7 +12,7 @@ from torch.nn import functional
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.training.catalogue import Entry
-from faultpath.quadrotor.training.fitting import Schedule, Task
+from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.streams import generator
 
 

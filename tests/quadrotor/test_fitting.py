@@ -13,6 +13,7 @@ from faultpath.quadrotor.card import read_card
 from faultpath.quadrotor.training import fitting
 from faultpath.quadrotor.training.fitting import Diverged, fit, forget
 from faultpath.quadrotor.training.journal import journal_path
+from faultpath.quadrotor.training.task import Schedule
 from faultpath.store.atomic import write
 
 
@@ -129,7 +130,7 @@ def test_a_finished_model_is_left_alone(tmp_path: Path) -> None:
 
 
 CHANGES = {
-    "schedule": lambda task: setattr(task, "schedule", fitting.Schedule(epochs=2)),
+    "schedule": lambda task: setattr(task, "schedule", Schedule(epochs=2)),
     "data_sha256": lambda task: setattr(task, "data_sha256", "ffff"),
     "config": lambda task: setattr(task, "magnitude", 0.1),
     "initial_sha256": lambda task: setattr(task, "module", lambda: Net(5)),

@@ -9,15 +9,14 @@ from pathlib import Path
 import pytest
 from fitting_toys import Toy, entry
 
-from faultpath.errors import UserError
+from faultpath.errors import Stopped, UserError
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
 from faultpath.quadrotor.training.fitting import Moment, fit
 from faultpath.quadrotor.training.job_pools import missing_pools
-from faultpath.quadrotor.training.jobs import Interrupted, Places, Report, run_jobs
+from faultpath.quadrotor.training.jobs import Overview, Places, Report, run_jobs
 from faultpath.quadrotor.training.journal import journal_path
-from faultpath.quadrotor.training.pace import Overview, Pace
 from faultpath.quadrotor.training.provenance import Provenance
 from faultpath.work import processes as processes_of_work
 
@@ -160,7 +159,7 @@ def _order(tmp_path: Path, wanted: list[Job]) -> list[str]:
     seen: list[str] = []
 
     def note(now: Overview) -> None:
-        seen.extend(each.stem for each in now.running if each.stem not in seen)
+        seen.extend(stem for stem in now.running if stem not in seen)
 
     places = Places(tmp_path / "data", tmp_path / "out")
     run_jobs(wanted, places, 0, note, lambda _: None)
@@ -237,9 +236,8 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
 
     monkeypatch.setattr(processes_of_work._Process, "__init__", note)
     places = Places(tmp_path / "data", tmp_path / "out")
-    with pytest.raises(Interrupted) as caught:
+    with pytest.raises(Stopped, match="with 0 of 1 models finished"):
         run_jobs([Job(entry("slow"), 0)], places, 1, stop, lambda _: None)
-    assert (caught.value.done, caught.value.total) == (0, 1)
     assert [process.returncode for process in processes] == [-signal.SIGKILL]
     _finishes_to_the_same_bits(tmp_path)
 
@@ -281,30 +279,18 @@ def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.Monke
         raise KeyboardInterrupt
 
     stopping = catalogue.Entry("stop", stop, (), "", 0.5, seeds=(0,))
-    with pytest.raises(Interrupted) as caught:
+    with pytest.raises(Stopped, match="with 1 of 2 models finished"):
         _run(tmp_path, [Job(entry("one"), 0), Job(stopping, 0)])
-    assert (caught.value.done, caught.value.total) == (1, 2)
 
 
-def test_time_left_follows_the_pace_that_was_shown() -> None:
-    now = 0.0
-    slow, waiting, done = (
-        Job(entry(name, cost=cost), 0) for name, cost in (("s", 4.0), ("w", 2.0), ("d", 2.0))
-    )
-    pace = Pace([slow, waiting, done], workers=2, clock=lambda: now)
-    assert pace.overview().seconds_left is None
-    pace.start(done)
-    pace.end(done)  # was finished before: shows no pace
-    assert pace.overview().fraction == pytest.approx(2 / 8)
-    pace.start(slow)
-    pace.advance(slow, Moment(2, 0.5, 1.0))  # resumed in the middle
-    now = 10.0
-    pace.advance(slow, Moment(3, 0.75, 0.5))
-    found = pace.overview()
-    # 10 s for a quarter of cost 4: 10 s a unit of cost; 1 + 2 units are left on two workers.
-    assert found.seconds_left == pytest.approx(15.0)
-    assert (found.done, found.total) == (1, 3)
-    assert found.fraction == pytest.approx(5 / 8)
-    (running,) = found.running
-    assert (running.stem, running.epoch, running.loss) == ("s-0", 4, 0.5)
-    assert running.seconds_left == pytest.approx(10.0)
+def test_the_whole_counts_models_by_their_cost_and_names_those_at_work(tmp_path: Path) -> None:
+    seen: list[Overview] = []
+    wanted = [Job(entry(name, cost=cost), 0) for name, cost in (("long", 3.0), ("short", 1.0))]
+    places = Places(tmp_path / "data", tmp_path / "out")
+    run_jobs(wanted, places, 0, seen.append, lambda _: None)
+    assert [now.fraction for now in seen] == sorted(now.fraction for now in seen)
+    (between,) = {now.fraction for now in seen if now.done == 1 and not now.running}
+    assert between == pytest.approx(3 / 4)
+    assert (seen[-1].done, seen[-1].total, seen[-1].fraction) == (2, 2, 1.0)
+    moments = [moment for now in seen for moment in now.running.values()]
+    assert any(isinstance(moment, Moment) and moment.loss > 0 for moment in moments)

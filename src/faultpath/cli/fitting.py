@@ -10,7 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from rich.text import Text
 
 from faultpath.door.display import SafeConsole
@@ -21,8 +28,7 @@ from faultpath.tables.terminal import drawn
 if TYPE_CHECKING:
     from faultpath.quadrotor.card import ModelCard
     from faultpath.quadrotor.training.catalogue import Job
-    from faultpath.quadrotor.training.jobs import Report
-    from faultpath.quadrotor.training.pace import Overview
+    from faultpath.quadrotor.training.jobs import Overview, Report
 
 
 @dataclass(frozen=True)
@@ -56,14 +62,14 @@ def train(request: TrainRequest) -> int:
     and data that cannot be collected.
     """
     from faultpath.quadrotor.training.catalogue import choose, stages
-    from faultpath.quadrotor.training.scalars import require_tensorboard
+    from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.store import make_folder
 
     console = SafeConsole()
     failed = 0
     chosen = choose(request.names, request.seeds)
     if request.tensorboard is not None:
-        require_tensorboard()
+        tensorboard_writer()
     for place in (request.out, request.tensorboard, request.data):
         if place is not None:
             make_folder(place)  # before the flights: what cannot be kept need not be collected
@@ -116,10 +122,7 @@ def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -
     if not missing:
         return
     with _progress(console) as bar:
-        tasks = {
-            pool: bar.add_task(f"Collecting {pool}", total=None, news="", left="")
-            for pool in missing
-        }
+        tasks = {pool: bar.add_task(f"Collecting {pool}", total=None, news="") for pool in missing}
 
         def show(pool: str, done: float, asked: float) -> None:
             news = f"{done / max(asked, 1):.0%}"
@@ -135,64 +138,33 @@ def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -
 
 
 def _fit(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> Report:
-    from faultpath.quadrotor.training.jobs import Interrupted, Places, run_jobs
+    from faultpath.quadrotor.training.jobs import Places, run_jobs
 
     with _progress(console) as bar:
-        board = _Board(bar)
+        whole = bar.add_task("Fitting", total=1.0, news="")
+        tasks: dict[str, TaskID] = {}
 
-        def notice(text: str) -> None:
-            bar.console.print(text, markup=False, soft_wrap=True)
+        def show(now: Overview) -> None:
+            news = f"{now.done}/{now.total} models"
+            bar.update(whole, completed=now.fraction, news=news)
+            for stem in set(tasks) - set(now.running):
+                bar.remove_task(tasks.pop(stem))
+            for stem, moment in now.running.items():
+                if stem not in tasks:
+                    tasks[stem] = bar.add_task(f"  {stem}", total=1.0, news="")
+                if moment is not None:
+                    news = f"epoch {moment.epoch + 1}, loss {moment.loss:.4g}"
+                    bar.update(tasks[stem], completed=moment.fraction, news=news)
 
-        try:
-            return run_jobs(
-                jobs,
-                Places(request.data, request.out, request.tensorboard),
-                request.workers,
-                board.show,
-                notice,
-                shipped=request.ship,
-                force=request.force,
-            )
-        except Interrupted as stop:
-            again = "without --force " if request.force else ""
-            raise Stopped(
-                f"interrupted with {stop.done} of {stop.total} models finished; they and the "
-                f"finished epochs of the others are kept in {request.out}; run the same command "
-                f"{again}again to resume."
-            ) from None
-
-
-class _Board:
-    """A bar for the whole, and one for each model at work."""
-
-    def __init__(self, bar: Progress) -> None:
-        self._bar = bar
-        self._whole = bar.add_task("Fitting", total=1.0, news="", left="")
-        self._tasks: dict[str, TaskID] = {}
-
-    def show(self, now: Overview) -> None:
-        """Bring every bar up to date."""
-        self._bar.update(
-            self._whole,
-            completed=now.fraction,
-            news=f"{now.done}/{now.total} models",
-            left=_left(now.seconds_left),
+        return run_jobs(
+            jobs,
+            Places(request.data, request.out, request.tensorboard),
+            request.workers,
+            show,
+            lambda text: bar.console.print(text, markup=False, soft_wrap=True),
+            shipped=request.ship,
+            force=request.force,
         )
-        stems = {each.stem for each in now.running}
-        for stem in set(self._tasks) - stems:
-            self._bar.remove_task(self._tasks.pop(stem))
-        for each in now.running:
-            if each.stem not in self._tasks:
-                self._tasks[each.stem] = self._bar.add_task(
-                    f"  {each.stem}", total=1.0, news="", left=""
-                )
-            loss = "" if each.loss is None else f"epoch {each.epoch}, loss {each.loss:.4g}"
-            self._bar.update(
-                self._tasks[each.stem],
-                completed=each.fraction,
-                news=loss,
-                left=_left(each.seconds_left),
-            )
 
 
 def _progress(console: SafeConsole) -> Progress:
@@ -201,13 +173,10 @@ def _progress(console: SafeConsole) -> Progress:
         BarColumn(),
         TextColumn("{task.fields[news]}"),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
+        TimeRemainingColumn(),
+        TextColumn("left"),
         console=console,
     )
-
-
-def _left(seconds: float | None) -> str:
-    return "" if seconds is None else f"{_duration(seconds)} left"
 
 
 def _duration(seconds: float) -> str:

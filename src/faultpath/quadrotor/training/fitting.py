@@ -9,7 +9,8 @@ import json
 import logging
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, cast
@@ -28,16 +29,17 @@ from faultpath.quadrotor.training.journal import (
     read_journal,
     write_journal,
 )
-from faultpath.quadrotor.training.scalars import Scalars, open_scalars
 from faultpath.quadrotor.training.task import Schedule, Task
+from faultpath.store import make_folder
 from faultpath.streams import generator
 from faultpath.version import __version__
-
-__all__ = ["Diverged", "Moment", "Schedule", "Task", "fit", "forget"]
 
 _SAME_LOSS = 1e-3
 """Relative difference of a first loss that machines may cause and a change of code does not."""
 _log = logging.getLogger("faultpath")
+
+Plot = Callable[[int, Mapping[str, float]], None]
+"""Adds numbers of an epoch, counted from 1, to the curves."""
 
 
 class Diverged(UserError):
@@ -72,19 +74,14 @@ def fit(
     Raises `Diverged` for a loss or weights that are not finite, and `UserError` for missing data
     or a folder that cannot be written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(
-            f"cannot create {folder} ({error.strerror}): choose a place that you may write to."
-        ) from error
+    make_folder(folder)
     task.load()
     path = folder / f"{stem(task.name, task.seed)}.safetensors"
     work = _Work(task, path)
     if not work.finished(notice):
         work.resume(notice)
-        with open_scalars(tensorboard, path.stem) as scalars:
-            work.run(progress or _ignore, scalars)
+        with _curves(tensorboard, path.stem) as plot:
+            work.run(progress or (lambda moment: None), plot)
         work.finish()
     return path
 
@@ -142,7 +139,7 @@ class _Work:
         else:
             self._history = found
 
-    def run(self, progress: Callable[[Moment], None], scalars: Scalars) -> None:
+    def run(self, progress: Callable[[Moment], None], plot: Plot) -> None:
         """Fit the epochs that are left."""
         while (epoch := self._history.epochs) < self._task.schedule.epochs:
             started = time.monotonic()
@@ -155,8 +152,8 @@ class _Work:
             write_journal(
                 self._journal, self._module, self._optimiser, self._started(), self._history
             )
-            scalars.add(epoch + 1, {"training/loss": loss})
-            scalars.add(epoch + 1, {f"validation/{key}": value for key, value in metrics.items()})
+            plot(epoch + 1, {"training/loss": loss})
+            plot(epoch + 1, {f"validation/{key}": value for key, value in metrics.items()})
 
     def finish(self) -> None:
         """Write the checkpoint and drop the journal."""
@@ -249,5 +246,29 @@ def _recipe(task: Task, module: nn.Module) -> dict[str, Any]:
     return json.loads(json.dumps(recipe))
 
 
-def _ignore(moment: Moment) -> None:
-    del moment
+@contextmanager
+def _curves(folder: Path | None, run: str) -> Generator[Plot, None, None]:
+    """Open TensorBoard's files of a run below `folder`; without a folder nothing is written."""
+    if folder is None:
+        yield lambda epoch, values: None
+        return
+    with tensorboard_writer()(str(folder / run)) as writer:
+
+        def plot(epoch: int, values: Mapping[str, float]) -> None:
+            for name, value in values.items():
+                writer.add_scalar(name, value, epoch)
+
+        yield plot
+
+
+def tensorboard_writer() -> Any:
+    """Return the class that writes TensorBoard's files; `UserError` where it is not installed."""
+    try:
+        # torch re-exports the class without saying so in its annotations.
+        from torch.utils.tensorboard import SummaryWriter  # pyright: ignore[reportPrivateImportUsage]
+    except ModuleNotFoundError as error:
+        raise UserError(
+            "--tensorboard needs the tensorboard package, which is not installed: "
+            "pip install 'faultpath[tensorboard]'."
+        ) from error
+    return SummaryWriter

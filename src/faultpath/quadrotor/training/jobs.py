@@ -6,20 +6,19 @@ of one, epoch by epoch, is in the folder.
 
 import time
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.errors import UserError
+from faultpath.errors import Stopped, UserError
 from faultpath.quadrotor import native
 from faultpath.quadrotor.card import ModelCard, read_card
 from faultpath.quadrotor.checkpoint import ship
 from faultpath.quadrotor.training.catalogue import Job
 from faultpath.quadrotor.training.fitting import Moment, fit, forget
 from faultpath.quadrotor.training.job_pools import check_pools
-from faultpath.quadrotor.training.pace import Overview, Pace
-from faultpath.quadrotor.training.scalars import require_tensorboard
+from faultpath.store import make_folder
 from faultpath.store.atomic import sweep
 from faultpath.store.lock import locked
 from faultpath.work import End, Executor, Lost, Returned, local, tell
@@ -35,15 +34,6 @@ class Places:
     data: Path
     out: Path
     tensorboard: Path | None = None
-
-
-class Interrupted(Exception):
-    """Ctrl-C stopped the work; finished models and epochs are stored."""
-
-    def __init__(self, done: int, total: int) -> None:
-        super().__init__(f"interrupted with {done} of {total} models finished")
-        self.done = done
-        self.total = total
 
 
 @dataclass(frozen=True)
@@ -63,6 +53,18 @@ class Report:
     failures: tuple[Failure, ...]
 
 
+@dataclass(frozen=True)
+class Overview:
+    """How far all models together are."""
+
+    done: int
+    total: int
+    fraction: float
+    """Part of the work that is done, by the costs in the catalogue."""
+    running: Mapping[str, Moment | None]
+    """Models at work, as `<name>-<seed>`; `None` until the first minibatch."""
+
+
 def run_jobs(
     jobs: Sequence[Job],
     places: Places,
@@ -78,20 +80,13 @@ def run_jobs(
     a second, `notice` with sentences for the user. `shipped` copies each finished model into the
     package; `force` removes what the folder holds of the models first.
 
-    A model that fails does not stop the others. Raises `Interrupted` on Ctrl-C and `UserError`
-    when nothing can be fitted at all.
+    A model that fails does not stop the others. Raises `Stopped` on Ctrl-C and `UserError` when
+    nothing can be fitted at all.
     """
     executor = local(workers)
     check_pools(jobs, places.data)
-    if places.tensorboard is not None:
-        require_tensorboard()
-    try:
-        places.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UserError(
-            f"cannot create {places.out} ({error.strerror}): choose a place that you may write to."
-        ) from error
-    ledger = _Ledger(jobs, places, max(workers, 1), progress, notice, shipped)
+    make_folder(places.out)
+    ledger = _Ledger(jobs, places, progress, notice, shipped)
     try:
         with locked(places.out, notice):
             sweep(places.out)
@@ -100,7 +95,12 @@ def run_jobs(
             with executor:
                 _run(ledger, executor)
     except KeyboardInterrupt:
-        raise Interrupted(len(ledger.cards), len(jobs)) from None
+        again = "without --force " if force else ""
+        raise Stopped(
+            f"interrupted with {len(ledger.cards)} of {len(jobs)} models finished; they and the "
+            f"finished epochs of the others are kept in {places.out}; run the same command "
+            f"{again}again to resume."
+        ) from None
     return ledger.report()
 
 
@@ -111,7 +111,6 @@ class _Ledger:
         self,
         jobs: Sequence[Job],
         places: Places,
-        workers: int,
         progress: Callable[[Overview], None],
         notice: Callable[[str], None],
         shipped: bool,
@@ -123,7 +122,8 @@ class _Ledger:
         self._notice = notice
         self._shipped = shipped
         self._failures: dict[str, Failure] = {}
-        self._pace = Pace(jobs, workers)
+        self._running: dict[str, Moment | None] = {}
+        self._ended: set[str] = set()
         self.cards: dict[str, ModelCard] = {}
 
     def take(self) -> Job | None:
@@ -131,7 +131,7 @@ class _Ledger:
         if not self._waiting:
             return None
         job = self._waiting.pop(0)
-        self._pace.start(job)
+        self._running[job.stem] = None
         return job
 
     def tell(self, job: Job, message: Moment | str) -> None:
@@ -139,12 +139,13 @@ class _Ledger:
         if isinstance(message, str):
             self._notice(message)
         else:
-            self._pace.advance(job, message)
+            self._running[job.stem] = message
         self.show()
 
     def settle(self, job: Job, end: End) -> None:
         """Note how a job ended."""
-        self._pace.end(job)
+        del self._running[job.stem]
+        self._ended.add(job.stem)
         details = self.places.out / f"{job.stem}.error.txt"
         if isinstance(end, Returned):
             details.unlink(missing_ok=True)
@@ -163,7 +164,12 @@ class _Ledger:
 
     def show(self) -> None:
         """Say how far everything is."""
-        self._progress(self._pace.overview())
+        parts = dict.fromkeys(self._ended, 1.0)
+        parts |= {stem: moment.fraction for stem, moment in self._running.items() if moment}
+        done = sum(job.entry.cost * parts.get(job.stem, 0.0) for job in self._jobs)
+        whole = sum(job.entry.cost for job in self._jobs)
+        running = dict(self._running)
+        self._progress(Overview(len(self._ended), len(self._jobs), done / whole, running))
 
     def report(self) -> Report:
         """Return what came of the jobs."""
