@@ -15,21 +15,30 @@ from faultpath.errors import UserError
 from faultpath.faults import (
     ALL,
     AnyFault,
+    Bias,
+    Blur,
     Coupled,
     Delay,
     Drift,
     Dropout,
     Erase,
+    Exposure,
     Fault,
     Freeze,
     Hold,
+    Intermittence,
+    Jitter,
     Noise,
+    Occlusion,
     Offset,
     Quantise,
     Replace,
+    SaltAndPepper,
     Scale,
     Sequence,
     Shuffle,
+    Skew,
+    StuckRows,
     UniformScale,
 )
 
@@ -44,7 +53,15 @@ simple = st.one_of(
     st.builds(Erase, default=st.none() | constants),
     st.builds(Noise, std=st.floats(0, 10), relative=st.booleans()),
     st.builds(Drift, rate_per_s=constants, walk_per_sqrt_s=st.floats(0, 10)),
+    st.builds(Bias, std=st.floats(0, 10), time_constant_s=st.none() | st.floats(0.1, 10)),
     st.builds(Delay, steps=counts),
+    st.builds(Jitter, steps=counts),
+    st.builds(Skew, rate=st.floats(0, 1)),
+    st.builds(Occlusion, share=st.floats(0, 1)),
+    st.builds(SaltAndPepper, probability=st.floats(0, 1)),
+    st.builds(Blur, radius=counts),
+    st.builds(Exposure, factor=st.floats(0, 9)),
+    st.builds(StuckRows, share=st.floats(0, 1)),
     st.builds(Hold, every=counts),
     st.builds(Freeze),
     st.builds(
@@ -60,6 +77,7 @@ interventions = st.recursive(
     lambda inner: st.builds(Sequence, parts=st.lists(inner, min_size=1, max_size=2).map(tuple)),
     max_leaves=3,
 )
+times = st.floats(0.1, 9)
 scene_steps = st.dictionaries(st.sampled_from(["a", "b", "c"]), counts, min_size=1)
 faults = st.builds(
     Fault,
@@ -69,6 +87,7 @@ faults = st.builds(
     onset_step=counts | scene_steps,
     duration_steps=counts | scene_steps,
     recovery_steps=st.integers(0, 9),
+    intermittence=st.none() | st.builds(Intermittence, mean_on_s=times, mean_off_s=times),
     cause=st.none() | st.just("storm"),
 )
 

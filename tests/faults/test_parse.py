@@ -5,6 +5,7 @@ from fault_toys import INTERFACE, calibration
 
 from faultpath.errors import UserError
 from faultpath.faults import (
+    Bias,
     Coupled,
     Delay,
     Drift,
@@ -13,21 +14,24 @@ from faultpath.faults import (
     Fault,
     Freeze,
     Hold,
+    Intermittence,
+    Jitter,
     Noise,
     Offset,
     Quantise,
     Replace,
     Scale,
+    Skew,
     UniformScale,
     parse_fault,
 )
 
 KINDS = (
-    "delay, drift, dropout, erase, freeze, hold, noise, offset, quantise, replace, scale, shuffle, "
-    "uniform_scale"
+    "bias, blur, delay, drift, dropout, erase, exposure, freeze, hold, jitter, noise, occlusion, "
+    "offset, quantise, replace, salt_and_pepper, scale, shuffle, skew, stuck_rows, uniform_scale"
 )
 TARGETS = "calibration, mass, thrust, wind"
-WINDOW = "for, for_s, onset, onset_s, recover, recover_s"
+WINDOW = "correlation, for, for_s, off, off_s, on, on_s, onset, onset_s, recover, recover_s"
 
 
 def parse(text: str) -> Fault | Coupled:
@@ -46,7 +50,11 @@ def parse(text: str) -> Fault | Coupled:
         ("wind:noise=0.1,relative=false", Noise(std=0.1)),
         ("mass:drift=0.1", Drift(rate_per_s=0.1)),
         ("mass:drift,walk_per_sqrt_s=0.1", Drift(walk_per_sqrt_s=0.1)),
+        ("mass:bias=0.1,relative", Bias(std=0.1, relative=True)),
+        ("wind:bias=0.1/0/0,time_constant_s=2", Bias(std=(0.1, 0.0, 0.0), time_constant_s=2.0)),
         ("wind:delay=5", Delay(steps=5)),
+        ("wind:jitter=3", Jitter(steps=3)),
+        ("wind:skew=0.1", Skew(rate=0.1)),
         ("wind:hold=4", Hold(every=4)),
         ("wind:freeze", Freeze()),
         ("wind:erase", Erase()),
@@ -60,6 +68,19 @@ def parse(text: str) -> Fault | Coupled:
 def test_one_channel(text: str, intervention: object) -> None:
     channel = text.partition(":")[0]
     assert parse(text) == Fault.model_validate({"channel": channel, "intervention": intervention})
+
+
+def test_on_and_off_in_steps_or_seconds() -> None:
+    fault = parse("mass:scale=1.1,on=10,off_s=2")
+    assert isinstance(fault, Fault)
+    assert fault.intermittence == Intermittence(mean_on_s=0.5, mean_off_s=2.0)
+    assert fault.describe().endswith(", on for 0.5 s and off for 2 s on average")
+
+
+def test_correlation_is_the_product_of_two_loadings() -> None:
+    coupled = parse("calibration:bias=0.1,relative,correlation=0.25")
+    assert isinstance(coupled, Coupled)
+    assert [fault.loading for fault in coupled.faults] == [0.5, 0.5]
 
 
 def test_preset_is_the_systems() -> None:
@@ -119,7 +140,10 @@ def test_time_and_consumers_of_a_preset() -> None:
         ("calibration=x", "'calibration' needs a number, not 'x'"),
         ("calibration=inf", "'calibration' needs a finite number, not 'inf'"),
         ("calibration=-1", "calibration=-1 leaves no positive mass or thrust"),
-        ("calibration=0.1,relative", f"unknown option 'relative'; known: {WINDOW}"),
+        (
+            "calibration=0.1,relative",
+            f"unknown option 'relative'; did you mean 'correlation'? known: {WINDOW}",
+        ),
         (
             "wind=3",
             "says nothing about what happens to 'wind'; write wind:KIND=VALUE, kinds: " + KINDS,
@@ -144,6 +168,21 @@ def test_time_and_consumers_of_a_preset() -> None:
             "mass:scale=1,factors=2",
             f"unknown option 'factors'; did you mean 'for_s'? known: {WINDOW}",
         ),
+        (
+            "mass:scale=1,on_s=1",
+            "an intermittent fault needs both mean times; give on_s= and off_s=",
+        ),
+        ("mass:scale=1,on=1,on_s=1", "'on' is given in steps and in seconds; drop one"),
+        ("mass:scale=1,on=0,off=1", "'on' needs a mean time above 0"),
+        (
+            "mass:bias=1,correlation=0.5",
+            "'correlation' needs several channels, and this fault has one; name a group",
+        ),
+        (
+            "calibration:scale=2,correlation=1",
+            "'correlation' needs errors that are drawn, such as bias or noise",
+        ),
+        ("calibration:bias=1,correlation=2", "'correlation' needs a number from 0 to 1, not 2"),
         ("mass:scale=1,onset=1,onset=2", "option 'onset' appears twice; drop one"),
         ("mass:scale=1,onset=1,onset_s=1", "'onset' is given in steps and in seconds; drop one"),
         ("mass:scale=1,onset=x", "'onset' needs control steps, not 'x'"),

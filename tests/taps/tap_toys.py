@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from faultpath.faults import (
+    Bias,
     Coupled,
     Delay,
     Drift,
@@ -15,12 +16,14 @@ from faultpath.faults import (
     Freeze,
     Hold,
     Intervention,
+    Jitter,
     Noise,
     Offset,
     Quantise,
     Replace,
     Scale,
     Shuffle,
+    Skew,
     UniformScale,
 )
 from faultpath.faults import Sequence as InTurn
@@ -64,7 +67,11 @@ INTERVENTIONS: tuple[Intervention, ...] = (
     Noise(std=0.3, relative=True),
     Drift(rate_per_s=(1.0, 0.0, 2.0)),
     Drift(walk_per_sqrt_s=0.5),
+    Bias(std=(0.3, 0.1, 0.2)),
+    Bias(std=0.3, relative=True, time_constant_s=0.2),
     Delay(steps=3),
+    Jitter(steps=3),
+    Skew(rate=0.4),
     Hold(every=4),
     Freeze(),
     Dropout(probability=0.4),

@@ -24,8 +24,10 @@ WINDOWS = pytest.mark.parametrize(
         {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3},
         {"onset_step": ONSETS, "duration_steps": 5, "recovery_steps": 3},
         {"onset_step": ONSETS},
+        {"onset_step": 2, "intermittence": {"mean_on_s": 0.2, "mean_off_s": 0.1}},
+        {"onset_step": ONSETS, "intermittence": {"mean_on_s": 0.2, "mean_off_s": 0.1}},
     ],
-    ids=["always", "window", "own-windows", "own-onsets"],
+    ids=["always", "window", "own-windows", "own-onsets", "intermittent", "own-intermittent"],
 )
 
 
@@ -146,6 +148,7 @@ def test_faults_that_meet_at_a_tap_act_in_order() -> None:
 def test_a_sequence_is_two_faults_with_one_window(window: dict[str, Any]) -> None:
     parts = (Scale(factor=2.0), Delay(steps=3))
     window = {key: value for key, value in window.items() if key != "recovery_steps"}
+    window["cause"] = "one"  # faults of one cause come and go together
     apart = play([fault(part, window) for part in parts], SCENES)
     assert play([fault(Sequence(parts=parts), window)], SCENES).tobytes() == apart.tobytes()
 

@@ -1,9 +1,13 @@
 """What can be done to a reading: interventions, and faults that say where and when."""
 
 from faultpath.faults.base import Intervention, Moment
+from faultpath.faults.clocks import Jitter, Skew
 from faultpath.faults.draws import Draws
+from faultpath.faults.drift import Bias, Drift
 from faultpath.faults.fault import ALL, AnyFault, Coupled, Fault
-from faultpath.faults.noise import Drift, Noise
+from faultpath.faults.images import Blur, Exposure, Occlusion, SaltAndPepper, StuckRows
+from faultpath.faults.intermittence import Intermittence, Phases
+from faultpath.faults.noise import Noise
 from faultpath.faults.parse import FaultPreset, parse_fault
 from faultpath.faults.probes import Replace, Shuffle
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention, Sequence
@@ -16,25 +20,35 @@ __all__ = [
     "INTERVENTIONS",
     "AnyFault",
     "AnyIntervention",
+    "Bias",
+    "Blur",
     "Coupled",
     "Delay",
     "Draws",
     "Drift",
     "Dropout",
     "Erase",
+    "Exposure",
     "Fault",
     "FaultPreset",
     "Freeze",
     "Hold",
+    "Intermittence",
     "Intervention",
+    "Jitter",
     "Moment",
     "Noise",
+    "Occlusion",
     "Offset",
+    "Phases",
     "Quantise",
     "Replace",
+    "SaltAndPepper",
     "Scale",
     "Sequence",
     "Shuffle",
+    "Skew",
+    "StuckRows",
     "UniformScale",
     "Window",
     "parse_fault",

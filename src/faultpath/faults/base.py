@@ -4,9 +4,10 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self, TypeAlias
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.arrays import Array, Constant
+from faultpath.arrays import Array, Constant, HostArray, like
 from faultpath.faults.draws import Draws
 from faultpath.interface import Channel
 
@@ -51,6 +52,8 @@ class Intervention(BaseModel, ABC):
 
     value_field: ClassVar[str | None] = None
     """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`; `None`: KIND stands alone."""
+    random: ClassVar[bool] = False
+    """Whether errors are drawn, so that those of several channels can be correlated."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the memory before the first `apply`, at the first delivery."""
@@ -78,3 +81,14 @@ def number(value: Constant) -> str:
     if isinstance(value, tuple):
         return "(" + ", ".join(number(part) for part in value) + ")"
     return f"{value:g}"
+
+
+def with_error(reading: Array, error: HostArray, relative: bool) -> Array:
+    """Return the reading plus `error`, or times `1 + error` when relative."""
+    return reading * like(1 + error, reading) if relative else reading + like(error, reading)
+
+
+def check_std(std: Constant) -> None:
+    """Raise `ValueError` for a negative standard deviation."""
+    if np.any(np.asarray(std) < 0):
+        raise ValueError("std must not be negative")

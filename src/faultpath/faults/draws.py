@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import sqrt
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from faultpath.streams import generators
 
@@ -17,11 +19,18 @@ class Draws:
     Two consumers, arms or blocks that share those four get the same numbers. Every call at one
     address starts the stream anew: calls with different shapes, and normal and uniform numbers,
     come from the same bits. `part` gives an independent address.
+
+    With `own`, numbers are made of those of the cause and of its own: two draws of one cause with
+    the loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
+    Gaussian copula). Permutations are of the cause.
     """
 
     scenes: tuple[str, ...]
     seed: int
     cause: str
+    loading: float = 1.0
+    """Share of the cause in a normal number, from -1 to 1."""
+    own: "Draws | None" = None
     _latest: dict[tuple[str, Any], tuple[int, NDArray[Any]]] = field(
         default_factory=dict[tuple[str, Any], tuple[int, NDArray[Any]]],
         init=False,
@@ -35,10 +44,18 @@ class Draws:
 
     def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return standard normal numbers `[B, *shape_per_scene]`."""
-        return self._rows("normal", shape_per_scene, step, lambda g: g.normal(size=shape_per_scene))
+        drawn = self._rows(
+            "normal", shape_per_scene, step, lambda g: g.normal(size=shape_per_scene)
+        )
+        if self.own is None:
+            return drawn
+        rest = sqrt(1 - self.loading**2)
+        return self.loading * drawn + rest * self.own.normal(shape_per_scene, step)
 
     def uniform(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return uniform numbers in [0, 1), `[B, *shape_per_scene]`."""
+        if self.own is not None:
+            return ndtr(self.normal(shape_per_scene, step))
         return self._rows("uniform", shape_per_scene, step, lambda g: g.random(shape_per_scene))
 
     def permutation(self, n: int, step: int) -> NDArray[np.int64]:
@@ -55,7 +72,9 @@ class Draws:
 
     def _beside(self, suffix: str) -> "Draws":
         if suffix not in self._parts:
-            self._parts[suffix] = Draws(self.scenes, self.seed, self.cause + suffix)
+            own = None if self.own is None else self.own._beside(suffix)
+            cause = self.cause + suffix
+            self._parts[suffix] = Draws(self.scenes, self.seed, cause, self.loading, own)
         return self._parts[suffix]
 
     def _rows(

@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from faultpath.errors import UserError
+from faultpath.faults.draws import Draws
+from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
 from faultpath.faults.window import Window
 from faultpath.interface import Interface, module_of, modules
@@ -49,13 +51,26 @@ class Fault(_Frozen):
     """Steps in force; `None`: until the end."""
     recovery_steps: int = Field(default=0, ge=0)
     """Steps of linear return to the clean reading after `duration_steps`."""
+    intermittence: Intermittence | None = None
+    """How the fault comes and goes within that time; `None`: it is always on."""
     cause: str | None = None
     """Faults of one cause draw the same random numbers; `None`: the channel and the kind."""
+    loading: float = Field(default=1.0, ge=-1, le=1)
+    """Share of the cause in the random numbers: two faults of one cause with the loadings a and b
+    have errors of correlation a * b."""
+    own_cause: str | None = None
+    """What addresses the rest of the random numbers; `None`: the channel and the kind."""
 
     @model_validator(mode="after")
     def _recovers_from_an_end(self) -> Self:
         if self.recovery_steps and self.duration_steps is None:
             raise ValueError("recovery_steps needs an end to recover from; give duration_steps")
+        return self
+
+    @model_validator(mode="after")
+    def _loads_on_draws(self) -> Self:
+        if self.loading != 1.0 and not self.intervention.random:
+            raise ValueError(f"{self.intervention.kind} draws no errors; leave loading out")
         return self
 
     def __hash__(self) -> int:
@@ -66,6 +81,13 @@ class Fault(_Frozen):
     def drawn_from(self) -> str:
         """The cause that addresses the random numbers."""
         return self.cause or f"{self.channel}:{self.intervention.kind}"
+
+    def draws(self, scenes: tuple[str, ...], seed: int) -> Draws:
+        """Return the random numbers of the fault, which whoever it strikes shares."""
+        if self.loading == 1.0:
+            return Draws(scenes, seed, self.drawn_from)
+        own = self.own_cause or f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
+        return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, own))
 
     def striking(self, *names: str) -> Self:
         """Return the same fault at other consumers: `module.place`, modules, or `*`."""
@@ -150,7 +172,9 @@ class Fault(_Frozen):
             words += f" for {duration} steps"
         elif duration is not None:
             words += " for a time of each scene's own"
-        return words + (f", recovering over {self.recovery_steps}" if self.recovery_steps else "")
+        if self.recovery_steps:
+            words += f", recovering over {self.recovery_steps}"
+        return words + (f", {self.intermittence.words()}" if self.intermittence else "")
 
 
 class Coupled(_Frozen):

@@ -5,6 +5,8 @@
     wind:offset=1/0/0                   a vector
     velocity:noise=0.1,relative         more fields of the intervention after commas
     wind:freeze,onset=20,for=40         when, in control steps; onset_s= and for_s= in seconds
+    mass:scale=1.1,on_s=1,off_s=4       on and off for random times of these means
+    calibration:bias=0.1,correlation=0.5    errors of several channels that are correlated
     mass:scale=1.1@planner+predictor.trim   only these modules and consumers
 
 A correlation group may stand for its channels: `calibration:scale=1.1`.
@@ -12,12 +14,14 @@ A correlation group may stand for its channels: `calibration:scale=1.1`.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from math import sqrt
 from typing import Any, TypeAlias
 
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.faults.fault import Coupled, Fault
+from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.interface import Interface, groups
 from faultpath.interface.words import listed, unknown
@@ -42,7 +46,11 @@ _WINDOW = {
     "recover": ("recovery_steps", 0),
 }
 """Options on time: the field of `Fault` and the least number of steps."""
-_WINDOW_OPTIONS = (*_WINDOW, *(f"{name}_s" for name in _WINDOW))
+_PHASES = {"on": "mean_on_s", "off": "mean_off_s"}
+"""Options on intermittence: the field of `Intermittence`, for a mean time."""
+_CORRELATION = "correlation"
+_ANY_FAULT = (_CORRELATION, *(f"{name}{s}" for name in (*_WINDOW, *_PHASES) for s in ("", "_s")))
+"""Options that every fault takes."""
 
 
 @dataclass(frozen=True)
@@ -67,11 +75,13 @@ def parse_fault(
     try:
         parts = _take_apart(text)
         when, rest = _timing(parts.options, dt_s)
+        when |= _coming_and_going(rest, dt_s)
+        correlation = _correlation(rest)
         if parts.kind is None:
             fault = _preset(parts, rest, interface, presets)
         else:
             fault = _intervention(parts.name, parts.kind, parts.value, rest, interface)
-        fault = _at_time(fault, when)
+        fault = _correlated(_at_time(fault, when), correlation)
         if parts.consumers:
             fault = fault.striking(*parts.consumers)
         fault.validate_against(interface)
@@ -113,9 +123,9 @@ def _take_apart(text: str) -> _Text:
     )
 
 
-def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, int], dict[str, str]]:
+def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
     """Return the fields of a fault's window, and the options that are left."""
-    when: dict[str, int] = {}
+    when: dict[str, Any] = {}
     rest: dict[str, str] = {}
     for key, given in options.items():
         plain = key.removesuffix("_s")
@@ -129,6 +139,46 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, int], di
     if "recovery_steps" in when and "duration_steps" not in when:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
     return when, rest
+
+
+def _coming_and_going(options: dict[str, str], dt_s: float) -> dict[str, Any]:
+    """Take the options on intermittence out, and return the field of a fault."""
+    means: dict[str, float] = {}
+    for key in [key for key in options if key.removesuffix("_s") in _PHASES]:
+        plain = key.removesuffix("_s")
+        if _PHASES[plain] in means:
+            raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
+        mean = _number(key, options.pop(key)) * (dt_s if plain == key else 1.0)
+        if mean <= 0:
+            raise UserError(f"'{key}' needs a mean time above 0")
+        means[_PHASES[plain]] = mean
+    if len(means) == 1:
+        raise UserError("an intermittent fault needs both mean times; give on_s= and off_s=")
+    return {"intermittence": Intermittence.model_validate(means)} if means else {}
+
+
+def _correlation(options: dict[str, str]) -> float | None:
+    """Take the option out that says how far errors of several channels go together."""
+    if _CORRELATION not in options:
+        return None
+    value = _number(_CORRELATION, options.pop(_CORRELATION))
+    if not 0 <= value <= 1:
+        raise UserError(f"'{_CORRELATION}' needs a number from 0 to 1, not {value:g}")
+    return value
+
+
+def _correlated(fault: Fault | Coupled, correlation: float | None) -> Fault | Coupled:
+    if correlation is None:
+        return fault
+    if not isinstance(fault, Coupled):
+        raise UserError(
+            f"'{_CORRELATION}' needs several channels, and this fault has one; name a group"
+        )
+    if any(not each.intervention.random for each in fault.faults):
+        raise UserError(f"'{_CORRELATION}' needs errors that are drawn, such as bias or noise")
+    loading = {"loading": sqrt(correlation)}
+    faults = tuple(each.model_copy(update=loading) for each in fault.faults)
+    return fault.model_copy(update={"faults": faults})
 
 
 def _steps(key: str, given: str, least: int, dt_s: float | None) -> int:
@@ -168,7 +218,7 @@ def _preset(
     if parts.value is None:
         raise UserError(f"'{parts.name}' needs a size, as in {parts.name}=+0.1")
     if options:
-        raise UserError(unknown("option", next(iter(options)), _WINDOW_OPTIONS))
+        raise UserError(unknown("option", next(iter(options)), _ANY_FAULT))
     return presets[parts.name](_number(parts.name, parts.value))
 
 
@@ -198,7 +248,7 @@ def _build(said: str, kind: str, value: str | None, options: dict[str, str]) -> 
     fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
     for key in options:
         if key not in fields:
-            raise UserError(unknown("option", key, (*fields, *_WINDOW_OPTIONS)))
+            raise UserError(unknown("option", key, (*fields, *_ANY_FAULT)))
     given = {key: _value(key, text or "true") for key, text in options.items()}
     if cls.value_field is None:
         if value is not None:
@@ -228,7 +278,7 @@ def _value(key: str, text: str) -> Any:
     return _number(key, text)
 
 
-def _at_time(fault: Fault | Coupled, when: Mapping[str, int]) -> Fault | Coupled:
+def _at_time(fault: Fault | Coupled, when: Mapping[str, Any]) -> Fault | Coupled:
     if isinstance(fault, Coupled):
         faults = tuple(each.model_copy(update=dict(when)) for each in fault.faults)
         return fault.model_copy(update={"faults": faults})

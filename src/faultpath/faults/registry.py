@@ -6,7 +6,10 @@ from pydantic import Discriminator, Field
 
 from faultpath.arrays import Array, pick
 from faultpath.faults.base import Intervention, Memory, Moment
-from faultpath.faults.noise import Drift, Noise
+from faultpath.faults.clocks import Jitter, Skew
+from faultpath.faults.drift import Bias, Drift
+from faultpath.faults.images import Blur, Exposure, Occlusion, SaltAndPepper, StuckRows
+from faultpath.faults.noise import Noise
 from faultpath.faults.probes import Replace, Shuffle
 from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
 from faultpath.faults.values import Erase, Offset, Quantise, Scale, UniformScale
@@ -57,10 +60,18 @@ Listed: TypeAlias = (
     | Erase
     | Noise
     | Drift
+    | Bias
     | Delay
     | Hold
     | Freeze
     | Dropout
+    | Jitter
+    | Skew
+    | Occlusion
+    | SaltAndPepper
+    | Blur
+    | Exposure
+    | StuckRows
     | Replace
     | Shuffle
     | Sequence

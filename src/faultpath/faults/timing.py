@@ -87,6 +87,7 @@ class Dropout(Intervention):
 
     kind: Literal["dropout"] = "dropout"
     value_field: ClassVar[str | None] = "probability"
+    random: ClassVar[bool] = True
     probability: float = Field(ge=0, le=1)
     substitute: Erase | None = None
     """What stands in for a lost reading; `None`: the last that arrived, or else the first."""

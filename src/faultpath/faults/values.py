@@ -39,6 +39,7 @@ class UniformScale(Intervention):
 
     kind: Literal["uniform_scale"] = "uniform_scale"
     value_field: ClassVar[str | None] = "half_range"
+    random: ClassVar[bool] = True
     half_range: float = Field(ge=0, lt=1)
 
     def begin(self, reading: Array, at: Moment) -> Memory:

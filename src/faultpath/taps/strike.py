@@ -5,17 +5,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.arrays import Array, namespace, pick, rows
+from faultpath.arrays import Array, namespace, pick, place, rows
 from faultpath.errors import UserError
-from faultpath.faults import Draws, Fault, Moment, Window
+from faultpath.faults import Draws, Fault, Moment, Phases, Window
 from faultpath.faults.base import Memory
 from faultpath.taps.tally import Tally
+
+_PHASES = -1
+"""Part of the draws that says when an intermittent fault is on; the others are of the value."""
 
 
 class Strike:
     """A resolved fault as it acts on the deliveries of one tap."""
 
-    __slots__ = ("_draws", "_dt_s", "_memories", "_near", "_window", "fault", "in_force")
+    __slots__ = ("_draws", "_dt_s", "_memories", "_near", "_phases", "_window", "fault", "in_force")
 
     def __init__(self, fault: Fault, window: Window, draws: Draws, dt_s: float) -> None:
         self.fault = fault
@@ -24,6 +27,11 @@ class Strike:
         self._near: Window | None = None
         self._draws = draws
         self._dt_s = dt_s
+        self._phases: Phases | None = None
+        if fault.intermittence is not None:
+            onsets = self.onsets(len(draws.scenes))
+            chance = draws.part(_PHASES)
+            self._phases = Phases.of(fault.intermittence, onsets, dt_s, chance)
         self._memories: dict[int, Memory] = {}
         """By ask within a step; a reading that is no query is ask 0."""
 
@@ -37,7 +45,11 @@ class Strike:
             return reading, False
         if self._near is None:
             self._near = self._window.beside(reading)
-        at = Moment(step, step - self._near.onset, self._dt_s, self._draws.of_ask(ask))
+        elapsed, weight = step - self._near.onset, self._near.weight(step)
+        if self._phases is not None:
+            elapsed = place(self._phases.elapsed(step), reading)
+            weight = weight * namespace(elapsed).astype(elapsed >= 0, namespace(elapsed).float64)
+        at = Moment(step, elapsed, self._dt_s, self._draws.of_ask(ask))
         doing = self.fault.intervention
         if ask not in self._memories:
             self._memories[ask] = doing.begin(reading, at)
@@ -47,7 +59,6 @@ class Strike:
                 f"turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
                 f"{list(value.shape)}; choose one that keeps them"
             )
-        weight = self._near.weight(step)
         return self._blend(reading, value, weight), weight > 0
 
     def _blend(self, reading: Array, value: Array, weight: Any) -> Array:

@@ -86,7 +86,7 @@ class Taps:
 
     def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
         present = {consumer for _, consumer in self._taps}
-        draws: dict[str, Draws] = {}
+        draws: dict[tuple[str, float, str | None], Draws] = {}
         for declared in faults:
             everywhere = declared.resolved(self._interface)
             if not declared.resolved(self._interface, present):
@@ -97,8 +97,10 @@ class Taps:
                 )
             for fault in everywhere:
                 window = fault.window(self._scenes)
-                cause = fault.drawn_from
-                drawn = draws.setdefault(cause, Draws(self._scenes, seed, cause))
+                made = fault.draws(self._scenes, seed)
+                drawn = draws.setdefault(
+                    (made.cause, made.loading, made.own and made.own.cause), made
+                )
                 for consumer in fault.consumers:
                     if tap := self._taps.get((fault.channel, consumer)):
                         tap.add(Strike(fault, window, drawn, dt_s))

@@ -1,0 +1,126 @@
+"""Laws of errors that last, that go together, and that come and go."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+
+from faultpath.faults import (
+    Bias,
+    Coupled,
+    Draws,
+    Fault,
+    Freeze,
+    Intermittence,
+    Moment,
+    Phases,
+    Scale,
+)
+
+SCENES = tuple(f"scene-{i}" for i in range(4000))
+DT_S = 0.05
+LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
+
+
+def biases(bias: Bias, steps: int, draws: Draws, to: Any = np.asarray) -> np.ndarray[Any, Any]:
+    """Return the errors on a reading of zeros, `[T, B]`."""
+    reading = to(np.zeros(len(draws.scenes)))
+    memory = bias.begin(reading, Moment(0, 0, DT_S, draws))
+    errors = []
+    for step in range(steps):
+        value, memory = bias.apply(reading, memory, Moment(step, step, DT_S, draws))
+        errors.append(np.asarray(value).copy())
+    return np.stack(errors)
+
+
+@LIBRARIES
+def test_a_bias_is_one_normal_draw_a_scene(to: Any) -> None:
+    errors = biases(Bias(std=0.3), 3, Draws(SCENES, 0, "cause"), to)
+    assert (errors == errors[0]).all()
+    assert errors[0].std() == pytest.approx(0.3, rel=0.05)
+    assert errors[0].mean() == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_wandering_bias_is_stationary_and_forgets_with_its_time_constant() -> None:
+    errors = biases(Bias(std=0.3, time_constant_s=0.5), 21, Draws(SCENES, 0, "cause"))
+    np.testing.assert_allclose(errors.std(1), 0.3, rtol=0.06)
+    after = [np.corrcoef(errors[0], errors[lag])[0, 1] for lag in (1, 10, 20)]
+    np.testing.assert_allclose(after, np.exp([-0.1, -1.0, -2.0]), atol=0.05)
+
+
+def test_a_wandering_bias_does_not_depend_on_how_often_a_tap_delivers() -> None:
+    bias, draws = Bias(std=0.3, time_constant_s=0.5), Draws(("a", "b"), 0, "cause")
+    seldom = np.zeros(2)
+    memory = bias.begin(seldom, Moment(0, 0, DT_S, draws))
+    for step in (3, 4, 9):
+        value, memory = bias.apply(seldom, memory, Moment(step, step, DT_S, draws))
+    assert value.tobytes() == biases(bias, 10, draws)[9].tobytes()
+
+
+@pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (0.5**0.5, 0.5**0.5), (1.0, -1.0), (0.0, 0.7)])
+def test_two_faults_of_one_cause_have_the_correlation_of_their_loadings(a: float, b: float) -> None:
+    mass, thrust = (
+        Fault(channel=channel, intervention=Bias(std=0.1), cause="weather", loading=loading)
+        for channel, loading in (("mass", a), ("thrust", b))
+    )
+    errors = [biases(Bias(std=0.1), 1, fault.draws(SCENES, 0))[0] for fault in (mass, thrust)]
+    assert np.corrcoef(errors)[0, 1] == pytest.approx(a * b, abs=0.04)
+    for each in errors:
+        assert each.std() == pytest.approx(0.1, rel=0.05)
+
+
+def test_correlated_uniform_numbers_stay_uniform() -> None:
+    own = Draws(SCENES, 0, "own")
+    drawn = Draws(SCENES, 0, "common", 0.8, own).uniform((), 0)
+    common = Draws(SCENES, 0, "common", 0.8, Draws(SCENES, 0, "other")).uniform((), 0)
+    np.testing.assert_allclose(np.quantile(drawn, [0.1, 0.5, 0.9]), [0.1, 0.5, 0.9], atol=0.03)
+    assert np.corrcoef(drawn, common)[0, 1] == pytest.approx(0.62, abs=0.04)  # 6/pi asin(0.64/2)
+
+
+def test_a_fault_that_draws_nothing_has_no_loading() -> None:
+    with pytest.raises(ValueError, match="scale draws no errors; leave loading out"):
+        Fault(channel="mass", intervention=Scale(factor=1.1), loading=0.5)
+
+
+def test_a_coupled_fault_keeps_the_loadings_of_its_parts() -> None:
+    part = Fault(channel="mass", intervention=Bias(std=0.1), loading=-0.5)
+    assert Coupled(name="two", faults=(part,)).striking("predictor").faults[0].loading == -0.5
+
+
+def phases(what: Intermittence, steps: int) -> np.ndarray[Any, Any]:
+    made = Phases.of(what, np.full(len(SCENES), 5), DT_S, Draws(SCENES, 0, "cause"))
+    return np.stack([made.elapsed(step) for step in range(steps)])
+
+
+def test_an_intermittent_fault_begins_on_at_the_onset() -> None:
+    elapsed = phases(Intermittence(mean_on_s=0.5, mean_off_s=0.25), 6)
+    assert (elapsed[:5] == -1).all()
+    assert (elapsed[5] == 0).all()
+
+
+def test_phases_have_the_mean_times_and_the_share_that_they_say() -> None:
+    elapsed = phases(Intermittence(mean_on_s=0.5, mean_off_s=0.25), 205)[5:]
+    on = elapsed >= 0
+    ends = on[:-1] & ~on[1:]
+    begins = ~on[:-1] & on[1:]
+    assert on[:-1].sum() / ends.sum() * DT_S == pytest.approx(0.5, rel=0.06)
+    assert (~on[:-1]).sum() / begins.sum() * DT_S == pytest.approx(0.25, rel=0.12)
+    assert on[100:].mean() == pytest.approx(2 / 3, abs=0.02)
+    assert (elapsed[1:][begins] == 0).all()
+
+
+def test_every_phase_is_an_onset_of_its_own() -> None:
+    """A sensor that freezes now and then holds what it showed when it froze."""
+    draws = Draws(("a",), 3, "cause")
+    made = Phases.of(Intermittence(mean_on_s=0.3, mean_off_s=0.2), np.zeros(1, int), DT_S, draws)
+    memory = Freeze().begin(np.zeros(1), Moment(0, 0, DT_S, draws))
+    holds, starts = 0.0, 0
+    for step in range(60):
+        elapsed = made.elapsed(step)
+        reading = np.full(1, float(step))
+        value, memory = Freeze().apply(reading, memory, Moment(step, elapsed, DT_S, draws))
+        if elapsed[0] == 0:
+            holds, starts = float(step), starts + 1
+        assert value[0] == (step if elapsed[0] < 0 else holds)
+    assert starts > 3
