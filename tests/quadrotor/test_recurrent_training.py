@@ -1,5 +1,6 @@
 """How the wind reconstruction is fitted, and that its repair differs by the corruption alone."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,6 @@ import torch
 from faultpath.errors import UserError
 from faultpath.faults import Fault, Scale
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.training.corruption import Corruption, dcc
 from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
 from faultpath.quadrotor.training.windows import Windows
@@ -74,7 +74,7 @@ def test_repair_shares_initial_weights_order_and_short_histories():
 
 
 def test_repair_without_noise_is_the_baseline_bit_for_bit(monkeypatch):
-    noiseless = MODELS | {"gru+dcc": type(MODELS["gru"])(half_range=0.0)}
+    noiseless = MODELS | {"gru+dcc": replace(MODELS["gru+dcc"], half_range=0.0)}
     monkeypatch.setattr("faultpath.quadrotor.training.reconstruction_task.MODELS", noiseless)
     assert loss(task("gru")) == loss(task("gru+dcc"))
 
@@ -176,7 +176,7 @@ def test_unknown_model_is_a_users_mistake():
 
 def corrupted(faults, consumers=(HEAD,), epoch=0, seed=0, count=COUNT):
     few = windows(count=count)
-    corruption = Corruption(quadrotor_interface(), faults, consumers, few.ids, seed)
+    corruption = Corruption(faults, consumers, few.ids, seed)
     readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}
     return readings, corruption.deliver(epoch, readings)
 

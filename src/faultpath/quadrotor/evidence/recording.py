@@ -12,10 +12,9 @@ from faultpath.errors import UserError
 from faultpath.evidence import Recording
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows, join
+from faultpath.quadrotor.training.pool import FlightData, join_flights, write_flights
 from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
-from faultpath.store import atomic
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.state import system_code
 
@@ -36,9 +35,9 @@ class Block:
     scenes: tuple[str, ...]
     stem: str
 
-    def stored(self, folder: Path) -> bool:
-        """Return whether the flights are there; the rows are written last."""
-        return (folder / f"{self.stem}.rows").exists()
+    def rows(self, folder: Path) -> Path:
+        """Return the file that is written last."""
+        return folder / f"{self.stem}.rows"
 
     def fly(self, folder: Path) -> None:
         """Fly the scenes and store the flights."""
@@ -47,8 +46,7 @@ class Block:
         system.library(recording.library)
         flights = record_flights(system, recording.variant, self.scenes, recording.seed)
         episodes = range(self.first, self.first + len(self.scenes))
-        atomic.write(folder / f"{self.stem}.episodes", encode_episodes(episodes, flights))
-        atomic.write(folder / f"{self.stem}.rows", encode_rows(episodes, flights))
+        write_flights(folder / self.stem, episodes, flights)
 
 
 @dataclass(frozen=True)
@@ -112,10 +110,10 @@ def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
 
     `UserError` when no flight is as long as a window.
     """
-    rows = join((folder / f"{block.stem}.rows").read_bytes() for block in blocks)
-    episodes = join((folder / f"{block.stem}.episodes").read_bytes() for block in blocks)
     recording = blocks[0].recording
-    flown = FlightData.decode(recording.name, rows, episodes)
+    flown = FlightData.decode(
+        recording.name, *join_flights([folder / block.stem for block in blocks])
+    )
     place = places(flown, STRIDE)
     if not len(place):
         raise UserError(

@@ -10,7 +10,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -30,18 +30,18 @@ from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import Library, load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State
+from faultpath.quadrotor.training.parts import Part, make_missing
 from faultpath.quadrotor.training.provenance import code_of
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.streams import generator
-from faultpath.work import local, run_all
 
 FORMAT = 2
 PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
 
-Progress = Callable[[int, int], None]
+Progress = Callable[[float, float], None]
 """Called with the scenes done and those asked for."""
 
 
@@ -95,7 +95,7 @@ class Samples:
 
     def take(self, index: Tensor) -> "Samples":
         """Return some of the images."""
-        return Samples(*(part[index] for part in vars(self).values()))
+        return Samples(**{name: part[index] for name, part in vars(self).items()})
 
     def depth_m(self) -> Tensor:
         """Return the images in metres, float32."""
@@ -130,13 +130,8 @@ def collect(
         place.mkdir(parents=True, exist_ok=True)
         with locked(place, lambda notice: print(notice, file=sys.stderr)):
             atomic.sweep(place)
-            todo = [(scene, shard) for scene, shard in shards if not shard.exists()]
-            kept = len(shards) - len(todo)
-            calls = [partial(_make, recipe, *each) for each in todo]
-            with local(workers) as executor:
-                for made, _ in enumerate(run_all(executor, calls), 1):
-                    if progress is not None:
-                        progress(kept + made, len(shards))
+            parts = [Part(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards]
+            make_missing([parts], workers, progress)
         atomic.write_text(path, json.dumps(asked, indent=2, sort_keys=True) + "\n")
     except OSError as error:
         raise UserError(
@@ -164,12 +159,8 @@ def read(folder: Path, recipe: Recipe | None = None) -> Samples:
 
 def join(parts: Sequence[Samples]) -> Samples:
     """Return the images of several sets as one, in their order."""
-    return Samples(
-        **{
-            field.name: torch.cat([getattr(part, field.name) for part in parts])
-            for field in fields(Samples)
-        }
-    )
+    columns = zip(*(vars(part).values() for part in parts), strict=True)
+    return Samples(*map(torch.cat, columns))
 
 
 def provenance_path(folder: Path) -> Path:

@@ -5,11 +5,12 @@ from collections.abc import Collection, Iterable, Mapping
 from torch import Tensor
 
 from faultpath.faults import Coupled, Fault, UniformScale
-from faultpath.interface import Interface
+from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.training.replay import DeliveredInputs
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.taps import Reading, Taps
 
+CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
 _EPOCHS = 100_000
@@ -20,15 +21,17 @@ def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled
     """Return independent uniform noise on mass and thrust scale at `consumers`.
 
     Each channel has its own cause: the two factors are independent, and all consumers of a
-    channel get the same one (paper, Section IV-B and appendix). A consumer may read one channel
-    only.
+    channel get the same one (paper, Section IV-B and appendix). Consumers that read neither are
+    left alone, and one may read one channel only.
     """
+    interface = quadrotor_interface()
     noise = UniformScale(half_range=half_range)
     faults = tuple(
         Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}")
-        for channel in ("mass", "thrust_scale")
+        for channel in CALIBRATION
     )
-    return Coupled(name="dcc", faults=faults).striking(*consumers)
+    readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
+    return Coupled(name="dcc", faults=faults).striking(*sorted(readers & set(consumers)))
 
 
 class Corruption:
@@ -39,7 +42,6 @@ class Corruption:
     streams of the faults' own, so initial weights and the order of minibatches are untouched.
 
     Args:
-        interface: Declares the channels and their consumers.
         faults: What is done to the readings; none: every consumer gets the readings themselves.
         consumers: Consumers that the model under training has.
         windows: Ids, one a row of every reading.
@@ -51,13 +53,12 @@ class Corruption:
 
     def __init__(
         self,
-        interface: Interface,
         faults: Iterable[Fault | Coupled],
         consumers: Collection[str],
         windows: tuple[str, ...],
         seed: int,
     ) -> None:
-        self._interface = interface
+        self._interface = quadrotor_interface()
         self._faults = tuple(faults)
         self._consumers = frozenset(consumers)
         self._windows = windows

@@ -100,6 +100,20 @@ def join(parts: Iterable[bytes]) -> bytes:
     return _write(read_table(part) for part in parts)
 
 
+def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None:
+    """Write a batch as `<stem>.episodes` and `<stem>.rows`; the rows are written last."""
+    atomic.write(Path(f"{stem}.episodes"), encode_episodes(episodes, flights))
+    atomic.write(Path(f"{stem}.rows"), encode_rows(episodes, flights))
+
+
+def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
+    """Return the rows and the episodes of batches that `write_flights` wrote."""
+    return (
+        join(Path(f"{stem}.rows").read_bytes() for stem in stems),
+        join(Path(f"{stem}.episodes").read_bytes() for stem in stems),
+    )
+
+
 def write_pool(path: Path, rows: bytes, episodes: bytes, provenance: Provenance) -> None:
     """Write a finished pool, its provenance last; `OSError` when the disk will not."""
     atomic.write(episodes_path(path), episodes)

@@ -1,7 +1,7 @@
 """Fitting of the learned predictors (paper, Section IV-A)."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,6 @@ from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
@@ -96,13 +95,8 @@ class PredictorTask(Task):
         self._scales = scales(training)
         predictor = self._recipe.predictor(self._recipe.network())
         self._consumers = predictor.consumers()
-        self._corruption = Corruption(
-            quadrotor_interface(),
-            [dcc(_calibrated(self._consumers), self._half_range)] if self.is_dcc else [],
-            self._consumers,
-            training.ids,
-            self.seed,
-        )
+        faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
+        self._corruption = Corruption(faults, self._consumers, training.ids, self.seed)
         self._delivered: DeliveredInputs = {}
 
     @property
@@ -134,7 +128,7 @@ class PredictorTask(Task):
 
     @override
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
-        batch = _pick(self._train, index)
+        batch = self._train.take(index)
         delivered = {tap: value[index] for tap, value in self._delivered.items()}
         predicted = list(predict(self._recipe.predictor(module), batch, delivered))
         return error(predicted, batch, self._scales)
@@ -221,20 +215,3 @@ def _increments(windows: Windows) -> Tensor:
     return torch.cat(
         [then.position - now.position, then.velocity - now.velocity, then.rate - now.rate, turned]
     )
-
-
-def _calibrated(consumers: frozenset[str]) -> list[str]:
-    """Return the consumers that read a calibration channel."""
-    interface = quadrotor_interface()
-    readers = {
-        name
-        for channel in ("mass", "thrust_scale")
-        for name in interface.channel(channel).consumers
-    }
-    return sorted(consumers & readers)
-
-
-def _pick(windows: Windows, index: LongTensor) -> Windows:
-    """Return a minibatch, without the ids, which cost more than the tensors."""
-    parts = {f.name: getattr(windows, f.name) for f in fields(windows) if f.name != "ids"}
-    return Windows(**{name: value[..., index] for name, value in parts.items()}, ids=())

@@ -15,7 +15,6 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
@@ -37,6 +36,7 @@ BANDS_MPS = (0.0, 3.0, 6.0, 9.0)
 class Model:
     """What tells the models apart."""
 
+    description: str
     pool: str = "wind"
     calibrated: bool = True
     half_range: float | None = None
@@ -45,10 +45,19 @@ class Model:
 
 MODELS: Mapping[str, Model] = MappingProxyType(
     {
-        "gru": Model(),
-        "gru+dcc": Model(half_range=DCC_HALF_RANGE),
-        "gru-withheld": Model(calibrated=False),
-        "gru-trajectory": Model(pool="trajectory", calibrated=False),
+        "gru": Model("Wind from twelve completed intervals and calibration."),
+        "gru+dcc": Model(
+            "The same, trained with noise on the calibration that enters its head.",
+            half_range=DCC_HALF_RANGE,
+        ),
+        "gru-withheld": Model(
+            "Wind from twelve completed intervals alone, without calibration.", calibrated=False
+        ),
+        "gru-trajectory": Model(
+            "Wind from twelve completed intervals alone, learned in closed loop.",
+            pool="trajectory",
+            calibrated=False,
+        ),
     }
 )
 """The reference module, its repair, the control without calibration, and the one that learns from
@@ -173,7 +182,7 @@ class ReconstructionTask(Task):
     def describe(self) -> Mapping[str, Any]:
         provenance = read_provenance(self._path)
         return {
-            "description": _DESCRIPTIONS[self.name],
+            "description": self._model.description,
             "data_sha256": {} if provenance is None else {provenance.pool: provenance.rows_sha256},
             "calibration_inputs": self._model.calibrated,
             "calibration_noise_half_range": self._model.half_range,
@@ -186,7 +195,7 @@ class ReconstructionTask(Task):
             return None
         half_range = self._model.half_range
         faults = () if half_range is None else (dcc([HEAD], half_range),)
-        return Corruption(quadrotor_interface(), faults, [HEAD], windows, self.seed)
+        return Corruption(faults, [HEAD], windows, self.seed)
 
     def _estimate(
         self, module: nn.Module, calibration: Tensor | None, intervals: int = INTERVALS
@@ -196,14 +205,6 @@ class ReconstructionTask(Task):
         supplied = None if calibration is None else network.calibration(calibration)
         known = samples.intervals[:, INTERVALS - intervals :]
         return module(known, samples.latest, supplied) * network.wind_std + network.wind_mean
-
-
-_DESCRIPTIONS = {
-    "gru": "Wind from twelve completed intervals and calibration.",
-    "gru+dcc": "The same, trained with noise on the calibration that enters its head.",
-    "gru-withheld": "Wind from twelve completed intervals alone, without calibration.",
-    "gru-trajectory": "Wind from twelve completed intervals alone, learned in closed loop.",
-}
 
 
 def _history(windows: Windows) -> tuple[Tensor, Tensor]:
