@@ -19,9 +19,8 @@ from faultpath.door.saved import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
 from faultpath.report import ReportInput, Traces, write_report
-from faultpath.report.inputs import TraceKey
 from faultpath.report.reproduction import ReproductionInput, ledger_markdown, reproduction_page
-from faultpath.store import read_outcomes, read_table, read_traces
+from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.claims import ledger
@@ -63,13 +62,10 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
         }
     )
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
-    outcomes = folder / "outcomes.parquet"
-    record = decide(
-        asked, paths, read_outcomes(outcomes), findings=tuple(before.get("findings", ()))
-    )
+    outcomes = read_outcomes(folder / "outcomes.parquet")
+    record = decide(asked, paths, outcomes, findings=tuple(before.get("findings", ())))
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    table = read_table(outcomes.read_bytes())
-    scenes = list(dict.fromkeys(map(str, table["scene"].to_pylist())))
+    scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
     shown = system_shown(system, (asked.baseline, asked.repair), scenes)
     stored = folder / TRACES
     tracks = read_traces(stored) if stored.is_file() else _tracks(folder / "report.html")
@@ -83,8 +79,8 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
             provenance=_reseal(folder, origin),
             interface=shown.interface,
             variants=shown.variants,
-            outcomes=table,
-            traces=Traces({tuple(at): track for at, track in tracks.items()}, shown.control_dt_s),
+            outcomes=outcomes,
+            traces=Traces(tracks, shown.control_dt_s),
             plans=shown.plans,
         ),
         folder,
@@ -168,17 +164,17 @@ def _plans(system: System, scenes: list[str]) -> dict[str, Any]:
     return {scene: drawn for scene, drawn in plans if drawn is not None}
 
 
-def _tracks(page: Path) -> dict[TraceKey, NDArray[np.float32]]:
+def _tracks(page: Path) -> dict[TrialAddress, NDArray[np.float32]]:
     """Return the tracks that a page shows, in metres; to whole centimetres, as it holds them."""
     held = _DATA.search(page.read_text("utf-8"))
     if held is None:  # a system that leaves no traces
         return {}
     data = json.loads(held[1])
-    tracks: dict[TraceKey, NDArray[np.float32]] = {}
+    tracks: dict[TrialAddress, NDArray[np.float32]] = {}
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
             for arm in ("baseline", "repair"):
-                key = (data[arm], pair["path"], scene["seed"], scene["scene"])
+                key = TrialAddress(data[arm], pair["path"], scene["seed"], scene["scene"])
                 centimetres = np.array(pair[arm]["track_cm"], dtype=np.float32)
                 tracks[key] = centimetres.reshape(-1, 3) / np.float32(100.0)
     return tracks

@@ -10,14 +10,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-import pyarrow as pa
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from faultpath.interface import Interface, read_interface
 from faultpath.record import Path, Question, StruckTap, decide
 from faultpath.record.provenance import RunProvenance
-from faultpath.report import OUTCOME_COLUMNS, ReportInput, Traces
+from faultpath.report import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 
@@ -107,7 +106,8 @@ def make_input(
         n_scenes=n_scenes,
         seeds=seeds,
     )
-    record = decide(question, paths, OutcomeTable(rows))
+    outcomes = OutcomeTable(rows)
+    record = decide(question, paths, outcomes)
     tracks = {
         (r.variant, r.path, r.seed, r.outcome.scene): r.outcome.trace
         for r in rows
@@ -118,7 +118,7 @@ def make_input(
         provenance=_provenance(),
         interface=interface(),
         variants=(_variant(BASELINE), _variant(REPAIR)),
-        outcomes=_arrow(rows),
+        outcomes=outcomes,
         traces=Traces(tracks, dt_s=0.05),
         plans={_scene(i): _plan(i) for i in range(n_scenes)},
     )
@@ -334,10 +334,3 @@ def _provenance() -> RunProvenance:
         library_hash="9d0c31f2" * 8,
         outcomes_sha256="77ab" * 16,
     )
-
-
-def _arrow(rows: tuple[TrialRow, ...]) -> pa.Table:
-    def value(row: TrialRow, column: str) -> object:
-        return getattr(row, column) if hasattr(row, column) else getattr(row.outcome, column)
-
-    return pa.table({c: [value(row, c) for row in rows] for c in OUTCOME_COLUMNS})

@@ -1,7 +1,5 @@
 """A reproduction small enough to read: claims, tables, a sweep, and the flights of one audit."""
 
-from collections.abc import Mapping
-
 from faultpath.record import (
     ClaimVerdict,
     Configuration,
@@ -16,7 +14,6 @@ from faultpath.record import (
 from faultpath.report import ReportInput
 from faultpath.report.reproduction import ReproductionInput
 from faultpath.tables import Entry, Line, Table
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 NASTY = '<script>alert("x")</script> & co'
 
@@ -147,14 +144,7 @@ def source(report: ReportInput) -> ReproductionInput:
         interface=report.interface,
         variants=report.variants,
         decision=report.record,
-        outcomes=OutcomeTable(tuple(map(_row, report.outcomes.to_pylist()))),
+        outcomes=report.outcomes,
         traces=report.traces,
         plans=report.plans,
     )
-
-
-def _row(values: Mapping[str, object]) -> TrialRow:
-    place = ("variant", "path", "seed", "scene_index", "topology")
-    result = {k: v for k, v in values.items() if k not in place}
-    outcome = Outcome(**(result | {"status": Status(values["status"])}))
-    return TrialRow(**{k: values[k] for k in place}, outcome=outcome)

@@ -9,7 +9,6 @@ from itertools import pairwise
 
 import pytest
 
-from faultpath.errors import UserError
 from faultpath.report import ReportInput, Traces, report_page, wording
 from faultpath.report.pairing import Kind, read_pairs
 
@@ -229,8 +228,3 @@ def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -
 def test_flights_without_floor_plans(make: Callable[..., ReportInput]) -> None:
     source = replace(make(n_scenes=60), plans={})
     assert '"plan": null' in report_page(source)
-
-
-def test_outcomes_without_a_column_are_refused(one_seed: ReportInput) -> None:
-    with pytest.raises(UserError, match="lacks the column 'topology'"):
-        replace(one_seed, outcomes=one_seed.outcomes.drop_columns(["topology"]))

@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from faultpath.report import ReportInput
-from faultpath.report.pairing import Pair, Trial, read_pairs
+from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import choose, parting_step, viewer_data
+from faultpath.trials import Outcome, Status
 
 
 def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
     pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    chosen = choose(one_seed, pairs)
+    chosen = choose(one_seed.record, one_seed.traces, pairs)
     assert len(chosen) == 6
     assert [s.rank for s in chosen] == sorted(s.rank for s in chosen)
     first = chosen[0]
@@ -29,7 +30,11 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
     source = replace(one_seed, record=record.model_copy(update={"paths": tuple(paths)}))
     pairs = read_pairs(source.outcomes, source.record)
     for shown, told in zip(
-        choose(source, pairs), viewer_data(source, choose(source, pairs))["scenes"], strict=True
+        choose(source.record, source.traces, pairs),
+        viewer_data(
+            source.record, source.traces, source.plans, choose(source.record, source.traces, pairs)
+        )["scenes"],
+        strict=True,
     ):
         shared = shown.pairs["shared"].sign
         assert ("with the fault shared" in told["why"]) == (shown.rank in (0, 2))
@@ -38,30 +43,32 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
 
 def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> None:
     pairs = read_pairs(three_seeds.outcomes, three_seeds.record)
-    chosen = choose(three_seeds, pairs)
+    chosen = choose(three_seeds.record, three_seeds.traces, pairs)
     scenes = [s.any_pair.scene for s in chosen]
     assert len(set(scenes)) == len(scenes) == 6
-    assert [s.any_pair.scene for s in choose(three_seeds, pairs[::-1])] == scenes
+    assert [
+        s.any_pair.scene for s in choose(three_seeds.record, three_seeds.traces, pairs[::-1])
+    ] == scenes
     assert "doorways-017" not in scenes
 
 
 def test_patterns_differ_where_they_can(one_seed: ReportInput) -> None:
     pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    patterns = [s.pattern for s in choose(one_seed, pairs)]
+    patterns = [s.pattern for s in choose(one_seed.record, one_seed.traces, pairs)]
     assert len(set(patterns)) == len(patterns)
 
 
 def test_without_disagreement_the_distance_decides(one_seed: ReportInput) -> None:
     pairs = [_concordant(p) for p in read_pairs(one_seed.outcomes, one_seed.record)]
-    chosen = choose(one_seed, pairs)
+    chosen = choose(one_seed.record, one_seed.traces, pairs)
     assert {s.rank for s in chosen} == {4}
     gaps = [s.gap_m for s in chosen]
     assert gaps == sorted(gaps, reverse=True)
 
 
 def _concordant(pair: Pair) -> Pair:
-    def failing(trial: Trial | None) -> Trial | None:
-        return None if trial is None else replace(trial, status="crash")
+    def failing(trial: Outcome | None) -> Outcome | None:
+        return None if trial is None else replace(trial, status=Status.CRASH)
 
     if pair.void_reason is not None:
         return pair
@@ -71,15 +78,15 @@ def _concordant(pair: Pair) -> Pair:
 def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
     source = make(n_scenes=4, void=False)
     pairs = read_pairs(source.outcomes, source.record)
-    assert len(choose(source, pairs)) == 4
+    assert len(choose(source.record, source.traces, pairs)) == 4
 
 
 def test_tracks_are_kept_to_the_centimetre(one_seed: ReportInput) -> None:
     pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    chosen = choose(one_seed, pairs, count=1)
-    shown = viewer_data(one_seed, chosen)["scenes"][0]
+    chosen = choose(one_seed.record, one_seed.traces, pairs, count=1)
+    shown = viewer_data(one_seed.record, one_seed.traces, one_seed.plans, chosen)["scenes"][0]
     pair = shown["pairs"][0]
-    flown = one_seed.traces["gru", pair["path"], shown["seed"], shown["scene"]]
+    flown = one_seed.traces.positions["gru", pair["path"], shown["seed"], shown["scene"]]
     kept = np.array(pair["baseline"]["track_cm"]).reshape(-1, 3) / 100
     assert np.abs(kept - flown).max() < 0.0051
 

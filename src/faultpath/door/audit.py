@@ -130,7 +130,7 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s)
-    run = Run(place, read_run(place))
+    run = Run(place, *read_run(place))
     run.report()
     return run
 

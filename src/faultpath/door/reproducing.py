@@ -86,7 +86,6 @@ def _write_pages(
 ) -> None:
     windy = next((i for i, leg in enumerate(flown.legs) if leg.setting == table_4.WINDY), None)
     asked = reversal.audited(flown.outcomes)
-    flights = {(at.variant, at.path, at.seed, at.scene): t for at, t in traces_of(asked).items()}
     system = plan.system
     decision, variants = None, ()
     if windy is not None and reversal.whole(asked):
@@ -100,7 +99,7 @@ def _write_pages(
         variants=variants,
         outcomes=asked,
         decision=decision,
-        traces=Traces(flights, system.control_dt_s),
+        traces=Traces(traces_of(asked), system.control_dt_s),
         plans={
             scene: drawn
             for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}

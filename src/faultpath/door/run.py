@@ -31,6 +31,7 @@ class Run:
 
     folder: Path
     _held: ReportInput
+    _trials: pa.Table
 
     @property
     def record(self) -> DecisionRecord:
@@ -51,7 +52,7 @@ class Run:
         """Return the trials as an Arrow table, one row each: variant, path, seed, scene, status,
         time_s, terminal_distance_m, min_clearance_m (metres, null where there is none), and what
         the taps did."""
-        return self._held.outcomes
+        return self._trials
 
     def trials(self) -> "pandas.DataFrame":
         """Return the trials as a pandas DataFrame, with the columns of `table`.
@@ -89,7 +90,7 @@ def open_run(folder: str | PathLike[str]) -> "Run | ReproductionRun":
     """
     place = Path(folder)
     if RECORD in read_provenance(place).files or not (place / "reproduction.json").exists():
-        return Run(place, read_run(place))
+        return Run(place, *read_run(place))
     from faultpath.door.reproduced import read_reproduction
 
     return read_reproduction(place)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
+import pyarrow as pa
 from pydantic import BaseModel, ValidationError
 
 from faultpath.errors import UserError
@@ -37,8 +38,8 @@ def read_provenance(folder: Path) -> RunProvenance:
     return _parsed(read_regular(place), place, RunProvenance)
 
 
-def read_run(folder: Path) -> ReportInput:
-    """Read all that the pages of a run are made from.
+def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
+    """Read all that the pages of a run are made from, and its trials as an Arrow table.
 
     Every file is compared with the digest in `provenance.json` first. `UserError` for a file that
     is missing, damaged or changed, and for files that do not belong together.
@@ -53,18 +54,16 @@ def read_run(folder: Path) -> ReportInput:
     doubts = _doubts(record, provenance, shown, outcomes) or _unlike(record, deliveries)
     if doubts:
         raise UserError(f"the files of {folder} do not belong together ({doubts}): {AGAIN}.")
-    return ReportInput(
+    read = ReportInput(
         record=record,
         provenance=provenance,
         interface=shown.interface,
         variants=shown.variants,
-        outcomes=read_table(held[OUTCOMES]),
-        traces=Traces(
-            {(at.variant, at.path, at.seed, at.scene): trace for at, trace in traces.items()},
-            shown.control_dt_s,
-        ),
+        outcomes=outcomes,
+        traces=Traces(traces, shown.control_dt_s),
         plans=shown.plans,
     )
+    return read, read_table(held[OUTCOMES])
 
 
 def _parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:

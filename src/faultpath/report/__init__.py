@@ -1,7 +1,7 @@
 """Reports from records and outcome tables: one HTML page, LaTeX, Markdown and the terminal."""
 
 from faultpath.report.html import report_page
-from faultpath.report.inputs import OUTCOME_COLUMNS, ReportInput, TraceKey, Traces
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_terminal import interface_table
 from faultpath.report.interface_wiring import StruckPath, struck_paths
@@ -11,10 +11,8 @@ from faultpath.report.terminal import decision
 from faultpath.report.write import write_report
 
 __all__ = [
-    "OUTCOME_COLUMNS",
     "ReportInput",
     "StruckPath",
-    "TraceKey",
     "Traces",
     "decision",
     "draw_interface",

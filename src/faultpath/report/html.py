@@ -22,7 +22,7 @@ _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     pairs = read_pairs(source.outcomes, source.record)
-    chosen = choose(source, pairs)
+    chosen = choose(source.record, source.traces, pairs)
     return render(
         "report.html.j2",
         _STYLES,
@@ -39,7 +39,7 @@ def report_page(source: ReportInput) -> str:
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         effects=Markup(html(by_path(source.record, SHOWN, "Effects on success, path by path"))),
-        viewer=viewer_data(source, chosen) if chosen else None,
+        viewer=chosen and viewer_data(source.record, source.traces, source.plans, chosen),
         w=wording,
     )
 

@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Any
-
-import pyarrow as pa
 
 from faultpath.record.model import DecisionRecord
+from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 
 
 class Kind(StrEnum):
@@ -29,19 +27,6 @@ WORDS = {
     Kind.VOID: "void: a trial failed to run, or the two are not the same trial",
 }
 
-_HASHES = ("initial_hash", "disturbance_hash", "planner_noise_hash")
-
-
-@dataclass(frozen=True)
-class Trial:
-    """The part of an outcome row that pictures need."""
-
-    status: str
-    time_s: float | None
-    terminal_distance_m: float | None
-    hashes: tuple[str, ...]
-    error: str | None
-
 
 @dataclass(frozen=True)
 class Pair:
@@ -52,8 +37,8 @@ class Pair:
     scene: str
     index: int
     topology: str
-    baseline: Trial | None
-    repair: Trial | None
+    baseline: Outcome | None
+    repair: Outcome | None
     left_out: bool = False
     """Another pair of the scene is void, so no effect counts the scene."""
 
@@ -63,9 +48,9 @@ class Pair:
         for arm, trial in (("baseline", self.baseline), ("repair", self.repair)):
             if trial is None:
                 return f"the {arm} did not run"
-            if trial.status == "failed":
+            if trial.failed:
                 return f"the {arm} failed: {trial.error or 'no message was kept'}"
-        if self.baseline and self.repair and self.baseline.hashes != self.repair.hashes:
+        if self.baseline and self.repair and _met(self.baseline) != _met(self.repair):
             return "the two arms differ in initial state, disturbance or planner noise"
         return None
 
@@ -76,7 +61,7 @@ class Pair:
             return Kind.VOID
         if self.left_out:
             return Kind.LEFT_OUT
-        match (self.baseline.status == "success", self.repair.status == "success"):
+        match (self.baseline.status is Status.SUCCESS, self.repair.status is Status.SUCCESS):
             case (True, True):
                 return Kind.BOTH
             case (False, True):
@@ -92,40 +77,35 @@ class Pair:
         return {Kind.REPAIR_ONLY: 1, Kind.BASELINE_ONLY: -1}.get(self.kind, 0)
 
 
-def read_pairs(outcomes: pa.Table, record: DecisionRecord) -> tuple[Pair, ...]:
-    """Return every pair of the table, ordered by path, topology, scene index and seed."""
-    question = record.question
-    compared = {effect.path for effect in record.effects}
-    trials: dict[tuple[str, str, int, str], Trial] = {}
-    places: dict[tuple[str, int, str], tuple[int, str]] = {}
-    rows: list[dict[str, Any]] = outcomes.to_pylist()
-    for row in rows:
-        place = (row["path"], row["seed"], row["scene"])
-        trials[row["variant"], *place] = _trial(row)
-        places.setdefault(place, (int(row["scene_index"]), row["topology"] or ""))
+def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ...]:
+    """Return every pair of the record's arms, ordered by path, topology, scene index and seed."""
+    asked, compared = record.question, {effect.path for effect in record.effects}
+    named = [path.name for path in record.paths]
+    trials: dict[tuple[str, str, int, str], Outcome] = {}
+    places: dict[tuple[str, int, str], TrialRow] = {}
+    for row in outcomes.rows:
+        if row.variant in (asked.baseline, asked.repair) and row.path in named:
+            place = (row.path, row.seed, row.outcome.scene)
+            trials[row.variant, *place] = row.outcome
+            places.setdefault(place, row)
     paths = list(dict.fromkeys(path for path, _, _ in places))
     pairs = [
         Pair(
-            path=path,
-            seed=seed,
-            scene=scene,
-            index=index,
-            topology=topology,
-            baseline=trials.get((question.baseline, path, seed, scene)),
-            repair=trials.get((question.repair, path, seed, scene)),
+            path=row.path,
+            seed=row.seed,
+            scene=row.outcome.scene,
+            index=row.scene_index,
+            topology=row.topology,
+            baseline=trials.get((asked.baseline, *place)),
+            repair=trials.get((asked.repair, *place)),
         )
-        for (path, seed, scene), (index, topology) in places.items()
+        for place, row in places.items()
     ]
     void = {p.scene for p in pairs if p.kind is Kind.VOID and p.path in compared}
     pairs = [replace(pair, left_out=pair.scene in void) for pair in pairs]
     return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
 
 
-def _trial(row: dict[str, Any]) -> Trial:
-    return Trial(
-        status=row["status"],
-        time_s=row["time_s"],
-        terminal_distance_m=row["terminal_distance_m"],
-        hashes=tuple(row[name] for name in _HASHES),
-        error=row["error"],
-    )
+def _met(outcome: Outcome) -> tuple[str, str, str]:
+    """Return the conditions that both trials of a pair must share."""
+    return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash

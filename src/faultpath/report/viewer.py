@@ -11,8 +11,8 @@ is filled up in order, never with a scene twice. They are examples, not a sample
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Protocol, TypedDict
+from dataclasses import asdict, dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,31 +20,16 @@ from numpy.typing import NDArray
 from faultpath.record import SHARED, DecisionRecord, Question
 from faultpath.report import wording
 from faultpath.report.inputs import Traces
-from faultpath.report.pairing import Kind, Pair, Trial
-from faultpath.trials.floorplan import FloorPlan
+from faultpath.report.pairing import Kind, Pair
+from faultpath.store import TrialAddress
+from faultpath.trials import FloorPlan, Outcome
+
+Track: TypeAlias = NDArray[np.float32]
+"""Positions at control steps, `[T, 3]`, metres."""
 
 PARTING_M = 0.5
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
-
-
-class Audited(Protocol):
-    """An audit with its flights."""
-
-    @property
-    def record(self) -> DecisionRecord:
-        """What was asked and decided."""
-        ...
-
-    @property
-    def traces(self) -> Traces:
-        """Flights; trials may be missing."""
-        ...
-
-    @property
-    def plans(self) -> Mapping[str, FloorPlan]:
-        """By scene id; scenes without one are drawn without obstacles."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -66,51 +51,11 @@ class Showing:
         return tuple(pair.sign for pair in self.pairs.values())
 
 
-class ArmShown(TypedDict):
-    """One flight: positions in centimetres, `[x, y, z, x, y, z, ...]`."""
-
-    status: str
-    ended: str
-    time_s: float | None
-    terminal_distance_m: float | None
-    track_cm: list[int]
-
-
-class PairShown(TypedDict):
-    """Both flights on one path and the step at which they first part."""
-
-    path: str
-    kind: str
-    baseline: ArmShown
-    repair: ArmShown
-    parting_step: int | None
-
-
-class SceneShown(TypedDict):
-    """One scene in the viewer."""
-
-    scene: str
-    seed: int
-    title: str
-    why: str
-    plan: dict[str, object] | None
-    pairs: list[PairShown]
-
-
-class ViewerData(TypedDict):
-    """Everything the viewer's scripts get."""
-
-    dt_s: float
-    parting_m: float
-    baseline: str
-    repair: str
-    paths: list[dict[str, str]]
-    scenes: list[SceneShown]
-
-
-def choose(source: Audited, pairs: Sequence[Pair], count: int = 6) -> tuple[Showing, ...]:
+def choose(
+    record: DecisionRecord, traces: Traces, pairs: Sequence[Pair], count: int = 6
+) -> tuple[Showing, ...]:
     """Return up to `count` showings by the rule at the top of this file."""
-    ranked = sorted(_showings(source, pairs), key=_order)
+    ranked = sorted(_showings(record.question, traces, pairs), key=_order)
     chosen: list[Showing] = []
     patterns: set[tuple[int, ...]] = set()
     scenes: set[str] = set()
@@ -126,30 +71,36 @@ def choose(source: Audited, pairs: Sequence[Pair], count: int = 6) -> tuple[Show
     return tuple(sorted(chosen, key=_order))
 
 
-def viewer_data(source: Audited, chosen: Sequence[Showing]) -> ViewerData:
+def viewer_data(
+    record: DecisionRecord,
+    traces: Traces,
+    plans: Mapping[str, FloorPlan],
+    chosen: Sequence[Showing],
+) -> dict[str, Any]:
     """Return the chosen showings as plain data for the page's scripts."""
-    asked = source.record.question
+    asked = record.question
     return {
-        "dt_s": source.traces.dt_s,
+        "dt_s": traces.dt_s,
         "parting_m": PARTING_M,
         "baseline": asked.baseline,
         "repair": asked.repair,
-        "paths": [{"name": p.name, "title": p.title} for p in source.record.paths],
-        "scenes": [_scene_shown(source, showing) for showing in chosen],
+        "paths": [{"name": path.name, "title": path.title} for path in record.paths],
+        "scenes": [_scene_shown(asked, traces, plans, showing) for showing in chosen],
     }
 
 
-def parting_step(a: NDArray[np.float32], b: NDArray[np.float32]) -> int | None:
+def parting_step(a: Track, b: Track) -> int | None:
     """Return the first step at which two tracks are more than `PARTING_M` apart, if any."""
     steps = min(len(a), len(b))
     apart = np.linalg.norm(a[:steps] - b[:steps], axis=1) > PARTING_M
     return int(np.argmax(apart)) if apart.any() else None
 
 
-def _showings(source: Audited, pairs: Sequence[Pair]) -> Iterator[Showing]:
+def _showings(asked: Question, traces: Traces, pairs: Sequence[Pair]) -> Iterator[Showing]:
     groups: dict[tuple[str, int], dict[str, Pair]] = {}
     for pair in pairs:
-        if pair.kind not in (Kind.VOID, Kind.LEFT_OUT) and _flown(source, pair):
+        tracks = _tracks(asked, traces, pair)
+        if pair.kind not in (Kind.VOID, Kind.LEFT_OUT) and all(map(len, tracks)):
             groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
     for group in groups.values():
         yield Showing(group, _rank(group), max(map(_distance_gap, group.values())))
@@ -181,12 +132,12 @@ def _distance_gap(pair: Pair) -> float:
     return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
 
 
-def _flown(source: Audited, pair: Pair) -> bool:
-    asked = source.record.question
-    return all(
-        len(source.traces.get((v, pair.path, pair.seed, pair.scene), ())) > 0
-        for v in (asked.baseline, asked.repair)
-    )
+def _tracks(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
+    """Return the tracks of baseline and repair; what left none has no row."""
+    at = (pair.path, pair.seed, pair.scene)
+    none = np.empty((0, 3), np.float32)
+    arms = (asked.baseline, asked.repair)
+    return [traces.positions.get(TrialAddress(arm, *at), none) for arm in arms]
 
 
 _WHY = (
@@ -198,62 +149,50 @@ _WHY = (
 )
 
 
-def _scene_shown(source: Audited, showing: Showing) -> SceneShown:
+def _scene_shown(
+    asked: Question, traces: Traces, plans: Mapping[str, FloorPlan], showing: Showing
+) -> dict[str, Any]:
     pair = showing.any_pair
-    plan = source.plans.get(pair.scene)
+    plan = plans.get(pair.scene)
     return {
         "scene": pair.scene,
         "seed": pair.seed,
         "title": plan.title if plan else pair.topology,
         "why": _WHY[showing.rank],
         "plan": None if plan is None else _plan(plan),
-        "pairs": [_pair_shown(source, p) for p in showing.pairs.values()],
+        "pairs": [
+            _pair_shown(asked, each, *_tracks(asked, traces, each))
+            for each in showing.pairs.values()
+        ],
     }
 
 
-def _pair_shown(source: Audited, pair: Pair) -> PairShown:
-    asked = source.record.question
-    place = (pair.path, pair.seed, pair.scene)
-    baseline = source.traces[asked.baseline, *place]
-    repair = source.traces[asked.repair, *place]
+def _pair_shown(asked: Question, pair: Pair, baseline: Track, repair: Track) -> dict[str, Any]:
     return {
         "path": pair.path,
         "kind": pair.kind.value,
-        "baseline": _arm(pair.baseline, baseline, asked),
-        "repair": _arm(pair.repair, repair, asked),
+        "baseline": _arm(asked, pair.baseline, baseline),
+        "repair": _arm(asked, pair.repair, repair),
         "parting_step": parting_step(baseline, repair),
     }
 
 
-def _arm(trial: Trial | None, track: NDArray[np.float32], asked: Question) -> ArmShown:
+def _arm(asked: Question, trial: Outcome | None, track: Track) -> dict[str, Any]:
     assert trial is not None  # a pair without both trials is void and never shown
     held = np.clip(np.nan_to_num(track), -_FARTHEST_M, _FARTHEST_M)
-    centimetres: list[int] = np.rint(100.0 * held).astype(int).ravel().tolist()
     return {
-        "status": trial.status,
+        "status": trial.status.value,
         "ended": wording.ended(asked, trial.status),
         "time_s": trial.time_s,
         "terminal_distance_m": trial.terminal_distance_m,
-        "track_cm": centimetres,
+        # `[x, y, z, x, y, z, ...]`
+        "track_cm": np.rint(100.0 * held).astype(int).ravel().tolist(),
     }
 
 
-def _plan(plan: FloorPlan) -> dict[str, object]:
-    return {
-        "low": plan.low,
-        "high": plan.high,
-        "start": plan.start,
-        "goal": plan.goal,
-        "prisms": [
-            {
-                "corners": [[round(v, 3) for v in c] for c in p.corners],
-                "bottom": p.bottom,
-                "top": p.top,
-            }
-            for p in plan.prisms
-        ],
-        "pillars": [
-            {"x": p.x, "y": p.y, "radius": p.radius, "bottom": p.bottom, "top": p.top}
-            for p in plan.pillars
-        ],
-    }
+def _plan(plan: FloorPlan) -> dict[str, Any]:
+    drawn = asdict(plan)
+    del drawn["title"]
+    for prism in drawn["prisms"]:
+        prism["corners"] = [[round(v, 3) for v in corner] for corner in prism["corners"]]
+    return drawn

@@ -1,40 +1,24 @@
 """A reproduction as one page that opens without a network."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
-import pyarrow as pa
 from markupsafe import Markup
 
-from faultpath.record import DecisionRecord
 from faultpath.report import figures, wording
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
-from faultpath.report.inputs import Traces
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.ledger import ledger_rows
-from faultpath.report.viewer import ViewerData, choose, viewer_data
-from faultpath.store import read_table
-from faultpath.store.tables import encode_outcomes
+from faultpath.report.viewer import choose, viewer_data
 from faultpath.tables.html import html
-from faultpath.trials import FloorPlan, OutcomeTable
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css", "reproduction.css")
 _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js", "reproduction.js")
-
-
-@dataclass(frozen=True)
-class _Audit:
-    """The audit in detail, as the viewer takes it."""
-
-    record: DecisionRecord
-    traces: Traces
-    plans: Mapping[str, FloorPlan]
 
 
 def reproduction_page(source: ReproductionInput) -> str:
@@ -95,16 +79,9 @@ def _reversal(source: ReproductionInput, struck: tuple[StruckPath, ...]) -> Mapp
     }
 
 
-def _flights(source: ReproductionInput) -> ViewerData | None:
-    if source.decision is None:
+def _flights(source: ReproductionInput) -> Mapping[str, object] | None:
+    record = source.decision
+    if record is None:
         return None
-    audit = _Audit(source.decision, source.traces, source.plans)
-    chosen = choose(audit, read_pairs(_trials(source.outcomes, audit.record), audit.record))
-    return viewer_data(audit, chosen) if chosen else None
-
-
-def _trials(outcomes: OutcomeTable, decision: DecisionRecord) -> pa.Table:
-    asked, paths = decision.question, {path.name for path in decision.paths}
-    arms = (asked.baseline, asked.repair)
-    rows = (row for row in outcomes.rows if row.variant in arms and row.path in paths)
-    return read_table(encode_outcomes(OutcomeTable(tuple(rows))))
+    chosen = choose(record, source.traces, read_pairs(source.outcomes, record))
+    return viewer_data(record, source.traces, source.plans, chosen) if chosen else None
