@@ -15,10 +15,9 @@ from faultpath.quadrotor.scenes.feasibility import END_CLEARANCE_M, FreeLattice
 from faultpath.quadrotor.scenes.generate import (
     SEEN_AHEAD_OCCLUDED_M,
     SEEN_AHEAD_OPEN_M,
-    end_clearance_m,
     generate_scene,
 )
-from faultpath.quadrotor.scenes.layout import MIN_GAP_M, Door, Layout, plan_gap
+from faultpath.quadrotor.scenes.layout import MIN_GAP_M, Door, Layout
 from faultpath.quadrotor.scenes.library import (
     FROZEN_SEEDS,
     Library,
@@ -27,7 +26,10 @@ from faultpath.quadrotor.scenes.library import (
     load_library,
     write_library,
 )
+from faultpath.quadrotor.scenes.prisms import plan_gap, prism
 from faultpath.quadrotor.scenes.scene import Box, Cylinder, Scene, Topology
+from faultpath.quadrotor.scenes.soundness import clearance_m
+from faultpath.streams import generator
 
 NAMES = list(FROZEN_SEEDS)
 
@@ -37,12 +39,17 @@ def libraries() -> dict[str, Library]:
     return {name: load_library(name) for name in NAMES}
 
 
+def hall() -> Layout:
+    return Layout(generator("test", "hall", 0), (9.0, 6.0, 3.0))
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_frozen_scene_is_feasible(libraries, name):
     """A sphere of the collision radius and a margin gets from start to goal."""
     for scene in libraries[name]:
         assert FreeLattice.of(scene).connected, scene.id
-        assert end_clearance_m(scene) >= END_CLEARANCE_M, scene.id
+        for end in (scene.start_m, scene.goal_m):
+            assert clearance_m(scene, end) >= END_CLEARANCE_M, scene.id
         assert 6.0 <= math.dist(scene.start_m, scene.goal_m) <= 8.0, scene.id
 
 
@@ -100,9 +107,9 @@ def test_occlusion_is_what_a_short_look_ahead_does_not_get_past(libraries):
 
 def test_a_wall_without_a_door_is_found_infeasible(libraries):
     scene = libraries["training"][3]
-    shut = Layout(size_m=(9.0, 6.0, 3.0))
+    shut = hall()
     shut.wall("y", 0.0)
-    closed = scene.model_copy(update={"boxes": tuple(shut.boxes), "cylinders": ()})
+    closed = scene.model_copy(update={"boxes": tuple(shut.solids), "cylinders": ()})
     lattice = FreeLattice.of(closed)
     assert not lattice.connected
     assert lattice.path_length_m() == math.inf
@@ -111,11 +118,11 @@ def test_a_wall_without_a_door_is_found_infeasible(libraries):
 @pytest.mark.parametrize(("width", "passes"), [(0.55, False), (0.75, True)])
 def test_a_door_must_let_the_sphere_and_its_margin_through(libraries, width, passes):
     scene = libraries["training"][3]
-    layout = Layout(size_m=(9.0, 6.0, 3.0))
+    layout = hall()
     layout.wall("y", 0.0, doors=[Door(0.0, width)])
     bounds = layout.bounds
     narrow = scene.model_copy(
-        update={"boxes": tuple(layout.boxes), "cylinders": (), "bounds": bounds}
+        update={"boxes": tuple(layout.solids), "cylinders": (), "bounds": bounds}
     )
     assert FreeLattice.of(narrow).connected == passes
 
@@ -127,17 +134,22 @@ def test_loose_obstacles_keep_their_gaps(libraries):
         for scene in library:
             if scene.topology is not Topology.CLUTTER or scene.occluded:
                 continue
-            for one, other in combinations((*scene.boxes, *scene.cylinders), 2):
+            for one, other in combinations(map(prism, (*scene.boxes, *scene.cylinders)), 2):
                 assert plan_gap(one, other) >= MIN_GAP_M - 0.002, scene.id
                 checked += 1
     assert checked > 1000
 
 
 def test_gaps_between_known_shapes():
-    box = Box(centre_m=(0.0, 0.0, 1.0), half_extents_m=(1.0, 0.5, 1.0))
-    turned = Box(centre_m=(3.0, 0.0, 1.0), half_extents_m=(0.5, 0.5, 1.0), yaw_rad=math.pi / 4)
-    pillar = Cylinder(centre_m=(0.0, 2.0), radius_m=0.3, low_m=0.0, high_m=2.0)
-    other = Cylinder(centre_m=(3.0, 6.0), radius_m=0.7, low_m=0.0, high_m=2.0)
+    box, turned, pillar, other = map(
+        prism,
+        (
+            Box(centre_m=(0.0, 0.0, 1.0), half_extents_m=(1.0, 0.5, 1.0)),
+            Box(centre_m=(3.0, 0.0, 1.0), half_extents_m=(0.5, 0.5, 1.0), yaw_rad=math.pi / 4),
+            Cylinder(centre_m=(0.0, 2.0), radius_m=0.3, low_m=0.0, high_m=2.0),
+            Cylinder(centre_m=(3.0, 6.0), radius_m=0.7, low_m=0.0, high_m=2.0),
+        ),
+    )
     assert plan_gap(box, turned) == pytest.approx(2.0 - math.sqrt(0.5))
     assert plan_gap(turned, box) == plan_gap(box, turned)
     assert plan_gap(box, pillar) == plan_gap(pillar, box) == pytest.approx(1.2)
@@ -146,12 +158,12 @@ def test_gaps_between_known_shapes():
 
 @pytest.mark.parametrize("width", [1.5, 2.2])
 def test_corridor_walls_stand_the_width_apart(width):
-    layout = Layout(size_m=(9.0, 6.0, 3.0))
+    layout = hall()
     layout.corridor([(-4.5, 0.0), (0.0, 0.0), (0.0, 0.8), (4.5, 0.8)], width)
     middle = Cylinder(centre_m=(-3.0, 0.0), radius_m=0.001, low_m=0.0, high_m=3.0)
     after = Cylinder(centre_m=(3.0, 0.8), radius_m=0.001, low_m=0.0, high_m=3.0)
     for probe in (middle, after):
-        nearest = sorted(plan_gap(probe, box) for box in layout.boxes)
+        nearest = sorted(plan_gap(prism(probe), prism(box)) for box in layout.solids)
         assert nearest[:2] == pytest.approx([width / 2] * 2, abs=0.011)
 
 
@@ -253,7 +265,7 @@ def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):
         assert (empty.start, empty.goal, empty.low) == (plan.start, plan.goal, plan.low)
         assert all(low.bottom <= high.bottom for low, high in pairwise(plan.prisms))
         for box in scene.boxes:
-            shape = next(p for p in plan.prisms if p.corners == box.corners_m)
+            shape = next(p for p in plan.prisms if p.corners == prism(box).corners_m)
             sides = [math.dist(a, b) for a, b in pairwise(shape.corners)]
             hx, hy, hz = box.half_extents_m
             assert sides == pytest.approx([2 * hx, 2 * hy, 2 * hx])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from faultpath.quadrotor.scenes.prisms import prism
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ def floor_plan(scene: Scene, free_space: bool = False) -> FloorPlan:
     """
     prisms = [
         Prism(
-            corners=box.corners_m,
+            corners=prism(box).corners_m,
             bottom=round(box.centre_m[2] - box.half_extents_m[2], 6),
             top=round(box.centre_m[2] + box.half_extents_m[2], 6),
         )

@@ -5,7 +5,6 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-import scipy.ndimage
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
@@ -46,23 +45,10 @@ class FreeLattice:
         """Where the vehicle fits."""
         return self.distance_m >= COLLISION_RADIUS_M + MARGIN_M - 1e-9
 
-    def nearest(self, point: Point) -> tuple[int, int, int]:
-        """Return the lattice point nearest to a place."""
-        x, y, z = (
-            int(np.abs(axis.numpy() - at).argmin())
-            for axis, at in zip(self.lattice.axes, point, strict=True)
-        )
-        return x, y, z
-
     @property
     def connected(self) -> bool:
-        """Whether start and goal lie in one free region."""
-        label, _ = scipy.ndimage.label(self.free, structure=np.ones((3, 3, 3)))
-        start, goal = (
-            label[self.nearest(self.scene.start_m)],
-            label[self.nearest(self.scene.goal_m)],
-        )
-        return bool(start == goal != 0)
+        """Whether a way leads from start to goal."""
+        return self.path_length_m() < np.inf
 
     @cached_property
     def _graph(self) -> csr_array:
@@ -83,9 +69,14 @@ class FreeLattice:
         pair = (np.concatenate(tails), np.concatenate(heads))
         return csr_array((np.concatenate(lengths), pair), shape=(size, size))
 
-    def _node(self, point: Point) -> int:
-        place = np.ravel_multi_index(self.nearest(point), self.free.shape)
-        return int(np.count_nonzero(self.free.ravel()[:place]))
+    def _node(self, point: Point) -> int | None:
+        """Return the free point nearest to a place, none where the nearest point is not free."""
+        nearest = tuple(
+            int(np.abs(axis.numpy() - at).argmin())
+            for axis, at in zip(self.lattice.axes, point, strict=True)
+        )
+        place = np.ravel_multi_index(nearest, self.free.shape)
+        return int(np.count_nonzero(self.free.ravel()[:place])) if self.free[nearest] else None
 
     def _travel(self, node: int, limit: float = np.inf) -> NDArray[np.float64]:
         """Return the length of the shortest way from one free point to each, m."""
@@ -93,10 +84,10 @@ class FreeLattice:
 
     def path_length_m(self) -> float:
         """Return the length of the shortest way from start to goal, infinite when there is none."""
-        if not self.connected:
+        start, goal = self._node(self.scene.start_m), self._node(self.scene.goal_m)
+        if start is None or goal is None:
             return float("inf")
-        reach = self._travel(self._node(self.scene.start_m))
-        return float(reach[self._node(self.scene.goal_m)])
+        return float(self._travel(start)[goal])
 
     def found_by_looking(self, ahead_m: float) -> bool:
         """Return whether a walk arrives that sees `ahead_m` of the ways before it.
@@ -106,10 +97,11 @@ class FreeLattice:
         This is a property of the geometry: no vehicle, model or planner takes part.
         """
         axes = np.meshgrid(*(axis.numpy() for axis in self.lattice.axes), indexing="ij")
-        to_goal = np.sqrt(sum((a - b) ** 2 for a, b in zip(axes, self.scene.goal_m, strict=True)))[
-            self.free
-        ]
+        squares = ((axis - at) ** 2 for axis, at in zip(axes, self.scene.goal_m, strict=True))
+        to_goal = np.sqrt(sum(squares))[self.free]
         here = self._node(self.scene.start_m)
+        if here is None:
+            return False
         while to_goal[here] > 0.5:
             reach = self._travel(here, ahead_m)
             there = int(np.where(np.isfinite(reach), to_goal, np.inf).argmin())

@@ -29,7 +29,8 @@ from torch import Tensor
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native.field import CompiledField
 from faultpath.quadrotor.native.lending import covered
-from faultpath.quadrotor.scenes.geometry import Prism, arena, rectangle_distance, solids
+from faultpath.quadrotor.scenes.geometry import rectangle_distance
+from faultpath.quadrotor.scenes.prisms import Prism, arena, solids
 from faultpath.quadrotor.scenes.scene import Scene
 
 SPACING_M = 0.1
@@ -78,11 +79,10 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
     is monotone in the plan distance, so the minimum may be taken before it.
     """
     x, y, z = lattice.axes
+    walls = arena(scene)
     beyond = [
         (axis - centre).abs() - half
-        for axis, centre, half in zip(
-            lattice.axes, arena(scene).centre_m, arena(scene).half_m, strict=True
-        )
+        for axis, centre, half in zip(lattice.axes, walls.centre_m, walls.half_m, strict=True)
     ]
     beyond_x, beyond_y, beyond_z = beyond[0][:, None, None], beyond[1][:, None], beyond[2]
     outside = beyond_x.clamp_min(0) + beyond_y.clamp_min(0) + beyond_z.clamp_min(0)

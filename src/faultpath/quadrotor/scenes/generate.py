@@ -1,14 +1,13 @@
 """Scenes from a seed: draw a layout, keep it if it is feasible and looks as it was meant to."""
 
 from math import atan2, dist
-
-import torch
+from typing import Any
 
 from faultpath import streams
 from faultpath.quadrotor.scenes.feasibility import END_CLEARANCE_M, FreeLattice
-from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.layout import Layout
 from faultpath.quadrotor.scenes.scene import Box, Cylinder, Point, Scene, Topology
+from faultpath.quadrotor.scenes.soundness import clearance_m
 from faultpath.quadrotor.scenes.topologies import LAYOUTS
 from faultpath.quadrotor.vehicle import draw
 
@@ -47,9 +46,10 @@ def generate_scene(library: str, index: int, seed: int) -> Scene:
         size = tuple(
             float(rng.integers(low, high)) / 10 for low, high in ((86, 95), (56, 65), (28, 33))
         )
-        layout = Layout(size_m=(size[0], size[1], size[2]))
-        LAYOUTS[topology](rng, layout, occluded, obstacles)
-        boxes, cylinders, start, goal = _frozen_plan(layout, mirror=bool(rng.uniform() < 0.5))
+        layout = Layout(rng, (size[0], size[1], size[2]))
+        LAYOUTS[topology](layout, occluded, obstacles)
+        plan = _frozen_plan(layout, mirror=bool(rng.uniform() < 0.5))
+        (start_x, start_y, _), (goal_x, goal_y, _) = plan["start_m"], plan["goal_m"]
         scene = Scene(
             id=scene_id,
             index=index,
@@ -58,11 +58,8 @@ def generate_scene(library: str, index: int, seed: int) -> Scene:
             obstacles=obstacles,
             occluded=occluded,
             bounds=layout.bounds,
-            boxes=boxes,
-            cylinders=cylinders,
-            start_m=start,
-            goal_m=goal,
-            start_yaw_rad=round(atan2(goal[1] - start[1], goal[0] - start[0]), 4),
+            **plan,
+            start_yaw_rad=round(atan2(goal_y - start_y, goal_x - start_x), 4),
             vehicle=draw(streams.generator("vehicle", scene_id, seed)),
         )
         if is_sound(scene):
@@ -73,10 +70,9 @@ def generate_scene(library: str, index: int, seed: int) -> Scene:
 def is_sound(scene: Scene) -> bool:
     """Return whether a scene is feasible, of the right length, and open or occluded as it says."""
     apart = dist(scene.start_m, scene.goal_m)
-    if (
-        not START_TO_GOAL_M[0] <= apart <= START_TO_GOAL_M[1]
-        or end_clearance_m(scene) < END_CLEARANCE_M
-    ):
+    if not START_TO_GOAL_M[0] <= apart <= START_TO_GOAL_M[1]:
+        return False
+    if min(clearance_m(scene, end) for end in (scene.start_m, scene.goal_m)) < END_CLEARANCE_M:
         return False
     lattice = FreeLattice.of(scene)
     if lattice.path_length_m() > LONGEST_WAY_M:
@@ -86,15 +82,7 @@ def is_sound(scene: Scene) -> bool:
     return lattice.found_by_looking(SEEN_AHEAD_OPEN_M)
 
 
-def end_clearance_m(scene: Scene) -> float:
-    """Return the exact distance from start or goal, whichever is less, to the nearest surface."""
-    ends = torch.tensor([scene.start_m, scene.goal_m], dtype=torch.float64).T[:, None, :]
-    return float(Geometry.stack([scene]).distance(ends).min())
-
-
-def _frozen_plan(
-    layout: Layout, mirror: bool
-) -> tuple[tuple[Box, ...], tuple[Cylinder, ...], Point, Point]:
+def _frozen_plan(layout: Layout, mirror: bool) -> dict[str, Any]:
     """Return obstacles, start and goal to the millimetre; mirrored, the flight goes towards -x."""
     turn = -1.0 if mirror else 1.0
 
@@ -107,7 +95,8 @@ def _frozen_plan(
             half_extents_m=point((turn * box.half_extents_m[0], *box.half_extents_m[1:])),
             yaw_rad=round(turn * box.yaw_rad, 4),
         )
-        for box in layout.boxes
+        for box in layout.solids
+        if isinstance(box, Box)
     )
     cylinders = tuple(
         Cylinder(
@@ -116,6 +105,8 @@ def _frozen_plan(
             low_m=round(pillar.low_m, 3),
             high_m=round(pillar.high_m, 3),
         )
-        for pillar in layout.cylinders
+        for pillar in layout.solids
+        if isinstance(pillar, Cylinder)
     )
-    return boxes, cylinders, point(layout.start_m), point(layout.goal_m)
+    start, goal = point(layout.start_m), point(layout.goal_m)
+    return {"boxes": boxes, "cylinders": cylinders, "start_m": start, "goal_m": goal}

@@ -1,9 +1,7 @@
 """Exact signed distance to a scene's obstacles and boundaries, batched over scenes.
 
-Every solid is an upright prism whose plan is a rounded rectangle: a yawed box has no rounding, a
-pillar is a point rounded by its radius. The arena is one more prism with its sign turned round,
-because there the inside is free. One formula serves all, and a short scene is padded by
-repeating its arena, which cannot change a minimum.
+One formula serves all prisms (`prisms`), and a short scene is padded by repeating its arena, which
+cannot change a minimum.
 
 The distance is exact in free space. Inside solids it is minus the depth below the surface of the
 deepest prism, so where two prisms overlap it understates the depth of their union; its sign is
@@ -18,64 +16,8 @@ from math import cos, sin
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.scenes.prisms import arena, solids
 from faultpath.quadrotor.scenes.scene import Scene
-
-_BURIED_M = 10.0
-"""How far a solid that touches the floor or the ceiling goes on beyond it. What lies beyond is
-solid anyway; without it the inside of a pillar would seem shallow near the floor."""
-
-_TOUCH_M = 1e-6
-
-
-@dataclass(frozen=True)
-class Prism:
-    """An upright prism over a rounded rectangle, in the world frame.
-
-    Attributes:
-        centre_m: Centre of the plan and mid height.
-        half_m: Half extents of the rectangle along its own axes and half the height.
-        yaw_rad: Angle from world x to the rectangle's first axis.
-        rounding_m: Radius by which the rectangle is grown.
-        sign: +1 when the prism is solid, -1 when it is the free inside of the arena.
-    """
-
-    centre_m: tuple[float, float, float]
-    half_m: tuple[float, float, float]
-    yaw_rad: float = 0.0
-    rounding_m: float = 0.0
-    sign: float = 1.0
-
-
-def _buried(low: float, high: float, scene: Scene) -> tuple[float, float]:
-    """Return mid and half height of a solid, continued beyond a floor or ceiling it touches."""
-    if low <= scene.bounds.low_m[2] + _TOUCH_M:
-        low -= _BURIED_M
-    if high >= scene.bounds.high_m[2] - _TOUCH_M:
-        high += _BURIED_M
-    return (low + high) / 2, (high - low) / 2
-
-
-def arena(scene: Scene) -> Prism:
-    """Return the free inside of a scene's boundaries."""
-    pairs = list(zip(scene.bounds.low_m, scene.bounds.high_m, strict=True))
-    x, y, z = ((low + high) / 2 for low, high in pairs)
-    hx, hy, hz = ((high - low) / 2 for low, high in pairs)
-    return Prism((x, y, z), (hx, hy, hz), sign=-1.0)
-
-
-def solids(scene: Scene) -> list[Prism]:
-    """Return the obstacles of a scene as prisms, boxes first."""
-    found: list[Prism] = []
-    for box in scene.boxes:
-        x, y, z = box.centre_m
-        hx, hy, hz = box.half_extents_m
-        mid, half = _buried(z - hz, z + hz, scene)
-        found.append(Prism((x, y, mid), (hx, hy, half), yaw_rad=box.yaw_rad))
-    for pillar in scene.cylinders:
-        x, y = pillar.centre_m
-        mid, half = _buried(pillar.low_m, pillar.high_m, scene)
-        found.append(Prism((x, y, mid), (0.0, 0.0, half), rounding_m=pillar.radius_m))
-    return found
 
 
 def rectangle_distance(beyond_x: Tensor, beyond_y: Tensor) -> Tensor:
@@ -170,17 +112,9 @@ class Geometry:
     def _signed(self, points: Tensor) -> Tensor:
         """Return the signed distance to every prism, `[K, B, ...]`."""
         tail = (1,) * (points.dim() - 2)
+        parts = (self.along_x, self.along_y, self.along_z, self.offset, self.half)
         along_x, along_y, along_z, offset, half, rounding, sign = (
-            part.view(part.shape + tail) if tail else part
-            for part in (
-                self.along_x,
-                self.along_y,
-                self.along_z,
-                self.offset,
-                self.half,
-                self.rounding,
-                self.sign,
-            )
+            part.view(part.shape + tail) for part in (*parts, self.rounding, self.sign)
         )
         x, y, z = points.unbind(0)
         local = (along_x * x).add_(along_y * y).add_(along_z * z).sub_(offset)

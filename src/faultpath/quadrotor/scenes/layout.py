@@ -3,17 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import cos, hypot, pi, sin
+from math import pi
 
 import numpy as np
 
+from faultpath.quadrotor.scenes.prisms import Plan, Prism, plan_gap, prism
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
 
 WALL_M = 0.16  # thicker than the lattice spacing of the distance field
 MIN_GAP_M = 0.7  # between loose obstacles and to anything else [BARN, aerial_gym scale]
 _FLUSH_M = 1e-6
-
-Plan = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -36,22 +35,56 @@ class Layout:
     """What a topology builds in its arena; the origin is the middle of the floor.
 
     Attributes:
+        rng: Source of all draws.
         size_m: Length along x, width along y and height of the arena.
         start_m: Start, set by the topology.
         goal_m: Goal, set by the topology.
-        boxes: Walls, buildings and boxes so far.
-        cylinders: Pillars so far.
-        keep_free: Places (x, y, radius) where no loose obstacle may stand.
+        solids: Walls, buildings, boxes and pillars so far.
+        keep_free: Pillars of air in which no loose obstacle may stand.
     """
 
+    rng: np.random.Generator
     size_m: Point
     start_m: Point = (0.0, 0.0, 0.0)
     goal_m: Point = (0.0, 0.0, 0.0)
-    boxes: list[Box] = field(default_factory=list[Box])
-    cylinders: list[Cylinder] = field(default_factory=list[Cylinder])
-    keep_free: list[tuple[float, float, float]] = field(
-        default_factory=list[tuple[float, float, float]]
-    )
+    solids: list[Box | Cylinder] = field(default_factory=list[Box | Cylinder])
+    keep_free: list[Prism] = field(default_factory=list[Prism])
+
+    @property
+    def half_m(self) -> Plan:
+        """Half of length and width."""
+        return self.size_m[0] / 2, self.size_m[1] / 2
+
+    def within(self, low: float, high: float) -> float:
+        """Draw a number between two bounds."""
+        return float(self.rng.uniform(low, high))
+
+    def chance(self, probability: float) -> bool:
+        """Draw whether something is so."""
+        return bool(self.rng.uniform() < probability)
+
+    def sign(self) -> float:
+        """Draw -1 or 1."""
+        return float(self.rng.choice((-1.0, 1.0)))
+
+    def ends(self, start_y: float, goal_y: float) -> None:
+        """Put start and goal near the two short sides, at flying height."""
+        half, _ = self.half_m
+        start_x, goal_x = -half + self.within(0.8, 1.1), half - self.within(0.8, 1.1)
+        self.start_m = (start_x, start_y, self.within(1.0, 1.7))
+        self.goal_m = (goal_x, goal_y, self.within(1.0, 1.7))
+        self.reserve_ends()
+
+    def reserve_ends(self) -> None:
+        """Keep the air about start and goal free."""
+        for x, y, _ in (self.start_m, self.goal_m):
+            self._reserve((x, y), 0.6)
+
+    def _reserve(self, at: Plan, radius: float) -> None:
+        self.keep_free.append(prism(self._pillar(at, radius)))
+
+    def _pillar(self, at: Plan, radius: float) -> Cylinder:
+        return Cylinder(centre_m=at, radius_m=radius, low_m=0.0, high_m=self.size_m[2])
 
     @property
     def bounds(self) -> Bounds:
@@ -72,7 +105,7 @@ class Layout:
             return
         cx, cy, cz = ((low + high) / 2 for low, high in spans)
         hx, hy, hz = ((high - low) / 2 for low, high in spans)
-        self.boxes.append(Box(centre_m=(cx, cy, cz), half_extents_m=(hx, hy, hz)))
+        self.solids.append(Box(centre_m=(cx, cy, cz), half_extents_m=(hx, hy, hz)))
 
     def wall(
         self, axis: str, at: float, span: Plan | None = None, doors: Sequence[Door] = ()
@@ -85,7 +118,7 @@ class Layout:
             span: Where it begins and ends along its axis; the whole arena by default.
             doors: Openings, in any order.
         """
-        half = self.size_m[0 if axis == "x" else 1] / 2
+        half = self.half_m["xy".index(axis)]
         begin, end = span or (-half, half)
         thick = (at - WALL_M / 2, at + WALL_M / 2)
 
@@ -99,7 +132,7 @@ class Layout:
             if door.height_m is not None:
                 piece(low, high, (door.height_m, self.size_m[2]))
             place = (door.at_m, at) if axis == "x" else (at, door.at_m)
-            self.keep_free.append((*place, 0.9))
+            self._reserve(place, 0.9)
             begin = high
         piece(begin, end)
 
@@ -132,24 +165,12 @@ class Layout:
 
     def pillar(self, at: Plan, radius: float) -> None:
         """Add a pillar from floor to ceiling."""
-        self.cylinders.append(
-            Cylinder(centre_m=at, radius_m=radius, low_m=0.0, high_m=self.size_m[2])
-        )
+        self.solids.append(self._pillar(at, radius))
 
-    def scatter(
-        self,
-        rng: np.random.Generator,
-        count: int,
-        x: Plan,
-        y: Plan,
-        *,
-        tall: float = 0.7,
-        tries: int = 60,
-    ) -> int:
+    def scatter(self, count: int, x: Plan, y: Plan, *, tall: float = 0.7, tries: int = 60) -> int:
         """Add loose obstacles that keep the gap rule; return how many found a place.
 
         Args:
-            rng: Source of the draws.
             count: How many to add at most.
             x: Where their centres may be, along x.
             y: Where their centres may be, along y.
@@ -159,82 +180,35 @@ class Layout:
         placed = 0
         for _ in range(count):
             for _ in range(tries):
-                thing = self._loose(rng, (float(rng.uniform(*x)), float(rng.uniform(*y))), tall)
-                if self._fits(thing):
-                    if isinstance(thing, Box):
-                        self.boxes.append(thing)
-                    else:
-                        self.cylinders.append(thing)
+                thing = self._loose((self.within(*x), self.within(*y)), tall)
+                if self._fits(prism(thing)):
+                    self.solids.append(thing)
                     placed += 1
                     break
         return placed
 
-    def _loose(self, rng: np.random.Generator, at: Plan, tall: float) -> Box | Cylinder:
-        ceiling = self.size_m[2]
-        kind = rng.uniform()
-        low, high = 0.0, ceiling
-        if kind > tall:
-            if rng.uniform() < 0.6:
-                high = round(float(rng.uniform(0.7, 1.5)), 2)  # a table or crate to fly over
+    def _loose(self, at: Plan, tall: float) -> Box | Cylinder:
+        low, high = 0.0, self.size_m[2]
+        if not self.chance(tall):  # it stands on the floor or hangs from the ceiling
+            if self.chance(0.6):
+                high = round(self.within(0.7, 1.5), 2)  # a table or crate to fly over
             else:
-                low = round(
-                    ceiling - float(rng.uniform(0.6, 1.3)), 2
-                )  # a duct or lamp to fly under
-        if rng.uniform() < 0.45:
-            return Cylinder(
-                centre_m=at, radius_m=float(rng.uniform(0.12, 0.35)), low_m=low, high_m=high
-            )
+                low = round(high - self.within(0.6, 1.3), 2)  # a duct or lamp to fly under
+        if self.chance(0.45):
+            radius = self.within(0.12, 0.35)
+            return Cylinder(centre_m=at, radius_m=radius, low_m=low, high_m=high)
+        plan = self.within(0.12, 0.45), self.within(0.12, 0.45)
         return Box(
             centre_m=(*at, (low + high) / 2),
-            half_extents_m=(
-                float(rng.uniform(0.12, 0.45)),
-                float(rng.uniform(0.12, 0.45)),
-                (high - low) / 2,
-            ),
-            yaw_rad=float(rng.uniform(-pi / 2, pi / 2)),
+            half_extents_m=(*plan, (high - low) / 2),
+            yaw_rad=self.within(-pi / 2, pi / 2),
         )
 
-    def _fits(self, thing: Box | Cylinder) -> bool:
-        half_x, half_y = self.size_m[0] / 2, self.size_m[1] / 2
-        outline = thing.corners_m if isinstance(thing, Box) else [thing.centre_m]
-        grown = 0.0 if isinstance(thing, Box) else thing.radius_m
-        if any(min(half_x - abs(x), half_y - abs(y)) < MIN_GAP_M + grown for x, y in outline):
+    def _fits(self, thing: Prism) -> bool:
+        half_x, half_y = self.half_m
+        wall = MIN_GAP_M + thing.rounding_m
+        if any(min(half_x - abs(x), half_y - abs(y)) < wall for x, y in thing.corners_m):
             return False
-        if any(plan_gap(thing, other) < MIN_GAP_M for other in (*self.boxes, *self.cylinders)):
+        if any(plan_gap(thing, prism(other)) < MIN_GAP_M for other in self.solids):
             return False
-        return all(
-            plan_gap(
-                thing, Cylinder(centre_m=(x, y), radius_m=radius, low_m=0.0, high_m=self.size_m[2])
-            )
-            > 0
-            for x, y, radius in self.keep_free
-        )
-
-
-def _to_box(point: Plan, box: Box) -> float:
-    """Return the distance in plan from a point to a box, 0 inside."""
-    dx, dy = point[0] - box.centre_m[0], point[1] - box.centre_m[1]
-    c, s = cos(box.yaw_rad), sin(box.yaw_rad)
-    beyond_x = abs(c * dx + s * dy) - box.half_extents_m[0]
-    beyond_y = abs(c * dy - s * dx) - box.half_extents_m[1]
-    return hypot(max(beyond_x, 0.0), max(beyond_y, 0.0))
-
-
-def plan_gap(one: Box | Cylinder, other: Box | Cylinder) -> float:
-    """Return the clear width in plan between two solids that do not cross, m.
-
-    Between convex outlines that are apart, the least distance is taken at a corner of one of
-    them. Where outlines cross it is not a distance, but for loose obstacles, whose corners lie
-    within 0.64 m of their centre, it stays below the least gap and so still says "too near".
-    """
-    if isinstance(one, Cylinder) and isinstance(other, Cylinder):
-        dx, dy = (a - b for a, b in zip(one.centre_m, other.centre_m, strict=True))
-        return hypot(dx, dy) - one.radius_m - other.radius_m
-    if isinstance(one, Cylinder):
-        return plan_gap(other, one)
-    if isinstance(other, Cylinder):
-        return _to_box(other.centre_m, one) - other.radius_m
-    return min(
-        *(_to_box(corner, other) for corner in one.corners_m),
-        *(_to_box(corner, one) for corner in other.corners_m),
-    )
+        return all(plan_gap(thing, place) > 0 for place in self.keep_free)

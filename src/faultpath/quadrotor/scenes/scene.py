@@ -3,7 +3,6 @@
 import hashlib
 import json
 from enum import StrEnum
-from math import cos, sin
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -39,17 +38,6 @@ class Box(_Frozen):
     centre_m: Point
     half_extents_m: Point
     yaw_rad: float = 0.0
-
-    @property
-    def corners_m(self) -> tuple[tuple[float, float], ...]:
-        """The four corners in plan, in order around the box."""
-        c, s = cos(self.yaw_rad), sin(self.yaw_rad)
-        x, y, _ = self.centre_m
-        hx, hy, _ = self.half_extents_m
-        return tuple(
-            (x + c * along - s * across, y + s * along + c * across)
-            for along, across in ((-hx, -hy), (hx, -hy), (hx, hy), (-hx, hy))
-        )
 
 
 class Cylinder(_Frozen):

@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from math import ceil, cos, hypot, prod, sin
+from math import ceil, prod
 
-from faultpath.quadrotor.scenes.scene import Box, Cylinder, Point, Scene
+from faultpath.quadrotor.scenes.prisms import arena, solids
+from faultpath.quadrotor.scenes.scene import Point, Scene
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
 MOST_OBSTACLES = 256
@@ -16,7 +17,6 @@ MOST_CELLS = 2**22
 CELL_M = 0.1
 
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
-_TOUCH_M = 1e-6
 
 
 def unfit_name(name: str) -> str:
@@ -54,12 +54,8 @@ def unsound(scene: Scene) -> str:
 
 
 def clearance_m(scene: Scene, point: Point) -> float:
-    """Return the signed distance from a point to the nearest surface, m; see `geometry`."""
-    low, high = scene.bounds.low_m, scene.bounds.high_m
-    walls = min(min(p - a, b - p) for p, a, b in zip(point, low, high, strict=True))
-    solids = [_outside_box(scene, box, point) for box in scene.boxes]
-    solids += [_outside_pillar(scene, pillar, point) for pillar in scene.cylinders]
-    return min(walls, *solids) if solids else walls
+    """Return the signed distance from a point to the nearest surface, m."""
+    return min(prism.distance(point) for prism in (arena(scene), *solids(scene)))
 
 
 def _faults(scene: Scene) -> Iterator[str]:
@@ -114,28 +110,3 @@ def _points(scene: Scene) -> Iterator[tuple[str, tuple[float, ...]]]:
     for index, pillar in enumerate(scene.cylinders):
         sizes = (pillar.radius_m, pillar.low_m, pillar.high_m)
         yield f"cylinders.{index}", (*pillar.centre_m, *sizes)
-
-
-def _outside_box(scene: Scene, box: Box, point: Point) -> float:
-    (x, y, z), (half_x, half_y, half_z) = box.centre_m, box.half_extents_m
-    dx, dy = point[0] - x, point[1] - y
-    c, s = cos(box.yaw_rad), sin(box.yaw_rad)
-    plan = _corner(abs(c * dx + s * dy) - half_x, abs(c * dy - s * dx) - half_y)
-    return _corner(plan, _beyond(scene, z - half_z, z + half_z, point[2]))
-
-
-def _outside_pillar(scene: Scene, pillar: Cylinder, point: Point) -> float:
-    x, y = pillar.centre_m
-    plan = hypot(point[0] - x, point[1] - y) - pillar.radius_m
-    return _corner(plan, _beyond(scene, pillar.low_m, pillar.high_m, point[2]))
-
-
-def _beyond(scene: Scene, low: float, high: float, height: float) -> float:
-    """Return how far a height is above or below a solid, which goes on where it meets a face."""
-    below = low - height if low > scene.bounds.low_m[2] + _TOUCH_M else -FURTHEST_M
-    above = height - high if high < scene.bounds.high_m[2] - _TOUCH_M else -FURTHEST_M
-    return max(below, above)
-
-
-def _corner(first: float, second: float) -> float:
-    return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)
