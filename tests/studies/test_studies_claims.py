@@ -9,13 +9,13 @@ from toy_runs import EMPTY, trials
 
 from faultpath.evidence import EvidenceTable, Measured
 from faultpath.record import ClaimVerdict, Ledger
+from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.studies.cells import Cell
 from faultpath.studies.claims import STATEMENTS, evaluate, ledger
 from faultpath.studies.claims.rules import Detected
-from faultpath.studies.claims.statement import verdict
+from faultpath.studies.claims.statement import Statement, answered, verdict
 from faultpath.studies.pages import table_1, table_4
 from faultpath.studies.published import published_claims
-from faultpath.studies.quantities.found import MIN_SCENES
 from faultpath.studies.results import Results
 from faultpath.trials import OutcomeTable, Status
 
@@ -81,7 +81,9 @@ def test_turning_all_outcomes_round_refutes_what_was_detected(
         for id, statements in STATEMENTS.items()
         for statement, old, new in zip(statements, answers[id].parts, mirror[id].parts, strict=True)
         # C04 is of crashes and C30 of sizes, which do not turn round; in C12 both sides do.
-        if isinstance(statement.rule, Detected) and id not in ("C04", "C12", "C30")
+        if isinstance(statement, Statement)
+        and isinstance(statement.rule, Detected)
+        and id not in ("C04", "C12", "C30")
     ]
     assert len(detected) > 25
     for old, new in detected:
@@ -114,7 +116,7 @@ def test_every_difference_in_success_says_what_could_have_been_detected(answers:
 
 def test_one_seed_leaves_open_what_the_paper_says_of_three(published_run: Results) -> None:
     one = without(published_run, lambda variant, path, seed: seed != 0)
-    change, seeds = (statement.part(one) for statement in STATEMENTS["C26"])
+    change, seeds = (answered(statement, one) for statement in STATEMENTS["C26"])
     assert change.answer == "confirmed"
     assert (seeds.answer, seeds.reason) == ("undecided", "run with 1 of 3 seeds")
 
@@ -131,14 +133,14 @@ def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
 
 def test_seeds_that_only_one_side_has_are_left_out(published_run: Results) -> None:
     fewer = without(published_run, lambda variant, path, seed: variant == "gru" and seed == 2)
-    (part,) = (statement.part(fewer) for statement in STATEMENTS["C27"])
+    (part,) = (answered(statement, fewer) for statement in STATEMENTS["C27"])
     assert part.answer == "confirmed"
 
 
 def test_what_was_not_run_is_named(published_run: Results) -> None:
     cell = table_1.DKI
     fewer = without(published_run, lambda variant, path, seed: variant == cell.variant)
-    (part,) = (statement.part(fewer) for statement in STATEMENTS["C03"])
+    (part,) = (answered(statement, fewer) for statement in STATEMENTS["C03"])
     assert (part.answer, part.reason) == ("undecided", f"not run: {cell}")
 
 
@@ -165,7 +167,7 @@ def test_errors_on_other_windows_are_not_compared() -> None:
     found = table.values(odd)
     moved = Measured(found.scenes, found.steps + 1, found.values)
     run = Results(EMPTY.outcomes, EvidenceTable({**table.entries, odd: moved}), "toy")
-    parts = [statement.part(run) for statement in STATEMENTS["C01"]]
+    parts = [answered(statement, run) for statement in STATEMENTS["C01"]]
     assert [part.answer for part in parts] == ["undecided"] * 3 + ["confirmed"] * 2
     assert "on the windows of" in parts[0].reason
 

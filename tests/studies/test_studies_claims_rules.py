@@ -10,16 +10,18 @@ from faultpath.statistics import (
     mean_effect,
     success_effect,
     weighted_sum,
+    with_test,
 )
 from faultpath.statistics.estimate import PairedTest
-from faultpath.studies.claims.record import Crossing, NeverPays, PaysFrom
-from faultpath.studies.claims.reversals import Turn, TurnsDown
+from faultpath.studies.claims.paying import Crossing
 from faultpath.studies.claims.rules import (
     ABOVE,
     BELOW,
     NO_GAIN,
     NO_LOSS,
+    POINT_SCENES,
     REPORTED,
+    Bound,
     ByPoint,
     NotDetected,
     Rule,
@@ -28,22 +30,37 @@ from faultpath.studies.claims.rules import (
     less_than,
     more_than,
 )
-from faultpath.studies.quantities.found import POINT_SCENES, Found, of_effect
+from faultpath.studies.claims.turning import Turned
+from faultpath.studies.quantities.quantity import decisive
 
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
 
+def shown(
+    value: float,
+    interval: tuple[float, float] | None,
+    n_scenes: int = 100,
+    test: PairedTest | None = None,
+    mde: float | None = None,
+) -> Contrast:
+    """Return a difference with this interval, that notable ones of 20 pp are set beside."""
+    draws = np.empty(0) if interval is None else np.repeat(interval, 50)
+    made = Contrast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0)
+    vars(made)["least"] = mde  # in the place of what it would work out
+    return made
+
+
 def found(
     interval: tuple[float, float] | None, p_value: float | None = None, mde: float | None = 8.0
-) -> Found:
+) -> Contrast:
     """Return a difference at the middle of its interval, with a test that finds its side ahead."""
     value = 0.0 if interval is None else sum(interval) / 2
     test = None if p_value is None else PairedTest("sign", p_value, 1 if value > 0 else -1)
-    return Found(value, interval, "pp", 100, test, mde, telling_mde=20.0)
+    return shown(value, interval, test=test, mde=mde)
 
 
 @pytest.mark.parametrize(
-    ("rule", "shown", "answer"),
+    ("rule", "difference", "answer"),
     [
         (ABOVE, found(UP, 0.01), "confirmed"),
         (ABOVE, found(DOWN, 0.01), "refuted"),
@@ -58,13 +75,13 @@ def found(
     ],
 )
 def test_a_difference_is_detected_when_interval_and_test_agree(
-    rule: Rule[Found], shown: Found, answer: str
+    rule: Rule, difference: Contrast, answer: str
 ) -> None:
-    assert rule.judge(shown).answer == answer
+    assert rule.judge(difference).answer == answer
 
 
 @pytest.mark.parametrize(
-    ("rule", "shown", "answer"),
+    ("rule", "difference", "answer"),
     [
         (NO_LOSS, found(OPEN, 0.3), "confirmed"),
         (NO_LOSS, found(DOWN, 0.01), "refuted"),
@@ -82,13 +99,13 @@ def test_a_difference_is_detected_when_interval_and_test_agree(
     ],
 )
 def test_not_detecting_counts_only_where_something_would_have_been_seen(
-    rule: Rule[Found], shown: Found, answer: str
+    rule: Rule, difference: Contrast, answer: str
 ) -> None:
-    assert rule.judge(shown).answer == answer
+    assert rule.judge(difference).answer == answer
 
 
 @pytest.mark.parametrize(
-    ("rule", "shown", "answer"),
+    ("rule", "difference", "answer"),
     [
         (at_least(10), found(UP), "confirmed"),
         (at_least(10.1), found(UP), "undecided"),
@@ -113,9 +130,9 @@ def test_not_detecting_counts_only_where_something_would_have_been_seen(
     ],
 )
 def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
-    rule: Rule[Found], shown: Found, answer: str
+    rule: Rule, difference: Contrast, answer: str
 ) -> None:
-    assert rule.judge(shown).answer == answer
+    assert rule.judge(difference).answer == answer
 
 
 @pytest.mark.parametrize(
@@ -130,17 +147,15 @@ def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
         (REPORTED, -7.0, "confirmed"),
     ],
 )
-def test_claims_about_points_are_decided_by_points(
-    rule: Rule[Found], value: float, answer: str
-) -> None:
-    assert rule.judge(Found(value, OPEN, "pp", 100)).answer == answer
+def test_claims_about_points_are_decided_by_points(rule: Rule, value: float, answer: str) -> None:
+    assert rule.judge(shown(value, OPEN)).answer == answer
 
 
 @pytest.mark.parametrize("n_scenes", [1, 5, 10, POINT_SCENES - 1])
 @pytest.mark.parametrize("rule", [ByPoint(1), ByPoint(-1), ByPoint(1, 60), ByPoint(-1, 0.0)])
-def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule[Found], n_scenes: int) -> None:
+def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int) -> None:
     for value in (-50.0, 0.0, 50.0):
-        judged = rule.judge(Found(value, (value - 5, value + 5), "pp", n_scenes))
+        judged = rule.judge(shown(value, (value - 5, value + 5), n_scenes))
         assert judged.answer == "undecided"
         assert "scenes" in judged.reason
 
@@ -152,10 +167,10 @@ TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
 @pytest.mark.parametrize("interval", TOUCHING)
 @pytest.mark.parametrize("n_scenes", [10, 100])
 def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
-    rule: Rule[Found], interval: tuple[float, float], n_scenes: int
+    rule: Rule, interval: tuple[float, float], n_scenes: int
 ) -> None:
-    shown = Found(sum(interval) / 2, interval, "pp", n_scenes)
-    assert rule.judge(shown).answer == "undecided"
+    difference = shown(sum(interval) / 2, interval, n_scenes)
+    assert rule.judge(difference).answer == "undecided"
 
 
 @pytest.mark.parametrize(
@@ -172,9 +187,9 @@ def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
     ],
 )
 def test_few_scenes_meet_a_threshold_by_their_whole_interval(
-    rule: Rule[Found], n_scenes: int, answer: str
+    rule: Rule, n_scenes: int, answer: str
 ) -> None:
-    assert rule.judge(Found(10.0, UP, "pp", n_scenes)).answer == answer
+    assert rule.judge(shown(10.0, UP, n_scenes)).answer == answer
 
 
 @pytest.mark.parametrize(
@@ -182,38 +197,51 @@ def test_few_scenes_meet_a_threshold_by_their_whole_interval(
 )
 @pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
 def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
-    rule: Rule[Found], value: float
+    rule: Rule, value: float
 ) -> None:
-    shown = Found(value, (value, value), "pp", 10, mde=1.0, telling_mde=20.0)
-    assert rule.judge(shown).answer == "undecided"
+    difference = shown(value, (value, value), 10, mde=1.0)
+    assert rule.judge(difference).answer == "undecided"
 
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_tie_shows_neither_side_ahead(sign: int) -> None:
-    judged = ByPoint(sign).judge(Found(0.0, (0.0, 0.0), "pp", 100))
+    judged = ByPoint(sign).judge(shown(0.0, (0.0, 0.0)))
     assert (judged.answer, judged.reason) == ("undecided", "the estimate is a tie")
 
 
-def turn(interval: tuple[float, float], before: int, after: int, *, differ: bool) -> Turn:
-    value = sum(interval) / 2
-    turned = differ and interval[1] < 0
-    return Turn(value, interval, "pp", 40, before=before, after=after, turned=turned)
+def effect(n: int, wins: int, losses: int) -> Contrast:
+    """Return the tested difference of one seed with so many scenes won and lost."""
+    scene = np.arange(n)
+    arms = scene < wins, (scene >= wins) & (scene < wins + losses)
+    return with_test(success_effect(*arms, Resamples.draw("turn", n, n_resamples=10)))
+
+
+N = 40
 
 
 @pytest.mark.parametrize(
-    ("shown", "answer"),
+    ("before", "after", "answer"),
     [
-        (turn(DOWN, 1, -1, differ=True), "confirmed"),
-        (turn(DOWN, 0, 0, differ=True), "confirmed"),
-        (turn(DOWN, 1, 0, differ=False), "undecided"),
-        (turn(OPEN, 0, 0, differ=True), "undecided"),
-        (turn(DOWN, 1, 1, differ=False), "refuted"),
-        (turn(OPEN, -1, -1, differ=False), "refuted"),
-        (turn(UP, 0, 0, differ=False), "refuted"),
+        (effect(N, 20, 0), effect(N, 0, 20), "confirmed"),
+        (effect(N, 20, 0), effect(N, 0, 0), "undecided"),
+        (effect(N, 2, 0), effect(N, 0, 2), "undecided"),
+        (effect(N, 40, 0), effect(N, 12, 0), "refuted"),
+        (effect(N, 0, 20), effect(N, 0, 20), "refuted"),
+        (effect(N, 0, 8), effect(N, 12, 0), "refuted"),
+        (effect(N, 4, 5), effect(N, 20, 0), "refuted"),
+        (effect(5, 5, 0), effect(5, 0, 5), "undecided"),
     ],
 )
-def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(shown: Turn, answer: str) -> None:
-    assert TurnsDown().judge(shown).answer == answer
+def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(
+    before: Contrast, after: Contrast, answer: str
+) -> None:
+    assert Turned(decisive(change(before, after)), before, after).judge().answer == answer
+
+
+def test_a_change_without_both_effects_is_no_reversal() -> None:
+    before, after = effect(N, 20, 0), effect(N, 0, 0)
+    judged = Turned(decisive(change(before, after)), before, after).judge()
+    assert judged.reason == "the change is detected, but not both effects"
 
 
 def crossing(
@@ -222,7 +250,6 @@ def crossing(
     return Crossing(
         value=value,
         interval=None if value is None else (max(0.0, value - 10), value + 10),
-        unit="percent",
         n_scenes=100,
         ahead=ahead,
         behind=behind,
@@ -231,49 +258,50 @@ def crossing(
 
 
 @pytest.mark.parametrize(
-    ("rule", "shown", "answer"),
+    ("bound", "at", "answer"),
     [
-        (PaysFrom(less_than(15)), crossing(5, ahead=True), "confirmed"),
-        (PaysFrom(less_than(15)), crossing(20, ahead=True), "undecided"),
-        (PaysFrom(less_than(15)), crossing(40, ahead=True), "refuted"),
-        (PaysFrom(less_than(15)), crossing(0, ahead=True), "confirmed"),
-        (PaysFrom(more_than(30)), crossing(0, ahead=True), "refuted"),
-        (PaysFrom(more_than(30)), crossing(None, behind=True, never=True), "refuted"),
-        (PaysFrom(more_than(30)), crossing(None, never=True), "undecided"),
-        (PaysFrom(less_than(15)), crossing(None), "undecided"),
-        (NeverPays(), crossing(None, never=True), "confirmed"),
-        (NeverPays(), crossing(None, never=True, behind=True), "confirmed"),
-        (NeverPays(), crossing(40), "undecided"),
-        (NeverPays(), crossing(40, ahead=True), "refuted"),
+        (less_than(15), crossing(5, ahead=True), "confirmed"),
+        (less_than(15), crossing(20, ahead=True), "undecided"),
+        (less_than(15), crossing(40, ahead=True), "refuted"),
+        (less_than(15), crossing(0, ahead=True), "confirmed"),
+        (more_than(30), crossing(0, ahead=True), "refuted"),
+        (more_than(30), crossing(None, behind=True, never=True), "refuted"),
+        (more_than(30), crossing(None, never=True), "undecided"),
+        (less_than(15), crossing(None), "undecided"),
+        (None, crossing(None, never=True), "confirmed"),
+        (None, crossing(None, never=True, behind=True), "confirmed"),
+        (None, crossing(40), "undecided"),
+        (None, crossing(40, ahead=True), "refuted"),
     ],
 )
 def test_a_break_even_frequency_is_judged_by_what_is_decided(
-    rule: PaysFrom | NeverPays, shown: Crossing, answer: str
+    bound: Bound | None, at: Crossing, answer: str
 ) -> None:
-    assert rule.judge(shown).answer == answer
+    judged = at.pays_within(bound) if bound else at.pays_never()
+    assert judged.answer == answer
 
 
 @pytest.mark.parametrize("rule", [ABOVE, NO_LOSS, NotDetected(), at_least(3), ByPoint(1), REPORTED])
-def test_a_statement_begins_with_its_subject(rule: Rule[Found]) -> None:
+def test_a_statement_begins_with_its_subject(rule: Rule) -> None:
     assert "success of A minus B" in rule.words("success of A minus B")
 
 
-def effect(values: list[float]) -> Contrast:
+def mean(values: list[float]) -> Contrast:
     array = np.array(values)
     return mean_effect(array, np.zeros_like(array), Resamples.draw("toy", len(values)), "m")
 
 
 def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
-    one = effect([float(i) for i in range(10)])
-    assert of_effect(one).mde == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
+    one = mean([float(i) for i in range(10)])
+    assert one.least == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
 
 
 def test_what_does_not_vary_detects_nothing() -> None:
-    assert of_effect(effect([0.1] * 10)).mde is None
+    assert mean([0.1] * 10).least is None
 
 
 def test_effects_that_cancel_leave_exactly_nothing() -> None:
-    one = effect([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6])
+    one = mean([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6])
     gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])
     assert gone.value == 0
     assert not gone.draws.any()
@@ -283,8 +311,8 @@ def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
     """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
     drawn = Resamples.draw("claims", 25)
     arms = np.ones((25, 1), dtype=bool)
-    found = of_effect(change(success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)))
+    found = decisive(change(success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)))
     assert found.interval is not None
     low, high = found.interval
-    assert found.mde == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
-    assert found.mde > high
+    assert found.least == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
+    assert found.least > high

@@ -54,7 +54,7 @@ def test_what_was_saved_is_read_back(run: Path) -> None:
     results, found = read_results(run)
     assert found.trials == 4
     assert found.ledger.library == SELECTION
-    assert len(results.contrast(NOMINAL, FAULTY).pairs.scenes) == 2
+    assert len(results.pairs(NOMINAL, FAULTY).scenes) == 2
     assert len(results.measured(ERROR).values) > 0
     assert found == Reproduction.model_validate_json(found.model_dump_json())
 

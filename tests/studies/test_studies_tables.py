@@ -22,6 +22,7 @@ from faultpath.record import Sweep
 from faultpath.studies.cells import HELD_OUT, Cell
 from faultpath.studies.claims import evaluate
 from faultpath.studies.pages import PAGES, figure_3, table_1, table_2, table_4, table_6
+from faultpath.studies.quantities.differences import contrast
 from faultpath.trials import Status
 
 
@@ -80,8 +81,9 @@ def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
 def test_intervals_are_those_of_the_contrast() -> None:
     results = run(won(calibrated))
     table = tables(page("table-2"), results)["table-2"]
-    found = results.contrast(table_2.cell("wm-a+dcc", 0.1), table_2.cell("wm-a", 0.1)).success
-    expected = f"[{found.low:.1f}, {found.high:.1f}]"
+    found = contrast(results, table_2.cell("wm-a+dcc", 0.1), table_2.cell("wm-a", 0.1))
+    assert found.interval is not None
+    expected = "[{:.1f}, {:.1f}]".format(*found.interval)
     assert texts(line(table, "95 % interval", below="WM-A+DCC minus WM-A (pp)"))[2] == expected
 
 
@@ -246,7 +248,7 @@ def test_the_ceiling_counts_scenes_that_end_alike_everywhere() -> None:
 def test_detection_sensitivity_gives_the_least_detectable_difference() -> None:
     table = tables(page("detection-sensitivity"), run(won(lambda cell: 10)))
     results = run(won(lambda cell: 10))
-    least = results.contrast(table_1.DKI, table_1.WM_A).detectable
+    least = contrast(results, table_1.DKI, table_1.WM_A).least
     assert least is not None
     shown = line(table["detection-sensitivity"], "DKI minus WM-A, seed 0")
     assert texts(shown) == ["0.0", "[−16.1, 16.1]", "0:0", "1.000", f"{least:.1f}"]

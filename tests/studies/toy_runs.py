@@ -9,9 +9,9 @@ from faultpath.evidence import EvidenceTable, Measured, Measurement
 from faultpath.studies.cells import Cell
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
-from faultpath.studies.results import Contrast, Results
+from faultpath.studies.results import Results
 from faultpath.tables import Entry, Line, Table
-from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
+from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow
 
 SCENES = 20
 Ends = Callable[[Cell, int, int], Status]
@@ -78,10 +78,10 @@ class Watched(Results):
     cells: list[Cell] = field(default_factory=list[Cell])
     measurements: list[Measurement] = field(default_factory=list[Measurement])
 
-    def contrast(self, first: Cell, second: Cell, **named: object) -> Contrast:
+    def pairs(self, first: Cell, second: Cell, **named: object) -> Pairs:
         self.cells.extend((first, second))
         # Keywords are passed on as they come, so their types are those of the method itself.
-        return super().contrast(first, second, **named)  # type: ignore[arg-type]
+        return super().pairs(first, second, **named)  # type: ignore[arg-type]
 
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
         self.cells.append(cell)

@@ -4,10 +4,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 
 from faultpath.report import wording
+from faultpath.statistics import Contrast
 from faultpath.studies.cells import Cell
 from faultpath.studies.entries import Figure, Group, Made, bracket, success
 from faultpath.studies.page import Columns, Row
-from faultpath.studies.results import Contrast
+from faultpath.studies.quantities.differences import contrast
 from faultpath.tables import MISSING, Entry
 
 ROWS = ("Difference", "95 % interval", "Wins:losses")
@@ -58,7 +59,7 @@ def difference(
 ) -> Group:
     """Difference, interval, wins:losses, p-value and least detectable difference of two cells."""
     return Group(
-        lambda results: _entries(results.contrast(first, second, other_noise=other_noise)),
+        lambda results: _entries(contrast(results, first, second, other_noise=other_noise)),
         astuple(published),
         (first, second),
     )
@@ -92,12 +93,17 @@ def comparison(
     )
 
 
-def _entries(contrast: Contrast) -> Made:
-    least = contrast.detectable
+def _entries(found: Contrast) -> Made:
+    assert found.test is not None
     return (
-        Entry(text=wording.signed(contrast.success.value), detected=bool(contrast.detected_sign)),
-        wording.interval(contrast.success) or MISSING,
-        str(contrast.counts),
-        wording.p_value(contrast.test.p_value),
-        "none" if least is None else wording.plain(least),
+        decided(found),
+        wording.interval(found.estimate()) or MISSING,
+        str(found.counts),
+        wording.p_value(found.test.p_value),
+        "none" if found.least is None else wording.plain(found.least),
     )
+
+
+def decided(found: Contrast) -> Entry:
+    """Return a difference, bold where it is detected."""
+    return Entry(text=wording.signed(found.value), detected=bool(found.detected))

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from faultpath.evidence import Measurement
 from faultpath.report import wording
 from faultpath.studies.cells import Cell, of_seed
-from faultpath.studies.quantities.found import Quantity, Undecidable
+from faultpath.studies.quantities.quantity import Quantity, Undecidable
 from faultpath.studies.quantities.windows import mean_of_medians
 from faultpath.studies.results import NotRun, Results
 from faultpath.tables import MISSING, Entry
@@ -104,7 +104,7 @@ def successes(cell: Cell, scenes: Iterable[int], paper: int | Sequence[int]) -> 
     indices, counts = tuple(scenes), (paper,) if isinstance(paper, int) else paper
 
     def make(results: Results) -> Made:
-        pairs = results.contrast(cell, cell, scenes=indices).pairs
+        pairs = results.pairs(cell, cell, scenes=indices)
         return ("/".join(map(str, pairs.first.success.sum(axis=0))),)
 
     return Group(make, ("/".join(map(str, counts)),), (cell,))
@@ -143,12 +143,9 @@ def of_quantity(
 
     def make(results: Results) -> Made:
         found = quantity(results)
-        value, ends = MISSING, MISSING
-        if found.value is not None:
-            value = wording.signed(times * found.value, digits)
-        if found.interval is not None:
-            ends = bracket([times * end for end in found.interval], digits)
+        ends = found.interval and bracket([times * end for end in found.interval], digits)
         bold = found.unit == "pp" and bool(found.detected)
-        return Entry(text=value, detected=bold), ends
+        value = wording.signed(times * found.value, digits)
+        return Entry(text=value, detected=bold), ends or MISSING
 
     return Group(make, published, tuple(cells), tuple(measurements))

@@ -2,78 +2,18 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
-from faultpath.statistics import Contrast as Difference
-from faultpath.statistics import (
-    Estimate,
-    Resamples,
-    SeedCounts,
-    mean_effect,
-    success_effect,
-    success_rate,
-    with_test,
-)
-from faultpath.statistics.estimate import PairedTest
+from faultpath.statistics import Estimate, Resamples, success_rate
 from faultpath.studies.cells import Cell
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 
 
 class NotRun(Exception):
     """The run holds no trial of a cell, or no value of a measurement, that was asked for."""
-
-
-@dataclass(frozen=True)
-class Contrast:
-    """Two cells over the same scenes, first minus second."""
-
-    pairs: Pairs
-    resamples: Resamples
-
-    @cached_property
-    def draws(self) -> Difference:
-        """Difference in success with interval and test, percentage points."""
-        success = self.pairs.first.success, self.pairs.second.success
-        return with_test(success_effect(*success, self.resamples))
-
-    @property
-    def success(self) -> Estimate:
-        """Difference in success, percentage points."""
-        return self.draws.estimate()
-
-    @property
-    def counts(self) -> SeedCounts:
-        """Scenes in which only one of the two succeeded, seed by seed."""
-        assert self.draws.counts is not None
-        return self.draws.counts
-
-    @property
-    def test(self) -> PairedTest:
-        """The paper's test: exact McNemar for one seed, else the sign test on scene means."""
-        assert self.draws.test is not None
-        return self.draws.test
-
-    @property
-    def detectable(self) -> float | None:
-        """The least difference in success that this contrast could have detected."""
-        return self.draws.least
-
-    @property
-    def detected_sign(self) -> int:
-        """Side of 0 on which interval and test agree that the difference lies; 0 for neither."""
-        return self.draws.detected
-
-    def terminal_distance(self) -> Difference:
-        """Mean difference in the distance to the goal at the end, metres, all paired scenes."""
-        first, second = self.pairs.first, self.pairs.second
-        if first.terminal_distance_m is None or second.terminal_distance_m is None:
-            raise NotRun("a trial without a terminal distance")
-        return mean_effect(
-            first.terminal_distance_m, second.terminal_distance_m, self.resamples, "m"
-        )
 
 
 @dataclass(frozen=True)
@@ -107,14 +47,14 @@ class Results:
         """Return whether any trial of a cell was run."""
         return bool(self.outcomes.seeds(cell.variant, cell.path))
 
-    def contrast(
+    def pairs(
         self,
         first: Cell,
         second: Cell,
         *,
         scenes: Sequence[int] | None = None,
         other_noise: bool = False,
-    ) -> Contrast:
+    ) -> Pairs:
         """Pair two cells over the seeds that both were run with; `scenes` keeps some indices.
 
         `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
@@ -131,12 +71,12 @@ class Results:
             pairs = pairs.only([scene for scene, index in kept if index in scenes])
         if not pairs.scenes:
             raise NotRun(f"a scene of {self.named(first)} and {self.named(second)} to compare")
-        return Contrast(pairs, self.resamples(len(pairs.scenes)))
+        return pairs
 
     def rate(self, cell: Cell, scenes: Sequence[int] | None = None) -> Estimate:
         """Return the success of a cell in percent, mean over its seeds."""
-        contrast = self.contrast(cell, cell, scenes=scenes)
-        return success_rate(contrast.pairs.first.success, contrast.resamples).estimate()
+        pairs = self.pairs(cell, cell, scenes=scenes)
+        return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
 
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
         """Return how many trials of a cell ended in each way, for one seed."""
@@ -163,9 +103,9 @@ class Results:
             pass
         raise NotRun(f"{measurement.quantity} of {measurement.subject}")
 
-    def resamples(self, n_scenes: int) -> Resamples:
-        """Return the scene resamples that every effect over so many scenes shares."""
-        return _drawn(self.library_hash, n_scenes)
+    def resamples(self, pairs: Pairs) -> Resamples:
+        """Return the scene resamples that every contrast over so many scenes shares."""
+        return _drawn(self.library_hash, len(pairs.scenes))
 
 
 @lru_cache(maxsize=16)

@@ -14,7 +14,6 @@ from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.sweep import above_worst, range_gained, worst_difference
 from faultpath.studies.pages import figure_3, in_text, table_2
 from faultpath.studies.quantities.differences import combined, success
-from faultpath.studies.quantities.found import Found
 from faultpath.studies.quantities.summaries import at_lower_success
 from faultpath.studies.quantities.windows import ratio
 
@@ -30,7 +29,7 @@ def _lost(model: str, error: float) -> tuple[Cell, Cell]:
     return table_2.cell(model, 0.0), table_2.cell(model, error)
 
 
-def _repaired(pair: tuple[str, str], error: float) -> Statement[Found]:
+def _repaired(pair: tuple[str, str], error: float) -> Statement:
     repair, baseline = pair
     return Statement(
         f"success of {_name(repair)} minus {_name(baseline)} at e = {error:+g}",
@@ -43,7 +42,7 @@ def _noisy(error: float) -> tuple[Cell, Cell]:
     return in_text.noisy(REPAIR, error), in_text.noisy(BASELINE, error)
 
 
-def _responds(first: str, second: str, probe: str, times: float) -> Statement[Found]:
+def _responds(first: str, second: str, probe: str, times: float) -> Statement:
     return Statement(
         f"median response of {_name(first)} to the {probe} probe over that of {_name(second)}",
         ratio((in_text.response(first, probe),), (in_text.response(second, probe),)),

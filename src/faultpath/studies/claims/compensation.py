@@ -11,7 +11,6 @@ from faultpath.studies.claims.rules import (
 )
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import table_4, table_6, text_mechanism
-from faultpath.studies.quantities.found import Found
 from faultpath.studies.quantities.windows import (
     Subject,
     difference_of_changes,
@@ -27,7 +26,7 @@ def _acceleration(method: str, interface: str) -> Subject:
     return table_6.by_seed(table_6.acceleration_error, method, interface)
 
 
-def _over_nominal(method: str, interface: str, rule: Rule[Found]) -> Statement[Found]:
+def _over_nominal(method: str, interface: str, rule: Rule) -> Statement:
     return Statement(
         f"acceleration error of {method.upper()}, {interface} over correct,",
         ratio(_acceleration(method, interface), _acceleration(method, NOMINAL)),
@@ -35,9 +34,7 @@ def _over_nominal(method: str, interface: str, rule: Rule[Found]) -> Statement[F
     )
 
 
-def _repair_moves_less(
-    what: str, other: str, first: str, second: str, *, size: bool
-) -> Statement[Found]:
+def _repair_moves_less(what: str, other: str, first: str, second: str, *, size: bool) -> Statement:
     """State that GRU+DCC changes less than another method from one interface to another."""
     repair, rival = (
         (_acceleration(method, first), _acceleration(method, second)) for method in (DCC, other)

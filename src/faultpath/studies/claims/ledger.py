@@ -8,8 +8,8 @@ from faultpath.studies.claims import (
     calibration,
     compensation,
     others,
+    paying,
     predictors,
-    record,
     shared,
     wind,
 )
@@ -17,7 +17,7 @@ from faultpath.studies.claims.statement import Statements, verdict
 from faultpath.studies.published import published_claims
 from faultpath.studies.results import Results
 
-SUBJECTS = (predictors, calibration, wind, shared, compensation, record, others)
+SUBJECTS = (predictors, calibration, wind, shared, compensation, paying, others)
 
 STATEMENTS: Mapping[str, Statements] = MappingProxyType(
     {claim: statements for subject in SUBJECTS for claim, statements in subject.CLAIMS.items()}

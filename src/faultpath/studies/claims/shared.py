@@ -1,20 +1,18 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.reversals import ALL_SEEDS, TurnsDown, seeds_that_turn, turned
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule
 from faultpath.studies.claims.statement import Statement, Statements
+from faultpath.studies.claims.turning import ALL_SEEDS, TurnsDown, seeds_that_turn
 from faultpath.studies.pages.table_4 import cell, change
 from faultpath.studies.pages.table_6 import negative
-from faultpath.studies.quantities.differences import success
-from faultpath.studies.quantities.found import Found
-from faultpath.studies.results import Contrast
+from faultpath.studies.quantities.differences import success, terminal_distance
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
 GRU, DCC, DOB = "gru", "gru+dcc", "dob"
 
 
-def _between_paths(method: str, first: str, second: str, rule: Rule[Found]) -> Statement[Found]:
+def _between_paths(method: str, first: str, second: str, rule: Rule) -> Statement:
     return Statement(
         f"success of {method.upper()}, {first} minus {second},",
         success(cell(method, first), cell(method, second)),
@@ -22,7 +20,7 @@ def _between_paths(method: str, first: str, second: str, rule: Rule[Found]) -> S
     )
 
 
-def _between_methods(first: str, second: str, path: str, rule: Rule[Found]) -> Statement[Found]:
+def _between_methods(first: str, second: str, path: str, rule: Rule) -> Statement:
     return Statement(
         f"success of {first.upper()} minus {second.upper()}, {path},",
         success(cell(first, path), cell(second, path)),
@@ -45,10 +43,10 @@ CLAIMS: dict[str, Statements] = {
         _between_methods(DCC, GRU, CORRECT, BELOW),
     ),
     "C26": (
-        Statement(
+        TurnsDown(
             "success of GRU+DCC minus GRU, from reconstruction-only to shared,",
-            turned(_repair(ISOLATED), _repair(SHARED)),
-            TurnsDown(),
+            _repair(ISOLATED),
+            _repair(SHARED),
         ),
         Statement(
             "number of seeds in which success of GRU+DCC minus GRU is above 0 under "
@@ -60,7 +58,7 @@ CLAIMS: dict[str, Statements] = {
     "C27": (
         Statement(
             "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
-            change(DCC, GRU, Contrast.terminal_distance),
+            change(DCC, GRU, terminal_distance),
             ABOVE,
         ),
     ),

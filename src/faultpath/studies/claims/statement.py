@@ -1,43 +1,67 @@
 """A statement of a claim: what is looked at, and the rule that answers."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, TypeAlias, TypeVar
+from typing import Any, Protocol, TypeAlias
 
 from faultpath.record import Answer, ClaimVerdict, Part
+from faultpath.statistics import Contrast
 from faultpath.studies.claims.rules import Judged, Rule
 from faultpath.studies.published import PublishedClaim
-from faultpath.studies.quantities.found import Found, Undecidable
+from faultpath.studies.quantities.quantity import Quantity, Undecidable
 from faultpath.studies.results import NotRun, Results
 
-F = TypeVar("F", bound=Found)
+
+class Stated(Protocol):
+    """One part of a claim."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        ...
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run; raises `NotRun` or `Undecidable`."""
+        ...
+
+
+Statements: TypeAlias = tuple[Stated, ...]
 
 
 @dataclass(frozen=True)
-class Statement(Generic[F]):
-    """One part of a claim."""
+class Statement:
+    """A part of a claim that a rule decides from one quantity."""
 
     subject: str
     """What is looked at, as the beginning of a sentence; differences are first minus second."""
-    quantity: Callable[[Results], F]
-    rule: Rule[F]
+    quantity: Quantity
+    rule: Rule
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        return self.rule.words(self.subject)
 
     def part(self, results: Results) -> Part:
         """Answer it from a run."""
-        try:
-            found = self.quantity(results)
-        except NotRun as missing:
-            return self._open(f"not run: {missing}", not_run=True)
-        except Undecidable as why:
-            return self._open(str(why))
-        return _part(self.rule.words(self.subject), self.rule.judge(found), found)
-
-    def _open(self, reason: str, not_run: bool = False) -> Part:
-        words = self.rule.words(self.subject)
-        return Part(words=words, answer="undecided", reason=reason, not_run=not_run)
+        found = self.quantity(results)
+        return shown(self.words, self.rule.judge(found), found)
 
 
-Statements: TypeAlias = tuple[Statement[Any], ...]
+def shown(words: str, judged: Judged, found: Contrast, counts: str = "") -> Part:
+    """Return an answer with the numbers that it rests on; `counts` where it has none of its own."""
+    return Part(
+        words=words,
+        answer=judged.answer,
+        estimate=found.value,
+        interval=found.interval,
+        unit=found.unit,
+        p_value=None if found.test is None else found.test.p_value,
+        test="" if found.test is None else found.test.name,
+        mde=found.least,
+        counts=str(found.counts or counts),
+        reason=judged.reason,
+    )
 
 
 def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
@@ -45,7 +69,7 @@ def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> 
 
     Its numbers are those of the first part that has the answer of the whole.
     """
-    parts = tuple(statement.part(results) for statement in statements)
+    parts = tuple(answered(statement, results) for statement in statements)
     answer = _together([part.answer for part in parts])
     deciding = next(part for part in parts if part.answer == answer)
     return ClaimVerdict(
@@ -62,22 +86,21 @@ def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> 
     )
 
 
+def answered(statement: Stated, results: Results) -> Part:
+    """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
+
+    def left_open(reason: str, **why: Any) -> Part:
+        return Part(words=statement.words, answer="undecided", reason=reason, **why)
+
+    try:
+        return statement.part(results)
+    except NotRun as missing:
+        return left_open(f"not run: {missing}", not_run=True)
+    except Undecidable as why:
+        return left_open(str(why))
+
+
 def _together(answers: Sequence[Answer]) -> Answer:
     if "refuted" in answers:
         return "refuted"
     return "undecided" if "undecided" in answers else "confirmed"
-
-
-def _part(words: str, judged: Judged, found: Found) -> Part:
-    return Part(
-        words=words,
-        answer=judged.answer,
-        estimate=found.value,
-        interval=found.interval,
-        unit=found.unit,
-        p_value=None if found.test is None else found.test.p_value,
-        test="" if found.test is None else found.test.name,
-        mde=found.mde,
-        counts=found.counts,
-        reason=judged.reason,
-    )

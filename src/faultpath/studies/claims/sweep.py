@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import percentile_interval, success_rate
+from faultpath.statistics import Contrast, success_rate
 from faultpath.studies.pages import figure_3
-from faultpath.studies.quantities.differences import together
-from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity
+from faultpath.studies.quantities.differences import joint
+from faultpath.studies.quantities.quantity import Quantity, decisive
 from faultpath.studies.results import NotRun, Results
 
 Floats = NDArray[np.float64]
@@ -25,16 +25,16 @@ class _Sweep:
     """Of each model `[1 + resamples, errors]`: success in percent, and in every resample."""
     n_scenes: int
 
-    def found(self, drawn: Floats, unit: str) -> Found:
+    def found(self, drawn: Floats, unit: str) -> Contrast:
         """Return a quantity `[1 + resamples]` of the sweep."""
-        interval = percentile_interval(drawn[1:]) if self.n_scenes >= MIN_SCENES else None
-        return Found(float(drawn[0]), interval, unit, self.n_scenes)
+        value, draws = float(drawn[0]), drawn[1:]
+        return decisive(Contrast(value, unit, self.n_scenes, draws=draws, against_zero=False))
 
 
 def worst_difference(first: str, second: str) -> Quantity:
     """Return the least success of one model over the sweep, minus that of another."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         sweep = _sweep(results, first, second)
         one, two = (rates.min(axis=1) for rates in sweep.rates)
         return sweep.found(one - two, "pp")
@@ -45,7 +45,7 @@ def worst_difference(first: str, second: str) -> Quantity:
 def above_worst(model: str, error: float) -> Quantity:
     """Return the success of a model at an error, minus its least over the sweep."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         sweep = _sweep(results, model)
         (rates,) = sweep.rates
         return sweep.found(rates[:, sweep.errors.index(error)] - rates.min(axis=1), "pp")
@@ -60,7 +60,7 @@ def range_gained(first: str, second: str) -> Quantity:
     `PEAK_PERCENT`.
     """
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         sweep = _sweep(results, first, second)
         one, two = (_borne(rates, sweep.errors.index(0.0)) for rates in sweep.rates)
         return sweep.found(one - two, "errors")
@@ -79,8 +79,8 @@ def _sweep(results: Results, *models: str) -> _Sweep:
         if error not in errors:
             raise NotRun(f"the sweep of {' and '.join(models)} at e = {error:+g}")
     cells = [figure_3.cell(model, error) for model in models for error in errors]
-    contrasts = together(results, *((cell, cell) for cell in cells))
-    effects = [success_rate(each.pairs.first.success, each.resamples) for each in contrasts]
+    every = joint(results, *((cell, cell) for cell in cells))
+    effects = [success_rate(pairs.first.success, results.resamples(pairs)) for pairs in every]
     columns = np.stack([np.append(effect.value, effect.draws) for effect in effects], axis=1)
     rates = np.split(columns, len(models), axis=1)
     return _Sweep(errors, rates, effects[0].n_scenes)

@@ -1,26 +1,23 @@
 """Table IV: reconstructions of the wind under an isolated and under a shared calibration error."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, TypeAlias
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from faultpath.report import wording
-from faultpath.statistics import Contrast as Difference
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
 from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
 from faultpath.studies.entries import Group, bracket, of_quantity
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS
 from faultpath.studies.page import Columns, Page, Row, Rows, TableSpec, rates
 from faultpath.studies.published import published
-from faultpath.studies.quantities.differences import combined, success_draws
-from faultpath.studies.quantities.found import Quantity
-from faultpath.studies.results import Contrast
+from faultpath.studies.quantities.differences import Effect, combined, succeeded, terminal_distance
+from faultpath.studies.quantities.quantity import Quantity
 
 WINDY = Setting(wind="L3")
 NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}
 """Names in print."""
 METHODS = tuple(NAMES)
 ERROR = 0.1
-_Effect: TypeAlias = Callable[[Contrast], Difference]
 
 PATHS: dict[str, tuple[str, ...]] = {
     "correct": (),
@@ -38,7 +35,7 @@ def cell(method: str, path: str) -> Cell:
     return Cell(WINDY, method, PATHS[path], seeds=SEEDS)
 
 
-def change(first: str, second: str, effect: _Effect) -> Quantity:
+def change(first: str, second: str, effect: Effect) -> Quantity:
     """Return how much more an effect is under the shared error than under the isolated one."""
     shared, alone = (_cells(first, second, path) for path in ("shared", "reconstruction-only"))
     return combined((1, shared), (-1, alone), effect=effect)
@@ -81,14 +78,13 @@ def _shown(
 
 
 def _changed(
-    first: str, second: str, effect: _Effect, paper: Mapping[str, Any], digits: int = 1
+    first: str, second: str, effect: Effect, paper: Mapping[str, Any], digits: int = 1
 ) -> Group:
     """Return how an effect changes from reconstruction-only to shared error."""
     cells = [cell(method, path) for method in (first, second) for path in list(PATHS)[1:]]
     return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
 
 
-_DISTANCE = Contrast.terminal_distance
 _FARTHER = _PAPER["terminal_distance_GRU+DCC_minus_GRU_m"]
 """What the paper prints of GRU+DCC minus GRU in terminal goal distance."""
 
@@ -111,13 +107,13 @@ PAGE = Page(
                 *_contrast("dob", "gru+dcc"),
                 last_column(
                     "DOB minus GRU, shared minus reconstruction-only (pp)",
-                    _changed("dob", "gru", success_draws, _PAPER["DOB_GRU_interaction_pp"]),
+                    _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
                 ),
                 Row("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
                 Columns(
                     ("Mean difference", "95 % interval"),
                     tuple(
-                        _shown(combined((1, pair), effect=_DISTANCE), pair, mean, ends, 2)
+                        _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
                         for path, mean, ends in zip(
                             PATHS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
                         )
@@ -126,7 +122,9 @@ PAGE = Page(
                 ),
                 last_column(
                     "Shared minus reconstruction-only (m)",
-                    _changed("gru+dcc", "gru", _DISTANCE, _FARTHER["shared_minus_isolated"], 2),
+                    _changed(
+                        "gru+dcc", "gru", terminal_distance, _FARTHER["shared_minus_isolated"], 2
+                    ),
                 ),
             ),
             notes=(

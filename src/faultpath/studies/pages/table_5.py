@@ -3,14 +3,14 @@
 from faultpath.report import wording
 from faultpath.statistics import break_even
 from faultpath.studies.cells import Cell
+from faultpath.studies.contrasts import decided
 from faultpath.studies.entries import Group, Made
 from faultpath.studies.notes import INTERVALS
 from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
 from faultpath.studies.quantities.differences import together
-from faultpath.studies.results import Contrast, Results
-from faultpath.tables import Entry
+from faultpath.studies.results import Results
 
 REPAIRS: dict[str, tuple[Cell, ...]] = {
     **{
@@ -38,11 +38,11 @@ def _row(label: str, key: str) -> Row:
 
     def make(results: Results) -> Made:
         correct, faulty = together(results, (repair, baseline), (faulty_repair, faulty_baseline))
-        found = break_even(correct.draws, faulty.draws)
+        found = break_even(correct, faulty)
         crossing = wording.break_even(found).replace(" %", "")
         return (
-            _difference(correct),
-            _difference(faulty),
+            decided(correct),
+            decided(faulty),
             NO_CROSSING if found.kind == "empty" else crossing,
         )
 
@@ -52,11 +52,6 @@ def _row(label: str, key: str) -> Row:
         crossing = f"{p_star} [{low}, {high}]"
     texts = (wording.signed(paper["delta_0_pp"]), wording.signed(paper["delta_f_pp"]), crossing)
     return Row(label, (Group(make, texts, cells),))
-
-
-def _difference(contrast: Contrast) -> Entry:
-    text = wording.signed(contrast.success.value)
-    return Entry(text=text, detected=bool(contrast.detected_sign))
 
 
 PAGE = Page(

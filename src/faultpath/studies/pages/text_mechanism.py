@@ -29,7 +29,7 @@ _PAPER = published("in_text", "spearman_success")
 
 def _correlation(label: str, key: str, at: int) -> Row:
     group = Group(
-        lambda results: (wording.plain(RANKED[at](results).value or 0.0, 2),),
+        lambda results: (wording.plain(RANKED[at](results).value, 2),),
         (wording.plain(_PAPER[key], 2),),
         tuple(table_4.cell(method, path) for method, path in NINE),
         tuple(

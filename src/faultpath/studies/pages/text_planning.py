@@ -23,7 +23,7 @@ def _alike(label: str, key: str, of: Callable[[Bools], Bools]) -> Row:
     def make(results: Results) -> Made:
         found = share(CEILING, of)(results)
         ends = MISSING if found.interval is None else bracket(found.interval)
-        return wording.plain(found.value or 0.0, 0), ends
+        return wording.plain(found.value, 0), ends
 
     return Row(label, (Group(make, (str(_PAPER[key]), ""), tuple(map(of_seed, CEILING))),))
 

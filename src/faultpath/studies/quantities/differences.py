@@ -7,115 +7,131 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import Contrast as Difference
-from faultpath.statistics import Resamples, median_effect, success_effect, weighted_sum, with_test
+from faultpath.statistics import (
+    Contrast,
+    Resamples,
+    mean_effect,
+    median_effect,
+    success_effect,
+    weighted_sum,
+    with_test,
+)
 from faultpath.studies.cells import Cell
-from faultpath.studies.quantities.found import MIN_SCENES, Found, Quantity, of_effect
-from faultpath.studies.results import Contrast, NotRun, Results
+from faultpath.studies.quantities.quantity import Quantity, decisive
+from faultpath.studies.results import NotRun, Results
+from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
 
 Pair: TypeAlias = tuple[Cell, Cell]
 Bools: TypeAlias = NDArray[np.bool_]
+Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
+"""What of paired trials is compared."""
 
 TELLING_PP = 20.0
 """A difference in success that a run must be able to detect for its absence to say anything."""
 
 
+def ended(ends: Callable[[Trials], Bools]) -> Effect:
+    """Return the difference in how many trials end in a way, with the paper's test."""
+
+    def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
+        return with_test(success_effect(ends(pairs.first), ends(pairs.second), resamples))
+
+    return effect
+
+
+succeeded = ended(lambda trials: trials.success)
+
+
+def terminal_distance(pairs: Pairs, resamples: Resamples) -> Contrast:
+    """Return the mean difference in distance to the goal at the end, m, over all paired scenes."""
+    first, second = pairs.first.terminal_distance_m, pairs.second.terminal_distance_m
+    if first is None or second is None:
+        raise NotRun("a trial without a terminal distance")
+    return mean_effect(first, second, resamples, "m")
+
+
+def contrast(
+    results: Results,
+    first: Cell,
+    second: Cell,
+    effect: Effect = succeeded,
+    *,
+    other_noise: bool = False,
+) -> Contrast:
+    """Return what differs between two cells; `other_noise` as in `Results.pairs`."""
+    pairs = results.pairs(first, second, other_noise=other_noise)
+    return effect(pairs, results.resamples(pairs))
+
+
 def success(first: Cell, second: Cell, *, other_noise: bool = False) -> Quantity:
-    """Return the difference in success; `other_noise` as in `Results.contrast`."""
-    return _outcomes(first, second, lambda trials: trials.success, other_noise)
+    """Return the difference in success; `other_noise` as in `Results.pairs`."""
+    return _counted(first, second, succeeded, other_noise=other_noise)
 
 
 def crashes(first: Cell, second: Cell) -> Quantity:
     """Return the difference in crashes."""
-    return _outcomes(first, second, lambda trials: trials.crash)
+    return _counted(first, second, ended(lambda trials: trials.crash))
 
 
 def timeouts(first: Cell, second: Cell) -> Quantity:
     """Return the difference in timeouts."""
-    return _outcomes(first, second, lambda trials: ~(trials.success | trials.crash))
+    return _counted(first, second, ended(lambda trials: ~(trials.success | trials.crash)))
+
+
+def _counted(first: Cell, second: Cell, effect: Effect, *, other_noise: bool = False) -> Quantity:
+    def found(results: Results) -> Contrast:
+        shown = contrast(results, first, second, effect, other_noise=other_noise)
+        return decisive(shown, TELLING_PP)
+
+    return found
 
 
 def time(first: Cell, second: Cell) -> Quantity:
     """Return the median difference in time over jointly successful scenes."""
 
-    def found(results: Results) -> Found:
-        contrast = results.contrast(first, second)
-        one, two = contrast.pairs.first, contrast.pairs.second
+    def found(results: Results) -> Contrast:
+        pairs = results.pairs(first, second)
+        one, two = pairs.first, pairs.second
         both = one.success & two.success
         if not both.any():
             raise NotRun(
                 f"a scene in which both {results.named(first)} and {results.named(second)} succeed"
             )
-        return of_effect(median_effect(one.time_s, two.time_s, both, contrast.resamples))
+        return decisive(median_effect(one.time_s, two.time_s, both, results.resamples(pairs)))
 
     return found
 
 
-def success_draws(contrast: Contrast) -> Difference:
-    """Return the difference in success with its draws."""
-    return contrast.draws
-
-
-def combined(
-    *terms: tuple[float, Pair], effect: Callable[[Contrast], Difference] = success_draws
-) -> Quantity:
+def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity:
     """Return a weighted sum of differences over common scenes, on shared resamples."""
 
-    def found(results: Results) -> Found:
-        contrasts = together(results, *(pair for _, pair in terms))
-        weights = [weight for weight, _ in terms]
-        return of_effect(weighted_sum(weights, [effect(contrast) for contrast in contrasts]))
+    def found(results: Results) -> Contrast:
+        contrasts = together(results, *(pair for _, pair in terms), effect=effect)
+        return decisive(weighted_sum([weight for weight, _ in terms], contrasts))
 
     return found
 
 
-def together(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
+def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tuple[Contrast, ...]:
     """Return contrasts over the seeds and the scenes that all of them have, so that they join.
 
     `NotRun` when there is no such seed or scene.
     """
+    joined = joint(results, *pairs)
+    return tuple(effect(each, results.resamples(each)) for each in joined)
+
+
+def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:
+    """Return pairs over the seeds and the scenes that all of them have; `NotRun` without any."""
     seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
     if not seeds:
         raise NotRun(f"a seed that {results.named(pairs[0][0])} and all it is compared with share")
-    return _joint(results, *((replace(a, seeds=seeds), replace(b, seeds=seeds)) for a, b in pairs))
+    cut = [(replace(first, seeds=seeds), replace(second, seeds=seeds)) for first, second in pairs]
+    kept = _common([results.pairs(*pair).scene_indices for pair in cut])
+    return tuple(results.pairs(*pair, scenes=kept) for pair in cut)
 
 
-def _joint(results: Results, *pairs: Pair) -> tuple[Contrast, ...]:
-    """Return contrasts over the scenes that all of them have, so that they resample together."""
-    found = [results.contrast(first, second) for first, second in pairs]
-    kept = set(found[0].pairs.scene_indices)
-    for contrast in found:
-        kept &= set(contrast.pairs.scene_indices)
-    return tuple(results.contrast(*pair, scenes=sorted(kept)) for pair in pairs)
-
-
-def compared(first: Bools, second: Bools, resamples: Resamples) -> Found:
-    """Return the difference of two binary arms [scenes, seeds] with the paper's test."""
-    effect = with_test(success_effect(first, second, resamples))
-    return Found(
-        value=effect.value,
-        interval=effect.interval if effect.n_scenes >= MIN_SCENES else None,
-        unit=effect.unit,
-        n_scenes=effect.n_scenes,
-        test=effect.test,
-        mde=effect.least,
-        telling_mde=TELLING_PP,
-        counts=str(effect.counts),
-    )
-
-
-def _outcomes(
-    first: Cell, second: Cell, ended: Callable[[Trials], Bools], other_noise: bool = False
-) -> Quantity:
-    def found(results: Results) -> Found:
-        contrast = results.contrast(first, second, other_noise=other_noise)
-        pairs = contrast.pairs
-        return compared(ended(pairs.first), ended(pairs.second), contrast.resamples)
-
-    return found
-
-
-def _common(seeds: Sequence[tuple[int, ...]]) -> tuple[int, ...]:
-    first, *others = seeds
-    return tuple(seed for seed in first if all(seed in other for other in others))
+def _common(several: Sequence[tuple[int, ...]]) -> tuple[int, ...]:
+    first, *others = several
+    return tuple(each for each in first if all(each in other for other in others))

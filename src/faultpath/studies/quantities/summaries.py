@@ -1,15 +1,14 @@
 """Quantities over several cells at once: orderings, shares of scenes, rank correlations."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import success_rate
+from faultpath.statistics import Contrast, success_rate
 from faultpath.studies.cells import Cell, of_seed
-from faultpath.studies.quantities.differences import together
-from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.quantities.differences import contrast, joint
+from faultpath.studies.quantities.quantity import Quantity, Undecidable, decisive
 from faultpath.studies.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
 from faultpath.studies.results import Results
 
@@ -25,9 +24,9 @@ def at_lower_success(
     `Undecidable` when both succeed equally often.
     """
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         (one, error_one), (two, error_two) = first, second
-        difference = results.contrast(of_seed(one), of_seed(two)).success.value
+        difference = contrast(results, of_seed(one), of_seed(two)).value
         if difference == 0:
             raise Undecidable("both conditions succeed equally often")
         ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
@@ -39,11 +38,11 @@ def at_lower_success(
 def share(cells: Sequence[Cell], of: Callable[[Bools], Bools]) -> Quantity:
     """Return the share of scenes that `of` finds in `[cells, scenes]` successes of seed 0."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         own = [of_seed(cell) for cell in cells]
-        contrasts = together(results, *((cell, cell) for cell in own))
-        success = np.stack([each.pairs.first.success[:, 0] for each in contrasts])
-        return replace(of_effect(success_rate(of(success), contrasts[0].resamples)), mde=None)
+        every = joint(results, *((cell, cell) for cell in own))
+        success = np.stack([pairs.first.success[:, 0] for pairs in every])
+        return decisive(success_rate(of(success), results.resamples(every[0])))
 
     return found
 
@@ -61,14 +60,14 @@ def in_none(success: Bools) -> Bools:
 def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
     """Return Spearman's correlation of success with the median of something measured."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         rates = [results.rate(cell) for cell, _ in cells]
         measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
         value = spearman(np.array([rate.value for rate in rates]), measured)
         if value is None:
             raise Undecidable("one side is the same in all cells")
         n_scenes = min(rate.n_scenes for rate in rates)
-        return Found(value, None, "rank correlation", n_scenes)
+        return Contrast(value, "rank correlation", n_scenes, against_zero=False)
 
     return found
 

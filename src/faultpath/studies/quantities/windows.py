@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
-from faultpath.studies.quantities.found import Found, Quantity, Undecidable, of_effect
+from faultpath.studies.quantities.quantity import Quantity, Undecidable, decisive
 from faultpath.studies.results import NotRun, Results
 
 Subject: TypeAlias = tuple[Measurement, ...]
@@ -24,9 +24,9 @@ TELLING_SHARE = 0.2
 def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
     """Return a quantile of `first` minus that of `second`."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         one, two = quantiles(results, q, first, second)
-        return of_effect(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
+        return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
 
     return found
 
@@ -39,12 +39,12 @@ def difference_of_changes(
     `size`: changes are compared whatever their sign.
     """
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         ends = quantiles(results, 0.5, *first, *second)
         changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
         if size:
             changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
-        return of_effect(weighted_sum([1, -1], changes))
+        return decisive(weighted_sum([1, -1], changes))
 
     return found
 
@@ -52,13 +52,13 @@ def difference_of_changes(
 def ratio(first: Subject, second: Subject) -> Quantity:
     """Return the median of `first` over that of `second`."""
 
-    def found(results: Results) -> Found:
+    def found(results: Results) -> Contrast:
         one, two = quantiles(results, 0.5, first, second)
         if not (two.value > 0 and bool((two.draws > 0).all())):
             raise Undecidable("the median that is divided by is 0")
         draws = one.draws / two.draws
-        effect = replace(one, value=one.value / two.value, draws=draws, unit="times")
-        return replace(of_effect(effect), mde=None)  # a ratio is not set against 0
+        value = one.value / two.value
+        return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
 
     return found
 
