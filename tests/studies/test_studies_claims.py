@@ -14,8 +14,10 @@ from faultpath.studies.cells import Cell
 from faultpath.studies.claims import STATEMENTS, evaluate, ledger
 from faultpath.studies.claims.rules import Detected
 from faultpath.studies.claims.statement import Statement, answered, verdict
+from faultpath.studies.claims.turning import TurnsDown
 from faultpath.studies.pages import table_1, table_4
 from faultpath.studies.published import published_claims
+from faultpath.studies.quantities.differences import together
 from faultpath.studies.results import Results
 from faultpath.trials import OutcomeTable, Status
 
@@ -150,8 +152,10 @@ def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: 
         return Status.FAILED if lost else as_published(cell, seed, scene)
 
     run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
-    found = STATEMENTS["C26"][0].quantity(run)
-    assert found.n_scenes == SCENES - 2
+    statement = STATEMENTS["C26"][0]
+    assert isinstance(statement, TurnsDown)
+    for found in together(run, statement.before, statement.after):
+        assert found.n_scenes == SCENES - 2
 
 
 def test_few_scenes_decide_nothing_but_what_is_reported() -> None:
