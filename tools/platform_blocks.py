@@ -5,7 +5,7 @@ from operator import itemgetter
 
 from blocks import ROOT, Wrong, tabled
 
-from faultpath.quadrotor.platform import platform, platform_hash
+from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.tables import MISSING
 
 RECORDS = ROOT / "docs" / "design" / "platform-search"
@@ -21,9 +21,11 @@ def fill(name: str) -> str:
 
 
 def freeze() -> None:
-    """Make what the code says now the frozen platform."""
-    now = {"hash": platform_hash(), "platform": platform()}
-    (RECORDS / "frozen.json").write_text(json.dumps(now, indent=1) + "\n", "utf-8")
+    """Make what the code says now the frozen platforms."""
+    for name, platform in PLATFORMS.items():
+        now = {"hash": platform.hash, "platform": platform.described()}
+        path = RECORDS / f"platform-{name}.json"
+        path.write_text(json.dumps(now, indent=1) + "\n", "utf-8")
 
 
 def searched(results: list[dict]) -> str:
@@ -51,7 +53,10 @@ def _counts(result: dict) -> str:
 
 
 def frozen(record: dict) -> str:
-    """Return a frozen planner and wind levels."""
+    """Return a frozen platform, a row a part."""
+    if "winds" in record["platform"]:
+        parts = {name: _flat(value) for name, value in record["platform"].items()}
+        return _parts(parts, record["hash"])
     planner, wind = record["platform"]["planner"], record["platform"]["wind"]
     parts = {
         "sampler": planner["sampler"],
@@ -62,9 +67,26 @@ def frozen(record: dict) -> str:
     }
     if "perception" in record["platform"]:
         parts["perception"] = record["platform"]["perception"]
+    return _parts(parts, record["hash"])
+
+
+def _flat(value: object, within: str = "") -> dict[str, object]:
+    """Return the leaves of nested settings by their dotted names."""
+    if not isinstance(value, dict):
+        return {within: value}
+    found: dict[str, object] = {}
+    for key, each in value.items():
+        found |= _flat(each, f"{within}.{key}" if within else key)
+    return found
+
+
+def _parts(parts: dict[str, dict], digest: str) -> str:
     rows = [
-        {"name": name, "settings": ", ".join(f"{key} {value}" for key, value in values.items())}
+        {
+            "name": name,
+            "settings": ", ".join(f"{key} {value}".strip() for key, value in values.items()),
+        }
         for name, values in parts.items()
     ]
     table = tabled("frozen", rows, {"settings": "{settings}"}, words="settings")
-    return f"{table}\n\nHash `{record['hash']}`."
+    return f"{table}\n\nHash `{digest}`."

@@ -95,8 +95,9 @@ class Toy(Task):
         }
 
 
-def make(name: str, seed: int, data: Path) -> Task:
+def make(name: str, seed: int, data: Path, platform: Any = None) -> Task:
     """Make a task for the catalogue; the file `data/gate` slows it down while it exists."""
+    del platform
     if name == "mistake":
         raise UserError("the toy has no data: make some.")
     if name == "bug":

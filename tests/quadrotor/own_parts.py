@@ -62,6 +62,6 @@ def wind(seed):
 def planner(seed):
     return Halved(
         AutoregressiveSampler(OPTIONS.sampling),
-        NavigationCost(TerminalGoal(), OPTIONS.settings.terminal),
-        ScaledTemperature(OPTIONS.settings.temperature),
+        NavigationCost(TerminalGoal(), OPTIONS.settings.planner.weights),
+        ScaledTemperature(OPTIONS.settings.planner.temperature),
     )

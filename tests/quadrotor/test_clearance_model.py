@@ -10,13 +10,21 @@ from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath.quadrotor.perception.seen import NEAR_M, UNSEEN_M, DepthClearance, in_view, near
+from faultpath.quadrotor.perception.seen import (
+    DepthClearance,
+    PerceptionSettings,
+    in_view,
+    near,
+)
 
 POINTS = 96
 
 
 def draws(seed: int = 0) -> torch.Generator:
     return torch.Generator().manual_seed(seed)
+
+
+NEAR_M, UNSEEN_M = PerceptionSettings().near_m, PerceptionSettings().unseen_m
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +113,7 @@ def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: Cl
     world = so3.rotate(rotation[..., chosen, None], local.double()) + position.T[:, chosen, None]
     found = perception.query(world.float(), chosen)
     expected = model.query(model.encode(images(4))[:, chosen].contiguous(), local)
-    shown = in_view(local) | near(local)
+    shown = in_view(local) | near(local, NEAR_M)
     assert shown.any()
     torch.testing.assert_close(found[shown], expected[shown], atol=1e-3, rtol=0)
 
@@ -122,7 +130,7 @@ def test_what_no_pixel_can_show_has_little_clearance_and_what_one_shows_keeps_it
     at = points(1, 960)
     found = perception.query(at, [0])
     free = generous.query(generous.encode(images(1)), at)
-    shown = in_view(at) | near(at)
+    shown = in_view(at) | near(at, NEAR_M)
     capped = ~shown & (free > UNSEEN_M)
     assert capped.sum() > 20
     assert (found[capped] == UNSEEN_M).all()
@@ -142,8 +150,8 @@ def test_the_view_is_the_images_pyramid_and_the_vehicles_own_place_needs_no_pixe
     ):
         assert bool(in_view(point)) is expected
     behind = torch.tensor([-1.0, 0.0, 0.0])
-    assert near(behind * (NEAR_M - 0.01))
-    assert not near(behind * (NEAR_M + 0.01))
+    assert near(behind * (NEAR_M - 0.01), NEAR_M)
+    assert not near(behind * (NEAR_M + 0.01), NEAR_M)
 
 
 def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):
@@ -151,6 +159,65 @@ def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):
     before = perception.query(points(2), [0, 1])
     perception.capture(images(3)[1:], position, rotation.movedim(-1, 0))
     assert not torch.equal(perception.query(points(2), [0, 1]), before)
+
+
+def test_known_floor_and_ceiling_bound_the_clearance_as_delivered(model: ClearanceModel):
+    perception, position, rotation = captured(model, 2)
+    world = points(2)
+    without = perception.query(world, [0, 1])
+    limits = torch.tensor([[-0.3, 0.4], [-9.0, 9.0]])
+    perception.capture(images(2), position, rotation.movedim(-1, 0), limits)
+    found = perception.query(world, [0, 1])
+    height = world[2]
+    expected = without[0].minimum(height[0] + 0.3).minimum(0.4 - height[0])
+    torch.testing.assert_close(found[0], expected)
+    assert (found[0] < without[0]).any()
+    assert torch.equal(found[1], without[1]), "limits far away change nothing"
+
+
+def remembering(model: ClearanceModel, images_kept: int, every: int = 1) -> DepthClearance:
+    with native.using(native.PORTABLE):
+        asked = PerceptionSettings(remembered=images_kept, remembered_every=every)
+        return DepthClearance(model, settings=asked)
+
+
+def turned(degrees: float) -> torch.Tensor:
+    yaw = torch.deg2rad(torch.tensor(degrees, dtype=torch.float64))
+    return so3.from_yaw(yaw)[None]
+
+
+def test_what_left_the_view_keeps_the_clearance_that_the_last_image_of_it_showed(
+    model: ClearanceModel,
+):
+    """The vehicle turns about: what lies behind was seen two looks ago, from a place that the
+    state of then tells."""
+    here = torch.zeros(1, 3, dtype=torch.float64)
+    there = torch.tensor([[0.5, 0.0, 0.0]], dtype=torch.float64)
+    looks = images(3)
+    perception = remembering(model, 2)
+    for at, way, image in ((there, 0.0, 0), (here, 90.0, 1), (here, 180.0, 2)):
+        perception.capture(looks[image : image + 1], at, turned(way))
+    asked = points(1, 960)
+    found = perception.query(asked, [0])
+    first = remembering(model, 0)
+    first.capture(looks[:1], there, turned(0.0))
+    local = asked - there.T.float()[..., None]
+    ahead = in_view(local) & (asked.square().sum(0) > NEAR_M**2)
+    assert ahead.any()
+    assert torch.equal(found[ahead], first.query(asked, [0])[ahead])
+
+
+def test_only_so_many_images_so_far_apart_are_remembered(model: ClearanceModel):
+    here, looks = torch.zeros(1, 3, dtype=torch.float64), images(5)
+    several, last = remembering(model, 1, every=2), remembering(model, 0)
+    for image, way in enumerate((0.0, 0.0, 180.0, 180.0, 180.0)):
+        for perception in (several, last):
+            perception.capture(looks[image : image + 1], here, turned(way))
+    asked = points(1, 960)
+    assert torch.equal(several.query(asked, [0]), last.query(asked, [0])), "two looks ago: behind"
+    for perception in (several, last):
+        perception.capture(looks[:1], here, turned(0.0))
+    assert not torch.equal(several.query(asked, [0]), last.query(asked, [0]))
 
 
 def test_a_query_without_an_image_is_refused(model: ClearanceModel):

@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 import torch
 
+from faultpath.quadrotor.flight_settings import (
+    ControllerSettings,
+    FlightSettings,
+    PerturbationSettings,
+)
+from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.training import flight, perturbation
-from faultpath.quadrotor.training.controller import ControllerSettings
-from faultpath.quadrotor.training.flight import EPISODE_STEPS, FlightSettings, fly
-from faultpath.quadrotor.training.perturbation import PerturbationSettings
+from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
 from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -36,16 +40,15 @@ def within(flights):
 
 @pytest.fixture(scope="module", params=["nominal", "wind"])
 def flights(request):
-    return fly(request.param, range(COUNT), 0, FlightSettings())
+    return fly(request.param, range(COUNT), 0)
 
 
 @pytest.mark.parametrize("pool", ["nominal", "wind"])
 def test_an_episode_is_the_same_in_any_batch_to_the_bit(pool, monkeypatch):
     shorten(monkeypatch, 40)
-    settings = FlightSettings()
-    together = fly(pool, range(45), 3, settings)
+    together = fly(pool, range(45), 3)
     for company in ([7], [40, 7, 0], list(range(7, 72))):
-        other = fly(pool, company, 3, settings)
+        other = fly(pool, company, 3)
         lane = company.index(7)
         assert np.array_equal(together.values[..., 7], other.values[..., lane], equal_nan=True)
         assert together.steps[7] == other.steps[lane]
@@ -54,9 +57,8 @@ def test_an_episode_is_the_same_in_any_batch_to_the_bit(pool, monkeypatch):
 
 def test_episodes_belong_to_pool_number_and_seed(monkeypatch):
     shorten(monkeypatch, 2)
-    settings = FlightSettings()
     starts = [
-        fly(pool, [episode], seed, settings).values[:3, 0, 0].tolist()
+        fly(pool, [episode], seed).values[:3, 0, 0].tolist()
         for pool, episode, seed in (
             ("nominal", 0, 0),
             ("wind", 0, 0),
@@ -105,7 +107,7 @@ def test_nearly_all_episodes_last_and_what_is_kept_had_not_diverged(flights):
 def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     shorten(monkeypatch, 40)
     tight = FlightSettings(tilt_limit_deg=35.0)
-    flights = fly("nominal", range(64), 0, tight)
+    flights = fly("nominal", range(64), 0, Platform(collection=tight))
     short = np.flatnonzero(flights.steps < 40)
     assert len(short) > 10
     up = signal(flights, "rotation")[8]
@@ -151,7 +153,7 @@ def test_perturbations_are_correlated_as_the_planner_s_noise_and_stationary():
 def test_an_undisturbed_vehicle_comes_to_rest_at_its_last_waypoint_on_its_hover_thrust():
     calm = PerturbationSettings(clean_share=1.0, clean_strength=0.0, pulses_per_s=0.0)
     settings = FlightSettings(controller=ControllerSettings(waypoints=1), perturbation=calm)
-    flights = fly("nominal", range(64), 0, settings)
+    flights = fly("nominal", range(64), 0, Platform(collection=settings))
     hover = np.array([v.mass_kg * GRAVITY_MPS2 / v.thrust_scale for v in flights.vehicles])
     assert (flights.steps == EPISODE_STEPS).all()
     at_rest = np.linalg.norm(signal(flights, "velocity")[:, -1], axis=0) < 0.3

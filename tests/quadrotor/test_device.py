@@ -20,10 +20,12 @@ from faultpath.errors import UserError
 from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
 from faultpath.quadrotor import models, native, so3, system
+from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.modules.vehicle import ACTION
-from faultpath.quadrotor.options import PlannerSettings, QuadrotorOptions
+from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import SamplerSettings
+from faultpath.quadrotor.platform import PlannerSettings, Platform
 from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
@@ -76,8 +78,9 @@ def _forget() -> None:
 
 def _system(options: dict[str, str]) -> Quadrotor:
     """Return a quadrotor for CUDA, past the question whether there is any."""
-    few = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more would only repeat operations
-    parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", "settings": few})
+    planner = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more only repeats operations
+    few = {"settings": Platform(planner=planner), "checkpoints": shipped_folder()}
+    parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", **few})
     return Quadrotor(parsed)
 
 

@@ -13,7 +13,7 @@ from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
-from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.training.flight import fly
 from faultpath.quadrotor.training.playback import CODE
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.quality_rows import position_errors
@@ -30,7 +30,7 @@ SHARED, AT_RECONSTRUCTION, AT_PREDICTOR = (
 @pytest.fixture(scope="module")
 def recorded() -> Recorded:
     """Windows of five windy collection flights in place of closed-loop ones."""
-    flights, episodes = fly("wind", range(5), 0, FlightSettings()), range(5)
+    flights, episodes = fly("wind", range(5), 0), range(5)
     flown = FlightData.decode(
         "test", encode_rows(episodes, flights), encode_episodes(episodes, flights)
     )

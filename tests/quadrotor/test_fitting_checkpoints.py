@@ -54,7 +54,7 @@ def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it(tmp_path: 
 def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
     fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda platform="first": tmp_path / "package")
     ship(fitted)
     found = checkpoint_path("toy", 0)
     assert found.parent == tmp_path / "package"
@@ -65,7 +65,7 @@ def test_checkpoints_ship_inside_the_package() -> None:
     import faultpath.quadrotor
 
     assert faultpath.quadrotor.__file__ is not None
-    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints"
+    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints" / "first"
 
 
 def test_every_shipped_checkpoint_is_the_one_of_its_card() -> None:

@@ -10,6 +10,7 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import Stopped, UserError
+from faultpath.quadrotor.platform import FIRST
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
@@ -18,6 +19,7 @@ from faultpath.quadrotor.training.job_pools import missing_pools
 from faultpath.quadrotor.training.jobs import Overview, Places, Report, run_jobs
 from faultpath.quadrotor.training.journal import journal_path
 from faultpath.quadrotor.training.provenance import Provenance
+from faultpath.quadrotor.vehicle import VehicleRanges
 from faultpath.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent
@@ -93,6 +95,8 @@ def test_a_pool_of_other_code_is_not_fitted_on(
         pool=pool,
         episodes=1,
         seed=0,
+        flight=FIRST.collection,
+        vehicle=FIRST.ranges,
         wind={},
         code_sha256=code,
         faultpath_version="0",
@@ -109,6 +113,11 @@ def test_a_pool_of_other_code_is_not_fitted_on(
     path.write_bytes(provenance.model_copy(update={"code_sha256": "other"}).encode())
     with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
         run_jobs(wanted, Places(tmp_path, tmp_path / "out"), 0, print, print)
+    heavier = {"vehicle": VehicleRanges(mass=0.9)}
+    path.write_bytes(provenance.model_copy(update=heavier).encode())
+    if pool == "nominal":  # of flights in closed loop the code tells, by the platform's hash
+        with pytest.raises(UserError, match="was collected for another platform than first"):
+            job_pools.check_pools(wanted, tmp_path)
 
 
 def test_each_missing_pool_is_made_by_its_own_collector(
@@ -117,7 +126,8 @@ def test_each_missing_pool_is_made_by_its_own_collector(
     made: list[str] = []
     told: list[tuple[str, float, float]] = []
 
-    def flights(folder: Path, pools: list[str], workers: int, progress) -> None:
+    def flights(folder: Path, pools: list[str], workers: int, progress, platform) -> None:
+        assert platform == FIRST
         made.extend(f"{folder.name}/{pool} by {workers}" for pool in pools)
         progress(1.0, 2.0)
 
@@ -127,7 +137,8 @@ def test_each_missing_pool_is_made_by_its_own_collector(
 
     monkeypatch.setattr(job_pools, "collect", flights)
 
-    def closed_loop(folder: Path, workers: int, progress) -> None:
+    def closed_loop(folder: Path, workers: int, platform, progress) -> None:
+        assert platform == "first"
         made.append(f"{folder.name}/closed loop by {workers}")
         progress(5, 6)
 
@@ -194,7 +205,7 @@ def test_force_fits_again(tmp_path: Path) -> None:
 
 def test_finished_models_are_shipped_when_asked(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     shipped: list[Path] = []
-    monkeypatch.setattr(jobs, "ship", shipped.append)
+    monkeypatch.setattr(jobs, "ship", lambda path, platform: shipped.append(path))
     _run(tmp_path, [Job(entry("one"), 0)])
     assert shipped == []
     _run(tmp_path, [Job(entry("one"), 0), Job(entry("mistake"), 0)], shipped=True)
@@ -274,8 +285,8 @@ def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(name: str, seed: int, data: Path) -> Toy:
-        del name, seed, data
+    def stop(name: str, seed: int, data: Path, platform) -> Toy:
+        del name, seed, data, platform
         raise KeyboardInterrupt
 
     stopping = catalogue.Entry("stop", stop, (), "", 0.5, seeds=(0,))

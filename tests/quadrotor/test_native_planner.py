@@ -12,6 +12,7 @@ from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
 from faultpath.quadrotor.planner import (
     AutoregressiveSampler,
+    BlendedGoal,
     CostWeights,
     GoalCost,
     NavigationCost,
@@ -71,6 +72,9 @@ def test_candidates_are_the_portable_ones(isa: str, stream: torch.Generator) -> 
     close(compiled, under(native.PORTABLE, sampler.candidates, plan, hover, noise))
 
 
+GOALS = ["terminal", "running", "blended"]
+
+
 def scored(stream: torch.Generator, candidates: int) -> Scored:
     def draw(*shape: int) -> torch.Tensor:
         return torch.randn(*shape, generator=stream)
@@ -89,13 +93,22 @@ def scored(stream: torch.Generator, candidates: int) -> Scored:
 
 
 @pytest.mark.parametrize("candidates", [64, 50])
-@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal()], ids=["terminal", "running"])
+@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal(), BlendedGoal(0.35)], ids=GOALS)
 def test_costs_are_the_portable_ones(
     isa: str, goal: GoalCost, candidates: int, stream: torch.Generator
 ) -> None:
     cost = NavigationCost(goal, CostWeights())
     case = scored(stream, candidates)
     close(*both(isa, cost, case))
+
+
+@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal()], ids=GOALS[:2])
+def test_a_blend_at_its_ends_is_the_end_to_the_bit(
+    isa: str, goal: GoalCost, stream: torch.Generator
+) -> None:
+    case = scored(stream, 64)
+    blended = under(isa, NavigationCost(BlendedGoal(goal.running)), case)
+    assert torch.equal(under(isa, NavigationCost(goal), case), blended)
 
 
 @pytest.mark.parametrize("term", ["goal", "risk", "hit", "speed", "heading", "rate_effort"])

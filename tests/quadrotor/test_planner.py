@@ -14,6 +14,7 @@ from faultpath.quadrotor.planner import (
     ScaledTemperature,
     Scored,
     TerminalGoal,
+    goal_cost,
     shift,
 )
 from faultpath.quadrotor.planner.sampler import standard_normals
@@ -96,6 +97,18 @@ def test_goal_costs_differ_in_the_way_that_matters():
     case = scored(torch.stack([straight, dip], dim=-1), torch.zeros(3, 1))
     assert torch.equal(TerminalGoal().distance(case), torch.zeros(1, 2))
     assert RunningGoal().distance(case)[0].tolist() == pytest.approx([0, 1 / 3])
+
+
+def test_stiffness_is_one_weight_between_both_goal_costs():
+    straight = torch.zeros(3, 1, 3)
+    dip = straight.clone()
+    dip[2, 0, 1] = -1.0
+    dip[2, 0, 2] = -0.2
+    case = scored(torch.stack([straight, dip], dim=-1), torch.zeros(3, 1))
+    found = [goal_cost(share).distance(case)[0, 1].item() for share in (0.0, 0.35, 1.0)]
+    assert found == pytest.approx([0.2, 0.65 * 0.2 + 0.35 * 0.4, 0.4])
+    ends = (goal_cost(0.0), goal_cost(1.0))
+    assert [type(each) for each in ends] == [TerminalGoal, RunningGoal]
 
 
 def test_temperatures():

@@ -12,7 +12,7 @@ from flights import fly as fly_trials
 from torch import Tensor
 
 from faultpath.errors import UserError
-from faultpath.quadrotor import so3, wind
+from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State, padded_lanes
@@ -23,6 +23,7 @@ from faultpath.quadrotor.vehicle import (
     draw,
 )
 from faultpath.quadrotor.vehicle_batch import Vehicle
+from faultpath.quadrotor.wind import Winds
 from faultpath.quadrotor.world import World
 from faultpath.trials import SystemSpec, load_system
 
@@ -59,7 +60,7 @@ def manoeuvres() -> Tensor:
 def blowing(kind: str) -> Tensor:
     steps = CONTROLS * STEPS_PER_CONTROL
     if kind == "varying":
-        series = [wind.pool_series(1, lane, steps / 500) for lane in range(LANES)]
+        series = [Winds().pool_series(1, lane, steps / 500) for lane in range(LANES)]
         return torch.from_numpy(np.stack(series, axis=-1)).double()
     stream = torch.Generator().manual_seed(9)
     return (4 * torch.randn(3, LANES, dtype=F64, generator=stream)).expand(steps, 3, LANES)

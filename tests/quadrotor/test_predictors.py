@@ -8,6 +8,7 @@ import torch
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors import (
     Calibration,
+    History,
     KinematicIntegrator,
     Physics,
     PredictorInputs,
@@ -124,6 +125,25 @@ def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
     assert float(rolled.velocities[2, 0, 4, 0]) == pytest.approx(
         -GRAVITY_MPS2 * NOMINAL_MOTOR_TIME_CONSTANT_S, rel=0.01
     )
+
+
+def test_motors_that_follow_the_executed_commands_need_not_be_told():
+    """A climb that was commanded for long: the replay knows the thrust from the history alone."""
+    given = inputs(thrust=0.0)
+    past = History(
+        velocity_mps=torch.zeros(3, 12, 1, 1, dtype=torch.float64),
+        rotation=torch.eye(3, dtype=torch.float64)[..., None, None, None].expand(3, 3, 12, 1, 1),
+        rate_radps=torch.zeros(3, 12, 1, 1, dtype=torch.float64),
+        commands=commands(1.2 * GRAVITY_MPS2, candidates=1)[:12].movedim(0, 1),
+        mass_kg=torch.ones(1, 1, dtype=torch.float64),
+    )
+    predictor = TrueParameter(follows_motors=True)
+    code = predictor.encode(past)
+    assert code.shape == (32, 1, 1)
+    told = replace(inputs(thrust=1.2 * GRAVITY_MPS2), code=code)
+    followed = rollout(predictor, replace(given, code=code), commands(GRAVITY_MPS2))
+    expected = rollout(TrueParameter(), told, commands(GRAVITY_MPS2))
+    torch.testing.assert_close(followed.positions, expected.positions)
 
 
 @pytest.mark.parametrize("predictor", PREDICTORS)

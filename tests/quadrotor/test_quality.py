@@ -14,7 +14,8 @@ import torch
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
-from faultpath.quadrotor.models import PREDICTORS
+from faultpath.quadrotor.models import PREDICTORS, Shelf
+from faultpath.quadrotor.platform import FIRST
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork
@@ -31,7 +32,7 @@ from faultpath.quadrotor.training.reconstruction_task import (
     _Samples,
 )
 from faultpath.quadrotor.training.windows import windows_of
-from faultpath.quadrotor.wind import WIND_LEVELS
+from faultpath.quadrotor.wind import Winds
 
 ROOT = Path(__file__).resolve().parents[2]
 EPISODES = {"nominal": 48, "wind": 10}
@@ -45,7 +46,7 @@ def blank(name, seed):
     network = (
         WindNetwork(MODELS[name].calibrated)
         if learns_wind
-        else PREDICTORS[name].load(name, None).network
+        else PREDICTORS[name].load(name, None, Shelf()).network
     )
     draw = torch.Generator().manual_seed(seed)
     network.initialise(draw)
@@ -69,6 +70,7 @@ def save(folder, name, seed, data_sha256=None):
         "training_loss": (),
         "validation": (),
         "duration_s": 0.0,
+        "platform": FIRST.weights_hash(name),
         "torch_version": "",
         "faultpath_version": "",
     }
@@ -164,7 +166,7 @@ def test_resampled_medians_are_medians_of_the_resampled_windows():
 
 @pytest.mark.parametrize("name", ["dki", "true-parameter", "wm-a", "wm-u"])
 def test_an_error_of_zero_is_no_error_to_the_bit(name, windy):
-    made = PREDICTORS[name].load(name, None)
+    made = PREDICTORS[name].load(name, None, Shelf())
     if name.startswith("wm"):
         made.network.load_state_dict(blank(name, 0).state_dict())
     with torch.inference_mode():
@@ -175,7 +177,7 @@ def test_an_error_of_zero_is_no_error_to_the_bit(name, windy):
 
 
 def test_a_delivered_error_scales_mass_up_and_thrust_down_at_every_consumer(windy):
-    made = PREDICTORS["wm-a"].load("wm-a", None)
+    made = PREDICTORS["wm-a"].load("wm-a", None, Shelf())
     with torch.inference_mode():
         present = at_present(windy, made, None, {}, [calibration(0.2)])
     struck = {tap for tap in present.told if tap[0] in windy.calibration}
@@ -269,9 +271,9 @@ def test_an_estimate_reads_nothing_after_the_present(windy):
 
 def test_a_window_has_the_level_of_the_nearest_sustained_wind(windy):
     speed = windy.wind_mps.mean(1).norm(dim=0)
-    found = levels(windy)
+    found = levels(windy, Winds())
     for each, name in zip(speed.tolist(), found, strict=True):
-        distance = {key: abs(each - level.mean_mps) for key, level in WIND_LEVELS.items()}
+        distance = {key: abs(each - level.mean_mps) for key, level in Winds().levels.items()}
         assert distance[name] == min(distance.values())
     assert len(set(found)) > 1
 
@@ -288,7 +290,7 @@ def test_missing_checkpoints_are_named_and_leave_no_row(quality):
 
 def test_weights_without_a_card_are_not_finished(trained, tmp_path):
     shutil.copy(trained / "gru-0.safetensors", tmp_path)
-    assert "gru-0" in Checkpoints(tmp_path).missing
+    assert "gru-0" in Checkpoints(Shelf(FIRST, tmp_path)).missing
 
 
 def test_a_model_of_another_pool_is_refused(data, tmp_path):

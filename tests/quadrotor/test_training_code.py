@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import Root, read_code
+from faultpath.quadrotor.platform import FIRST
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import clearance_data, closed_loop, flight
@@ -17,7 +18,7 @@ SOURCE = Path(__file__).resolve().parents[2] / "src"
 
 
 def _pool(folder: Path) -> None:
-    Shard(str(folder), "wind", 0, 0, 1).fly()
+    Shard(str(folder), "wind", 0, 0, 1, FIRST).fly()
 
 
 def _closed_loop(folder: Path) -> None:

@@ -3,6 +3,7 @@ import pytest
 
 from faultpath.quadrotor import wind
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from faultpath.quadrotor.wind import Winds
 
 LEVELS = ["L0", "L1", "L2", "L3"]
 
@@ -13,37 +14,37 @@ def draws(seed: int = 0) -> np.random.Generator:
 
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_scene_s_wind_depends_on_level_and_scene_alone(level):
-    alone = wind.series(level, "scene-7", 2.0)
+    alone = Winds().series(level, "scene-7", 2.0)
     for other in ("scene-6", "scene-8"):
-        assert np.array_equal(wind.series(level, other, 2.0), alone) == (level == "L0")
+        assert np.array_equal(Winds().series(level, other, 2.0), alone) == (level == "L0")
     assert alone.shape == (1000, 3)
     assert alone.dtype == np.float64
-    assert np.array_equal(wind.series(level, "scene-7", 2.0), alone)
+    assert np.array_equal(Winds().series(level, "scene-7", 2.0), alone)
 
 
 def test_levels_are_not_scaled_copies_of_each_other():
-    calm, strong = wind.series("L1", "a", 1.0), wind.series("L3", "a", 1.0)
+    calm, strong = Winds().series("L1", "a", 1.0), Winds().series("L3", "a", 1.0)
     assert np.linalg.matrix_rank(np.stack([calm.ravel(), strong.ravel()])) == 2
 
 
 def test_a_longer_series_begins_with_the_shorter_one():
-    assert np.array_equal(wind.series("L2", "a", 3.0)[:500], wind.series("L2", "a", 1.0))
+    assert np.array_equal(Winds().series("L2", "a", 3.0)[:500], Winds().series("L2", "a", 1.0))
 
 
 def test_the_still_level_is_still():
-    assert not wind.series("L0", "a", 1.0).any()
+    assert not Winds().series("L0", "a", 1.0).any()
 
 
 @pytest.mark.parametrize(
     ("level", "target_mps2"), [("L1", 0.65), ("L2", 1.4), ("L3", 2.5)], ids=str
 )
 def test_levels_cause_the_accelerations_that_define_them(level, target_mps2):
-    speeds = [np.linalg.norm(wind.series(level, str(i), 5.0, 50), axis=1) for i in range(300)]
+    speeds = [np.linalg.norm(Winds().series(level, str(i), 5.0, 50), axis=1) for i in range(300)]
     assert NOMINAL_DRAG_KGPS[0] * np.median(speeds) == pytest.approx(target_mps2, rel=0.03)
 
 
 def test_evaluation_flow_is_near_horizontal_and_goes_everywhere():
-    means = np.array([wind.series("L3", str(i), 6.0, 20).mean(0) for i in range(400)])
+    means = np.array([Winds().series("L3", str(i), 6.0, 20).mean(0) for i in range(400)])
     elevation = np.degrees(np.arcsin(means[:, 2] / np.linalg.norm(means, axis=1)))
     azimuth = np.degrees(np.arctan2(means[:, 1], means[:, 0]))
     assert np.abs(elevation).max() < 35
@@ -52,17 +53,17 @@ def test_evaluation_flow_is_near_horizontal_and_goes_everywhere():
 
 
 def test_the_pool_holds_strong_vertical_winds():
-    pool = [wind.pool_series(0, episode, 6.0, 20).mean(0) for episode in range(400)]
+    pool = [Winds().pool_series(0, episode, 6.0, 20).mean(0) for episode in range(400)]
     vertical = np.array(pool)[:, 2]
     assert np.quantile(vertical, 0.98) > 6
     assert np.quantile(vertical, 0.02) < -6
 
 
 def test_pool_winds_belong_to_seed_and_episode():
-    one = wind.pool_series(0, 1, 0.5)
-    assert np.array_equal(one, wind.pool_series(0, 1, 0.5))
-    assert not np.array_equal(one, wind.pool_series(1, 1, 0.5))
-    assert not np.array_equal(one, wind.pool_series(0, 2, 0.5))
+    one = Winds().pool_series(0, 1, 0.5)
+    assert np.array_equal(one, Winds().pool_series(0, 1, 0.5))
+    assert not np.array_equal(one, Winds().pool_series(1, 1, 0.5))
+    assert not np.array_equal(one, Winds().pool_series(0, 2, 0.5))
 
 
 @pytest.mark.parametrize("rate_hz", [20, 500])

@@ -37,6 +37,7 @@ class TrainRequest:
 
     names: tuple[str, ...]
     seeds: tuple[int, ...]
+    platform: str | None
     data: Path
     out: Path
     workers: int
@@ -61,13 +62,16 @@ def train(request: TrainRequest) -> int:
     `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
     and data that cannot be collected.
     """
+    from faultpath.quadrotor.choices import PlatformName, platform_name
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.store import make_folder
 
     console = SafeConsole()
     failed = 0
-    chosen = choose(request.names, request.seeds)
+    chosen = choose(
+        request.names, request.seeds, platform_name(request.platform or PlatformName.FIRST)
+    )
     if request.tensorboard is not None:
         tensorboard_writer()
     for place in (request.out, request.tensorboard, request.data):

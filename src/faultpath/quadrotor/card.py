@@ -45,6 +45,8 @@ class ModelCard(BaseModel):
     """Digest of the weights file."""
     duration_s: float
     """Time spent in epochs, all processes together."""
+    platform: str
+    """`Platform.weights_hash`: what decided the data, as far as a platform does."""
     torch_version: str
     faultpath_version: str
 

@@ -13,16 +13,17 @@ from torch import Tensor, nn
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import ModelCard, read_card, stem
+from faultpath.quadrotor.choices import PlatformName
 from faultpath.store.atomic import write
 
 
-def shipped_folder() -> Path:
-    """Return the folder of the checkpoints that come with the package."""
-    return Path(str(files("faultpath.quadrotor"))) / "checkpoints"
+def shipped_folder(platform: str = PlatformName.FIRST) -> Path:
+    """Return the folder of the checkpoints that come with the package for a platform."""
+    return Path(str(files("faultpath.quadrotor"))) / "checkpoints" / platform
 
 
 def checkpoint_path(name: str, seed: int, folder: Path | None = None) -> Path:
-    """Return the weights file of a model, by default among those of the package.
+    """Return the weights file of a model, by default among those of the first platform.
 
     Raises `UserError` when it is not there.
     """
@@ -82,11 +83,11 @@ def save_checkpoint(module: nn.Module, path: Path, card: Mapping[str, Any]) -> M
     return full
 
 
-def ship(path: Path) -> None:
+def ship(path: Path, platform: str = PlatformName.FIRST) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
-    folder = shipped_folder()
+    folder = shipped_folder(platform)
     try:
-        folder.mkdir(exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         for each in (path, path.with_suffix(".json")):
             write(folder / each.name, each.read_bytes())
     except OSError as error:

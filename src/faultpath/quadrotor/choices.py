@@ -8,7 +8,23 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
+from faultpath.errors import UserError
 from faultpath.trials import Offered
+
+
+class PlatformName(StrEnum):
+    """Platforms that are frozen; `platform.PLATFORMS` says what each is."""
+
+    FIRST = "first"
+
+
+def platform_name(text: str) -> PlatformName:
+    """Return the frozen platform of that name; `UserError` where there is none."""
+    try:
+        return PlatformName(text)
+    except ValueError:
+        known = ", ".join(PlatformName)
+        raise UserError(f"there is no platform '{text}': choose from {known}.") from None
 
 
 class Wind(StrEnum):
@@ -35,9 +51,10 @@ class ClearanceName(StrEnum):
 
 
 class PlannerName(StrEnum):
-    """MPPI with the distance to the goal at the end of the horizon or along it, or the
-    cross-entropy method with that at the end."""
+    """MPPI or the cross-entropy method with the distance to the goal that the platform has, or
+    MPPI with that at the end of the horizon or along it."""
 
+    MPPI = "mppi"
     TERMINAL = "terminal"
     RUNNING = "running"
     CEM = "cem"
@@ -83,6 +100,9 @@ class QuadrotorChoices(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
+    platform: Annotated[PlatformName, "Vehicle, winds, planner and perception."] = (
+        PlatformName.FIRST
+    )
     wind: Annotated[Wind, "Wind level."] = Wind.L0
     environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES
     clearance: Annotated[
@@ -101,9 +121,9 @@ class QuadrotorChoices(BaseModel):
     ] = 0
     planner: Annotated[
         PlannerName,
-        "MPPI on the distance to the goal at the horizon's end or along it, or the cross-entropy "
-        "method.",
-    ] = PlannerName.TERMINAL
+        "MPPI or the cross-entropy method, as the platform has them, or MPPI on the distance to "
+        "the goal at the horizon's end or along it.",
+    ] = PlannerName.MPPI
     iterations: Annotated[int, "Of cem: proposals a replan.", Offered(1, 2, 3, 4, 5, 6)] = 3
     elites: Annotated[
         int, "Of cem: best candidates, to which the plan is fitted.", Offered(16, 32, 64, 128, 256)

@@ -8,10 +8,13 @@ from types import MappingProxyType
 from typing import Generic, TypeVar
 
 import torch
+from torch import nn
 
-from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint
+from faultpath.errors import UserError
+from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint, shipped_folder
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.perception import ClearanceModel
+from faultpath.quadrotor.platform import CLEARANCE, FIRST, Platform, name_of
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
@@ -30,46 +33,92 @@ Model = TypeVar("Model", Predictor, Reconstruction)
 
 
 @dataclass(frozen=True)
+class Shelf:
+    """Where trained weights are taken from: those of a platform."""
+
+    platform: Platform = FIRST
+    folder: Path | None = None
+    """`None`: the package's folder of the platform."""
+
+    @property
+    def place(self) -> Path:
+        """The folder; `UserError` for a platform that is not frozen and brings no folder."""
+        if self.folder is not None:
+            return self.folder
+        name = name_of(self.platform)
+        if name is None:
+            raise UserError(
+                f"the platform {self.platform.hash} is not one of the package's: name the folder "
+                "of the models that were fitted for it"
+            )
+        return shipped_folder(name)
+
+    def fill(self, network: nn.Module, name: str, seed: int) -> None:
+        """Fill a network with its weights; `UserError` where they are missing or of another
+        platform."""
+        wanted = self.platform.weights_hash(name)
+        path = checkpoint_path(name, seed, self.place)
+        card = load_checkpoint(network, path)
+        if card.platform != wanted:
+            raise UserError(
+                f"the weights of {card.stem} in {path.parent} were fitted for another platform "
+                f"({card.platform}) than the one that is flown ({wanted}): fit them again for "
+                "this one, or name the folder of its own"
+            )
+
+
+PACKAGE = Shelf()
+"""The shipped weights of the first platform."""
+
+
+@dataclass(frozen=True)
 class Kind(Generic[Model]):
     """A predictor or a wind reconstruction by name."""
 
     description: str
-    build: Callable[[], Model]
+    build: Callable[[Platform], Model]
     """Makes it, with blank weights where it has any: enough to know what it reads."""
 
-    def load(self, name: str, seed: int | None, folder: Path | None = None) -> Model:
-        """Return it as trained with a seed, by default from the package; blank for `None`.
+    def load(self, name: str, seed: int | None, shelf: Shelf) -> Model:
+        """Return it as trained with a seed; blank for `None`.
 
-        Raises `UserError` where there is no checkpoint, or it cannot be read.
+        Raises `UserError` where there is no checkpoint, it cannot be read, or is of another
+        platform.
         """
-        made = self.build()
+        made = self.build(shelf.platform)
         if seed is not None and isinstance(made, _LEARNED):
-            load_checkpoint(made.network, checkpoint_path(name, seed, folder))
+            shelf.fill(made.network, name, seed)
         return made
 
 
 _LEARNED = (AnchoredPredictor, UnanchoredPredictor, RecurrentReconstruction)
 
 
-def _anchored(wind: bool) -> Callable[[], Predictor]:
-    return lambda: AnchoredPredictor(AnchoredPredictor.build_network(), wind)
+def _integrator(drag: bool) -> Callable[[Platform], Predictor]:
+    return lambda platform: KinematicIntegrator(drag, drag_kgps=platform.drag_kgps)
 
 
-def _unanchored() -> Predictor:
+def _anchored(wind: bool) -> Callable[[Platform], Predictor]:
+    network = AnchoredPredictor.build_network
+    return lambda platform: AnchoredPredictor(network(), wind, platform.drag_kgps)
+
+
+def _unanchored(platform: Platform) -> Predictor:
+    del platform
     return UnanchoredPredictor(UnanchoredPredictor.build_network())
 
 
-def _recurrent(calibrated: bool) -> Callable[[], Reconstruction]:
-    return lambda: RecurrentReconstruction(WindNetwork(calibrated))
+def _recurrent(calibrated: bool) -> Callable[[Platform], Reconstruction]:
+    return lambda platform: RecurrentReconstruction(WindNetwork(calibrated))
 
 
 PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
     {
-        "dki": Kind("kinematic integrator", KinematicIntegrator),
-        "dki-drag": Kind(
-            "kinematic integrator with nominal drag", lambda: KinematicIntegrator(drag=True)
+        "dki": Kind("kinematic integrator", _integrator(drag=False)),
+        "dki-drag": Kind("kinematic integrator with nominal drag", _integrator(drag=True)),
+        "true-parameter": Kind(
+            "the vehicle's own parameters", lambda platform: TrueParameter(platform.follows_motors)
         ),
-        "true-parameter": Kind("the vehicle's own parameters", TrueParameter),
         "wm-a": Kind("anchored model", _anchored(wind=False)),
         "wm-a+dcc": Kind("anchored model, calibration noise", _anchored(wind=False)),
         "wm-u": Kind("unanchored model", _unanchored),
@@ -81,7 +130,10 @@ PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
 
 RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
     {
-        "dob": Kind("the disturbance observer", DisturbanceObserver),
+        "dob": Kind(
+            "the disturbance observer",
+            lambda platform: DisturbanceObserver(drag_kgps=platform.drag_kgps),
+        ),
         "gru": Kind("the learned reconstruction", _recurrent(calibrated=True)),
         "gru+dcc": Kind(
             "the learned reconstruction, trained with calibration noise",
@@ -98,36 +150,42 @@ RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
 )
 
 
-def predictor(name: str, seed: int | None, device: torch.device = CPU) -> Predictor:
+def predictor(
+    name: str, seed: int | None, device: torch.device = CPU, shelf: Shelf = PACKAGE
+) -> Predictor:
     """Return a predictor of `PREDICTORS`; `UserError` where a checkpoint is missing."""
-    return _predictor(name, seed, device)
+    return _predictor(name, seed, device, shelf)
 
 
-def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
+def reconstruction(
+    name: str, seed: int | None, device: torch.device = CPU, shelf: Shelf = PACKAGE
+) -> Reconstruction:
     """Return a reconstruction of `RECONSTRUCTIONS`; `UserError` for a missing checkpoint."""
-    return _reconstruction(name, seed, device)
+    return _reconstruction(name, seed, device, shelf)
 
 
-def clearance_model(device: torch.device = CPU) -> ClearanceModel:
+def clearance_model(device: torch.device = CPU, shelf: Shelf = PACKAGE) -> ClearanceModel:
     """Return the trained clearance model; `UserError` where its checkpoint is missing."""
-    return _clearance_model(device)
+    return _clearance_model(device, shelf)
 
 
 @lru_cache
-def _predictor(name: str, seed: int | None, device: torch.device) -> Predictor:
+def _predictor(name: str, seed: int | None, device: torch.device, shelf: Shelf) -> Predictor:
     with device:
-        return PREDICTORS[name].load(name, seed)
+        return PREDICTORS[name].load(name, seed, shelf)
 
 
 @lru_cache
-def _reconstruction(name: str, seed: int | None, device: torch.device) -> Reconstruction:
+def _reconstruction(
+    name: str, seed: int | None, device: torch.device, shelf: Shelf
+) -> Reconstruction:
     with device:
-        return RECONSTRUCTIONS[name].load(name, seed)
+        return RECONSTRUCTIONS[name].load(name, seed, shelf)
 
 
 @lru_cache
-def _clearance_model(device: torch.device) -> ClearanceModel:
+def _clearance_model(device: torch.device, shelf: Shelf) -> ClearanceModel:
     with device:
         model = ClearanceModel()
-    load_checkpoint(model, checkpoint_path("clearance", 0))
+    shelf.fill(model, CLEARANCE, 0)
     return model.eval()

@@ -1,9 +1,9 @@
 """What a user chose of the quadrotor, and the frozen settings behind it."""
 
+from pathlib import Path
 from typing import Self
 
 import torch
-from pydantic import BaseModel, ConfigDict
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.choices import (
@@ -33,29 +33,20 @@ from faultpath.quadrotor.planner import (
     Temperature,
     TerminalGoal,
     WithinBundle,
+    goal_cost,
 )
 from faultpath.quadrotor.plant import Plant, TorchPlant
+from faultpath.quadrotor.platform import FIRST, PLATFORMS, Platform
 from faultpath.trials.options import call
 
 
-class PlannerSettings(BaseModel):
-    """Everything of the planner that the platform search chose; frozen since."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    sampler: SamplerSettings = SamplerSettings()
-    terminal: CostWeights = CostWeights()
-    running: CostWeights = CostWeights(thrust_effort=5.0)
-    """A mean distance gains less from a change of thrust than the distance at the end does, so
-    the same effort weight would weigh more."""
-    temperature: float = 0.08
-    """Fraction of the spread of the better half of the candidates' costs."""
-
-
 class QuadrotorOptions(QuadrotorChoices):
-    """One configuration of the quadrotor: what a user chose, and what is frozen."""
+    """One configuration of the quadrotor: what a user chose, and what is behind it."""
 
-    settings: PlannerSettings = PlannerSettings()
+    settings: Platform = FIRST
+    """The platform of that name; a search puts its own here."""
+    checkpoints: Path | None = None
+    """Folder of the trained models; `None`: the package's of the platform of that name."""
 
     @classmethod
     def of(cls, choices: QuadrotorChoices) -> Self:
@@ -69,6 +60,7 @@ class QuadrotorOptions(QuadrotorChoices):
             ModuleNotFoundError: The plant needs a package that is not installed.
         """
         given = choices.model_dump(include=choices.model_fields_set)
+        given["settings"] = PLATFORMS[choices.platform]
         _check_planner(choices)
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
@@ -108,22 +100,23 @@ class QuadrotorOptions(QuadrotorChoices):
     @property
     def sampling(self) -> SamplerSettings:
         """How many candidates are drawn, and how."""
-        return self.settings.sampler.model_copy(update={"candidates": self.candidates})
+        return self.settings.planner.sampler.model_copy(update={"candidates": self.candidates})
 
     def build_planner(self) -> Planner:
         """Return the planner that the options name."""
+        planner = self.settings.planner
         goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
-            PlannerName.TERMINAL: (TerminalGoal(), self.settings.terminal),
-            PlannerName.RUNNING: (RunningGoal(), self.settings.running),
-            PlannerName.CEM: (TerminalGoal(), self.settings.terminal),
+            PlannerName.TERMINAL: (TerminalGoal(), planner.weights),
+            PlannerName.RUNNING: (RunningGoal(), planner.running),
         }
-        goal, weights = goals[self.planner]
+        own = (goal_cost(planner.goal_running), planner.weights)
+        goal, weights = goals.get(self.planner, own)
         sampler: Sampler = AutoregressiveSampler(self.sampling)
         cost = NavigationCost(goal, weights)
         if self.planner is PlannerName.CEM:
             narrowing = CEMSettings(iterations=self.iterations, elites=self.elites)
             return CEM(sampler, cost, narrowing)
-        temperature: Temperature = ScaledTemperature(self.settings.temperature)
+        temperature: Temperature = ScaledTemperature(planner.temperature)
         if self.sampler is SamplerName.MODE_PRESERVING:
             sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
         return MPPI(sampler, cost, temperature)

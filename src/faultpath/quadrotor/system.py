@@ -15,11 +15,10 @@ from faultpath.interface import Interface
 from faultpath.loop import Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.brought import bring
-from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
 from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.models import clearance_model
+from faultpath.quadrotor.models import Shelf, clearance_model
 from faultpath.quadrotor.modules.clearance import Perception
 from faultpath.quadrotor.modules.planning import Planning
 from faultpath.quadrotor.modules.prediction import modelled
@@ -50,6 +49,7 @@ class Quadrotor(LoopSystem):
         self.parallel = options.device is DeviceName.CPU
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
+        self._shelf = Shelf(options.settings, options.checkpoints)
         self.brought = bring(options.parts, options.sampling)
         self.choices = {choice.name: choice for choice in choices(options, self.brought)}
 
@@ -61,11 +61,11 @@ class Quadrotor(LoopSystem):
     @property
     def interface(self) -> Interface:
         """See `System.interface`; the clearance is asked for along the planner's candidates."""
-        horizon, candidates = self.options.settings.sampler.horizon, self.options.candidates
+        settings, candidates = self.options.settings, self.options.candidates
+        horizon = settings.planner.sampler.horizon
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
-        return quadrotor_interface().shaped(
-            {**clearance, "predicted_motion": (6, horizon, candidates)}
-        )
+        shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
+        return quadrotor_interface(settings.perception.altitude_limits).shaped(shapes)
 
     @property
     @override
@@ -75,7 +75,7 @@ class Quadrotor(LoopSystem):
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
         library = load_library(name)
-        self._scenes.update({scene.id: scene for scene in library.scenes})
+        self._scenes |= {s.id: self.options.settings.scene(s) for s in library.scenes}
         refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
         return Library(name, refs, library.content_hash)
 
@@ -102,7 +102,7 @@ class Quadrotor(LoopSystem):
     def data_files(self) -> Sequence[Path]:
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
         own = (file for part in self.brought.values() for file in part.data_files)
-        return (*_weights(), Path("interface.yaml"), Path("native/source"), *own)
+        return (*_weights(self._shelf.place), Path("interface.yaml"), Path("native/source"), *own)
 
     @property
     @override
@@ -119,7 +119,8 @@ class Quadrotor(LoopSystem):
         options, free, place = self.options, self.options.free_space, self.options.place
 
         def world(scenes: Sequence[str]) -> World:
-            return World(self._records(scenes), options.wind, free, place, options.plant_class)
+            flown, winds = self._records(scenes), options.settings.winds
+            return World(flown, options.wind, free, place, options.plant_class, winds)
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)
@@ -129,7 +130,8 @@ class Quadrotor(LoopSystem):
 
         if options.clearance is ClearanceName.TRUE:
             return VehiclePlant(world, camera=None, field=field)
-        return VehiclePlant(world, camera=camera, field=None)
+        limited = options.settings.perception.altitude_limits
+        return VehiclePlant(world, camera=camera, field=None, limited=limited)
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
@@ -139,8 +141,16 @@ class Quadrotor(LoopSystem):
         found = modelled(predictor, reconstruction, place)
         found.append(Planning(choice.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
-            found.append(Perception(lambda: DepthClearance(clearance_model(place), place)))
+            found.append(self._perception(place))
         return found
+
+    def _perception(self, place: torch.device) -> Perception:
+        settings = self.options.settings.perception
+        shelf = self._shelf
+        return Perception(
+            lambda: DepthClearance(clearance_model(place, shelf), place, settings),
+            settings.altitude_limits,
+        )
 
     @arithmetic()
     @torch.inference_mode()
@@ -161,9 +171,9 @@ class Quadrotor(LoopSystem):
 
 
 @cache
-def _weights() -> tuple[Path, ...]:
-    """Return the weights of the package; their cards decide nothing."""
-    return tuple(sorted(shipped_folder().glob("*.safetensors")))
+def _weights(folder: Path) -> tuple[Path, ...]:
+    """Return the weights in a folder; their cards decide nothing."""
+    return tuple(sorted(folder.glob("*.safetensors")))
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones

@@ -20,6 +20,7 @@ from faultpath.quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
     Kind,
+    Shelf,
     predictor,
     reconstruction,
 )
@@ -49,6 +50,8 @@ class Choice:
     """`None`: the seed of the arm."""
     wind: str | None
     """`None` for a predictor without a wind input."""
+    shelf: Shelf
+    """Where trained weights come from."""
     planner: str | None = None
     """One that the user brings; `None` for that of the options."""
     brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
@@ -59,7 +62,7 @@ class Choice:
         trained = self.predictor_seed if fixed else seed
         if self.predictor in self.brought:
             return self.brought[self.predictor].load(trained, device)
-        return predictor(self.predictor, trained, device)
+        return predictor(self.predictor, trained, device, self.shelf)
 
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
@@ -69,7 +72,7 @@ class Choice:
             return None
         if self.wind in self.brought:
             return self.brought[self.wind].load(seed, device)
-        return reconstruction(self.wind, seed, device)
+        return reconstruction(self.wind, seed, device, self.shelf)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
         """Return the planner for an arm of this seed."""
@@ -104,26 +107,26 @@ def choices(
     options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
 ) -> Iterator[Choice]:
     """Yield every way to wire the quadrotor under these options, with the parts brought to it."""
-    mine = brought or {}
+    mine, shelf = brought or {}, Shelf(options.settings, options.checkpoints)
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
     if _has_wind(chosen, mine):
         for wind in winds:
-            yield Choice(wind, chosen, seed, wind, brought=mine)
+            yield Choice(wind, chosen, seed, wind, shelf, brought=mine)
     for name in (*PREDICTORS, *_of(Predictor, mine)):
         if not _has_wind(name, mine):
-            yield Choice(name, name, None, None, brought=mine)
+            yield Choice(name, name, None, None, shelf, brought=mine)
             continue
-        yield Choice(name, name, None, ZERO_WIND, brought=mine)
+        yield Choice(name, name, None, ZERO_WIND, shelf, brought=mine)
         for wind in winds:
-            yield Choice(f"{name}/{wind}", name, None, wind, brought=mine)
+            yield Choice(f"{name}/{wind}", name, None, wind, shelf, brought=mine)
     for name in _of(Planner, mine):
         if not _has_wind(chosen, mine):
-            yield Choice(name, chosen, seed, None, name, mine)
+            yield Choice(name, chosen, seed, None, shelf, name, mine)
             continue
-        yield Choice(name, chosen, seed, ZERO_WIND, name, mine)
+        yield Choice(name, chosen, seed, ZERO_WIND, shelf, name, mine)
         for wind in winds:
-            yield Choice(f"{name}/{wind}", chosen, seed, wind, name, mine)
+            yield Choice(f"{name}/{wind}", chosen, seed, wind, shelf, name, mine)
 
 
 def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:

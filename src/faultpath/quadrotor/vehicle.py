@@ -18,7 +18,6 @@ CONTROL_RATE_HZ = 20  # [P]
 CONTROL_DT_S = 1 / CONTROL_RATE_HZ
 PLANT_RATE_HZ = 500  # rate of the inner loop and of the integration
 STEPS_PER_CONTROL = PLANT_RATE_HZ // CONTROL_RATE_HZ
-CONTROL_DT_S = 1 / CONTROL_RATE_HZ
 PLANT_DT_S = 1 / PLANT_RATE_HZ
 COLLISION_RADIUS_M = 0.20  # sphere around the position [NavRL, sdf-nmpc use 0.2-0.3]
 
@@ -37,6 +36,7 @@ NOMINAL_DRAG_KGPS = (0.30, 0.30, 0.30)  # [AF blackbird: 0.26, 0.26, 0.30; D]
 
 MIN_THRUST_TO_WEIGHT = 1.5
 
+Range = tuple[float, float]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
@@ -71,17 +71,18 @@ class VehicleRanges:
     thrust_scale: float = 0.5  # relative [P]
     torque_scale: float = 0.5  # relative [P]
     inertia: float = 0.3  # relative, each axis by itself [SJ]
-    motor_time_constant_s: tuple[float, float] = (0.02, 0.08)  # [SJ]
-    drag_kgps: tuple[float, float] = (0.1, 0.5)  # each axis by itself [SJ]
+    motor_time_constant_s: Range = (0.02, 0.08)  # [SJ]
+    drag_kgps: tuple[Range, Range, Range] = ((0.1, 0.5), (0.1, 0.5), (0.1, 0.5))  # by axis [SJ]
 
 
 def draw(generator: np.random.Generator, ranges: VehicleRanges | None = None) -> VehicleParameters:
-    """Return one vehicle drawn from `ranges` (default: the paper's).
+    """Return one vehicle drawn from `ranges` (default: those of the frozen scenes).
 
     A draw is repeated while its effective thrust-to-weight is below 1.5, which would hardly fly,
     or while its moments of inertia belong to no rigid body.
     """
     ranges = ranges or VehicleRanges()
+    x_kgps, y_kgps, z_kgps = ranges.drag_kgps
 
     def about(nominal: float, relative: float) -> float:
         return nominal * (1 + relative * generator.uniform(-1, 1))
@@ -98,9 +99,9 @@ def draw(generator: np.random.Generator, ranges: VehicleRanges | None = None) ->
             ),
             motor_time_constant_s=generator.uniform(*ranges.motor_time_constant_s),
             drag_kgps=(
-                generator.uniform(*ranges.drag_kgps),
-                generator.uniform(*ranges.drag_kgps),
-                generator.uniform(*ranges.drag_kgps),
+                generator.uniform(*x_kgps),
+                generator.uniform(*y_kgps),
+                generator.uniform(*z_kgps),
             ),
         )
         if parameters.thrust_to_weight >= MIN_THRUST_TO_WEIGHT and parameters.is_rigid:

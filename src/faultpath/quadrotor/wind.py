@@ -10,10 +10,10 @@ turns lengths into times is a constant of the level rather than the vehicle's ow
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict
 
 from faultpath.quadrotor.vehicle import PLANT_RATE_HZ
 from faultpath.streams import generator
@@ -29,9 +29,6 @@ TURBULENCE_OVER_MEAN = 0.2
 GUST_DURATION_S = (0.8, 2.0)
 GUST_OVER_MEAN = (0.4, 0.6)
 GUST_ONSET_S = (0.5, 4.0)
-POOL_MEAN_MPS = (0.0, 10.0)
-"""Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction for
-apparent winds that add to the true one."""
 
 
 @dataclass(frozen=True)
@@ -54,39 +51,49 @@ def _level(mean_mps: float, elevation_deg: float = 20.0) -> WindLevel:
     return WindLevel(mean_mps, TURBULENCE_OVER_MEAN * mean_mps, elevation_deg)
 
 
-WIND_LEVELS: Mapping[str, WindLevel] = MappingProxyType(
-    # Median acceleration |B w| of about 0, 0.65, 1.4 and 2.5 m/s^2 at c/m = 0.30 1/s, derived
-    # from the paper's Tables III, IV and VI; the platform may be matched by changing these.
-    {"L0": _level(0.0), "L1": _level(2.0), "L2": _level(4.25), "L3": _level(7.7)}
-)
+class Winds(BaseModel):
+    """How strong the winds of a platform are; turbulence and gust are shares of the mean."""
 
+    model_config = ConfigDict(frozen=True, extra="forbid")
 
-def series(
-    level: str,
-    scene_id: str,
-    duration_s: float,
-    rate_hz: float = PLANT_RATE_HZ,
-    seed: int = 0,
-) -> Array:
-    """Return an evaluation scene's wind, world frame, m/s, [T, 3] with T = duration x rate.
+    means_mps: tuple[float, float, float, float] = (0.0, 2.0, 4.25, 7.7)
+    """Of L0 to L3: with drag over mass of 0.30 1/s a median acceleration |B w| of about 0, 0.65,
+    1.4 and 2.5 m/s^2, derived from the paper's Tables III, IV and VI."""
+    pool_mean_mps: tuple[float, float] = (0.0, 10.0)
+    """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
+    for apparent winds that add to the true one."""
 
-    Keyed by level and scene alone (paper, Section IV-B), so `seed` stays 0 there. A longer
-    series at the same rate begins with the shorter one; `KeyError` for an unknown level.
-    """
-    chosen = WIND_LEVELS[level]
-    return sample(generator(f"wind/{level}", scene_id, seed), chosen, duration_s, rate_hz)
+    @property
+    def levels(self) -> Mapping[str, WindLevel]:
+        """The evaluation's levels by name."""
+        return {f"L{i}": _level(mean) for i, mean in enumerate(self.means_mps)}
 
+    def series(
+        self, level: str, scene_id: str, duration_s: float, rate_hz: float = PLANT_RATE_HZ
+    ) -> Array:
+        """Return an evaluation scene's wind, world frame, m/s, [T, 3] with T = duration x rate.
 
-def pool_series(
-    collection_seed: int, episode: int, duration_s: float, rate_hz: float = PLANT_RATE_HZ
-) -> Array:
-    """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
+        Keyed by level and scene alone (paper, Section IV-B). A longer series at the same rate
+        begins with the shorter one; `KeyError` for an unknown level.
+        """
+        stream = generator(f"wind/{level}", scene_id, 0)
+        return sample(stream, self.levels[level], duration_s, rate_hz)
 
-    The sustained speed is uniform in `POOL_MEAN_MPS` and its direction uniform over the sphere:
-    the reconstruction must be able to answer with vertical winds of about 6 m/s.
-    """
-    stream = generator("wind/collection", str(episode), collection_seed)
-    return sample(stream, _level(stream.uniform(*POOL_MEAN_MPS), 90.0), duration_s, rate_hz)
+    def pool_series(
+        self,
+        collection_seed: int,
+        episode: int,
+        duration_s: float,
+        rate_hz: float = PLANT_RATE_HZ,
+    ) -> Array:
+        """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
+
+        The sustained speed is uniform in `pool_mean_mps` and its direction uniform over the
+        sphere: the reconstruction must be able to answer with vertical winds of about 6 m/s.
+        """
+        stream = generator("wind/collection", str(episode), collection_seed)
+        level = _level(stream.uniform(*self.pool_mean_mps), 90.0)
+        return sample(stream, level, duration_s, rate_hz)
 
 
 def sample(

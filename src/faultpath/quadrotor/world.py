@@ -8,7 +8,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor import wind as wind_model
 from faultpath.quadrotor.contact import Contact, Progress
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.plant import Plant, TorchPlant
@@ -22,6 +21,7 @@ from faultpath.quadrotor.vehicle import (
     STEPS_PER_CONTROL,
 )
 from faultpath.quadrotor.vehicle_batch import Vehicle
+from faultpath.quadrotor.wind import Winds
 
 GOAL_RADIUS_M = 0.5  # paper, Section IV-B
 TIME_LIMIT_S = 12.0  # paper, Section IV-B
@@ -42,10 +42,11 @@ class World:
         free_space: bool,
         device: torch.device = CPU,
         plant: Callable[[Vehicle], Plant] = TorchPlant,
+        winds: Winds | None = None,
     ) -> None:
         order = padded_lanes(len(scenes))
         lanes = [scenes[i] for i in order.tolist()]
-        winds = _wind_series(scenes, level)[..., order]
+        blown = _wind_series(scenes, winds or Winds(), level)[..., order]
         start = State.hover(
             _points([scene.start_m for scene in lanes]),
             torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
@@ -54,7 +55,10 @@ class World:
         self.lanes = order.to(device)
         self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
         self.goal = _points([scene.goal_m for scene in lanes]).to(device)
-        self._winds = winds.to(device)
+        bounds = [(s.bounds.low_m[2], s.bounds.high_m[2]) for s in lanes]
+        self.altitude_limits_m = _points(bounds).to(device)
+        """Floor and ceiling of the arena, `[2, L]`."""
+        self._winds = blown.to(device)
         self._contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
         self._plant = plant(self.vehicle)
         self.plant_state = self._plant.start(start.to(device))
@@ -64,7 +68,7 @@ class World:
             _hash(_row(start, i), scene.content_hash + self._plant.mark)
             for i, scene in enumerate(scenes)
         )
-        self.wind_hashes = tuple(_hash(winds[..., i].numpy()) for i in range(len(scenes)))
+        self.wind_hashes = tuple(_hash(blown[..., i].numpy()) for i in range(len(scenes)))
 
     @property
     def state(self) -> State:
@@ -93,9 +97,9 @@ def _arrival(now: Progress) -> Progress:
     return replace(now, running=now.running & ~there, succeeded=now.succeeded | there)
 
 
-def _wind_series(scenes: Sequence[Scene], level: str) -> Tensor:
+def _wind_series(scenes: Sequence[Scene], winds: Winds, level: str) -> Tensor:
     duration = TIME_LIMIT_S + CONTROL_DT_S
-    series = [wind_model.series(level, scene.id, duration, PLANT_RATE_HZ) for scene in scenes]
+    series = [winds.series(level, scene.id, duration, PLANT_RATE_HZ) for scene in scenes]
     return torch.from_numpy(np.stack(series, axis=-1))
 
 

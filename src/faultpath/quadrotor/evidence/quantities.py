@@ -1,6 +1,6 @@
 """The quantities of a measurement, each a number a window."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import torch
@@ -20,6 +20,9 @@ from faultpath.quadrotor.reconstruction import (
 )
 from faultpath.quadrotor.training.playback import Present, at_present
 from faultpath.quadrotor.training.windows import HISTORY, Windows
+
+Drag = Sequence[float]
+"""By body axis, kg/s."""
 
 
 def check(measurement: Measurement) -> None:
@@ -50,6 +53,11 @@ def _subject(asked: Measurement) -> Subject:
     return Subject.load(quadrotor(asked.recording), asked.subject, asked.seed)
 
 
+def _drag_kgps(subject: Subject) -> Drag:
+    """Return the nominal drag: analytic dynamics and wind map use no vehicle's own."""
+    return subject.system.options.settings.drag_kgps
+
+
 def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:
     return subject.at_present(windows, asked.faults, asked.recording.name)
 
@@ -70,14 +78,17 @@ def _position_response(subject: Subject, asked: Measurement, windows: Windows) -
 def _acceleration_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
     present = _present(subject, asked, windows)
     told = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
+    drag = _drag_kgps(subject)
     believed = replace(windows, mass_kg=told["mass"], thrust_scale=told["thrust_scale"])
     return (
-        (_nominal(believed) - _nominal(windows)) + _wind_term_difference(present, windows)
+        (_nominal(believed, drag) - _nominal(windows, drag))
+        + _wind_term_difference(present, windows, drag)
     ).norm(dim=0)
 
 
 def _wind_term_error(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(_present(subject, asked, windows), windows).norm(dim=0)
+    present = _present(subject, asked, windows)
+    return _wind_term_difference(present, windows, _drag_kgps(subject)).norm(dim=0)
 
 
 _QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
@@ -101,22 +112,22 @@ class _NominalAcceleration(DisturbanceObserver):
         return replace(super().update(memory, delivered), wind_mps=explained)
 
 
-def _nominal(windows: Windows) -> Tensor:
+def _nominal(windows: Windows, drag_kgps: Drag) -> Tensor:
     """Return a_0 over the interval that ends at the present, `[3, W]`, m/s^2.
 
     An observer told the calibration of these windows follows the whole history, for the thrust
     that the motors hold; the start of its belief has decayed by a factor of a million.
     """
     bindings = {"wind": "reconstructed_wind"}
-    return at_present(windows, None, _NominalAcceleration(), bindings).wind()
+    return at_present(windows, None, _NominalAcceleration(drag_kgps=drag_kgps), bindings).wind()
 
 
-def _wind_term_difference(present: Present, windows: Windows) -> Tensor:
+def _wind_term_difference(present: Present, windows: Windows, drag_kgps: Drag) -> Tensor:
     """Return how far B_eta w is from the true one at the present, `[3, W]`, m/s^2."""
 
     def term(map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:
-        drag = LinearDrag().force(windows.rotation[:, :, HISTORY], wind_mps)  # nominal drag
-        return drag / map_mass_kg
+        force = LinearDrag(drag_kgps).force(windows.rotation[:, :, HISTORY], wind_mps)
+        return force / map_mass_kg
 
     believed = term(present["mass", "predictor.wind_map"], present.wind())
     return believed - term(windows.mass_kg, windows.wind_mps[:, HISTORY])

@@ -15,6 +15,7 @@ from faultpath.quadrotor.perception import DepthClearance, mounted
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.taps import Query
 
+LIMITS = Port("altitude_limits", "limits")
 Measure = Callable[[Tensor, Chunk], Tensor]
 """The clearance `[S, N]`, metres, at points `[3, S, N]` (world frame) of a chunk's scenes."""
 
@@ -47,16 +48,15 @@ class Perception(Module):
     """Clearance from the latest depth image, as seen from the pose that the taps deliver."""
 
     name, writes = "perception", ("estimated_clearance",)
-    reads = frozenset(
-        {
+
+    def __init__(self, model: Callable[[], DepthClearance], limited: bool = False) -> None:
+        self._model = model
+        ports = {
             Port("depth", "encoder"),
             Port("position", "capture_frame"),
             Port("attitude", "capture_frame"),
         }
-    )
-
-    def __init__(self, model: Callable[[], DepthClearance]) -> None:
-        self._model = model
+        self.reads = frozenset(ports | {LIMITS} if limited else ports)
 
     def begin(self, batch: Batch) -> DepthClearance:
         """Return the model, which holds the latest image."""
@@ -71,6 +71,7 @@ class Perception(Module):
             inputs["depth", "encoder"],
             inputs["position", "capture_frame"],
             mounted(attitude).movedim(-1, 0),
+            inputs[LIMITS] if LIMITS in self.reads else None,
         )
 
         def measure(points: Tensor, chunk: Chunk) -> Tensor:

@@ -11,16 +11,17 @@ from faultpath.quadrotor.native.lending import lend
 from faultpath.quadrotor.native.library import Kernels
 
 TERMS = (
-    *("goal", "risk", "hit", "margin_m", "radius_m", "speed", "v_max_mps", "heading"),
+    *("running", "goal", "risk", "hit", "margin_m", "radius_m", "speed", "v_max_mps", "heading"),
     *("rate_effort", "thrust_effort"),
 )
-"""What a cost weighs, and the distances and speeds that it weighs against."""
+"""What a cost weighs, and the distances and speeds that it weighs against. `running` is the share
+of the mean distance along the horizon; the rest is the distance at its end."""
 
 
 class _Weights(ctypes.Structure):
     """`Weights` of `costs.cpp`."""
 
-    _fields_ = (("running", ctypes.c_int64), *((name, ctypes.c_float) for name in TERMS))
+    _fields_ = tuple((name, ctypes.c_float) for name in TERMS)
 
 
 class Paths(NamedTuple):
@@ -42,13 +43,12 @@ class Paths(NamedTuple):
     """`[S]`, N."""
 
 
-def cost(kernels: Kernels, terms: Mapping[str, float], running: bool, paths: Paths) -> Tensor:
+def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
     """Return the cost `[S, K]` of candidates.
 
     Args:
         kernels: Compiled kernels.
         terms: A number for each of `TERMS`.
-        running: Whether the mean distance along the horizon counts, not that at its end.
         paths: What is scored; at least one step, and K in whole vectors.
 
     Raises:
@@ -61,7 +61,7 @@ def cost(kernels: Kernels, terms: Mapping[str, float], running: bool, paths: Pat
     moved = (3, scenes, steps, count)
     kernels.call(
         "faultpath_cost",
-        ctypes.byref(_Weights(running=running, **terms)),
+        ctypes.byref(_Weights(**terms)),
         lend("positions", paths.positions.contiguous(), *moved),
         lend("velocities", paths.velocities.contiguous(), *moved),
         lend("rotation", paths.rotation.contiguous(), 3, 3, scenes, count),

@@ -26,6 +26,16 @@ RANGE_M = 6.0
 FOCAL_PX = WIDTH / 2 / tan(radians(FIELD_OF_VIEW_DEG / 2))
 
 
+def described() -> dict[str, float]:
+    """Return what decides an image."""
+    return {
+        "width": WIDTH,
+        "height": HEIGHT,
+        "field_of_view_deg": FIELD_OF_VIEW_DEG,
+        "range_m": RANGE_M,
+    }
+
+
 def mounted(rotation: Tensor) -> Tensor:
     """Return the camera's attitude `[3, 3, *b]` on a body of attitude `rotation`: its heading.
 

@@ -1,8 +1,10 @@
 """The clearance that the latest depth images show, for planners that ask about many points."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import torch
+from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor, nn
 
 from faultpath.quadrotor import native
@@ -14,19 +16,53 @@ from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WID
 from faultpath.quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
-UNSEEN_M = 0.25
-"""Most clearance that space outside the field of view is said to have: the collision radius and
-5 cm. A planner may go there where nothing better offers, and would rather look first (derived,
-docs/design/perception.md)."""
-NEAR_M = 0.4
-"""Around the camera the field of view does not matter: the vehicle has just come through there."""
+
+class PerceptionSettings(BaseModel):
+    """What perception makes of its images (derived, docs/design/perception.md)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    unseen_m: float = 0.25
+    """Most clearance that space outside the field of view is said to have: the collision radius
+    and 5 cm. A planner may go there where nothing better offers, and would rather look first."""
+    near_m: float = 0.4
+    """Around the camera the field of view does not matter: the vehicle has just come through."""
+    altitude_limits: bool = False
+    """Whether floor and ceiling are known from the mission, and bound the clearance."""
+    remembered: int = Field(default=0, ge=0)
+    """Former images that still tell what has left the field of view, each from where it was
+    taken by the state that was delivered then."""
+    remembered_every: int = Field(default=5, ge=1)
+    """Control steps between two of them."""
+
+
+@dataclass(frozen=True)
+class _Captured:
+    """An image as the model sees it, and where it was taken from, single precision."""
+
+    code: Tensor
+    """`[64, B]`"""
+    position: Tensor
+    """`[B, 3]`"""
+    rotation: Tensor
+    """`[B, 3, 3]`"""
+
+    def take(self, scenes: Tensor) -> "_Captured":
+        code = self.code[:, scenes].contiguous()
+        return _Captured(code, self.position[scenes], self.rotation[scenes])
+
+    def frame(self) -> CaptureFrame:
+        return CaptureFrame(
+            self.position.movedim(0, -1).contiguous(), self.rotation.movedim(0, -1).contiguous()
+        )
 
 
 class DepthClearance:
     """The clearance that the latest depth images show, for planners that ask about many points.
 
-    It sees what it is given and nothing else: images and the poses they were taken from. Points
-    that no pixel can show have a clearance of at most `UNSEEN_M`.
+    It sees what it is given and nothing else: images, the poses they were taken from, and perhaps
+    the altitudes between which to fly. Points that no pixel can show have a clearance of at most
+    `PerceptionSettings.unseen_m`.
     """
 
     encoder: CompiledEncoder | None = None
@@ -34,29 +70,45 @@ class DepthClearance:
     queries: CompiledClearance | None = None
     """What answers for it."""
 
-    def __init__(self, model: ClearanceModel, device: torch.device = CPU) -> None:
+    def __init__(
+        self,
+        model: ClearanceModel,
+        device: torch.device = CPU,
+        settings: PerceptionSettings | None = None,
+    ) -> None:
         self._model = model.eval()
-        self._code: Tensor | None = None
-        self._position = self._rotation = torch.empty(0)
+        self._settings = settings or PerceptionSettings()
+        self._captured: tuple[_Captured, ...] = ()
+        """The latest last, then every few steps back; no more than are remembered."""
+        self._limits: Tensor | None = None
         if native.kernels_on(device) is None or not covered(self, DepthClearance):
             return
         if why := _misfit(model):
             tell_portable(f"The clearance model {type(model).__name__}", why)
             return
-        self.encoder, self.queries = _encoder(model), _queries(model)
+        self.encoder, self.queries = _encoder(model), _queries(model, self._settings)
 
     @torch.no_grad()
-    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
+    def capture(
+        self,
+        depth: Tensor,
+        position: Tensor,
+        rotation: Tensor,
+        limits: Tensor | None = None,
+    ) -> None:
         """Encode the images of all scenes: once a replan, however often it is queried.
 
         Args:
             depth: z-depth `[B, 36, 64]`, m.
             position: World frame, m, `[B, 3]`.
             rotation: Body to world, `[B, 3, 3]`.
+            limits: Altitudes of floor and ceiling, world frame, m, `[B, 2]`, if they are known.
         """
         encode = self._model.encode if self.encoder is None else self.encoder
-        self._code = encode(depth.float())
-        self._position, self._rotation = position.float(), rotation.float()
+        taken = _Captured(encode(depth.float()), position.float(), rotation.float())
+        past = self._settings.remembered * self._settings.remembered_every
+        self._captured = (*self._captured, taken)[-1 - past :]
+        self._limits = None if limits is None else limits.float()
 
     @torch.no_grad()
     def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
@@ -64,19 +116,45 @@ class DepthClearance:
 
         A scene's values do not depend on which others are asked for. N is a multiple of 32.
         """
-        if self._code is None:
+        if not self._captured:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
         chosen = torch.as_tensor(scenes)
-        code = self._code[:, chosen].contiguous()
-        position, rotation = self._position[chosen], self._rotation[chosen]
+        latest, *former = self._captured[:: -self._settings.remembered_every]
+        clearance = self._shown(latest.take(chosen), points)
+        if former:
+            clearance = self._recalled(clearance, latest, former, points, chosen)
+        if self._limits is not None:
+            floor, ceiling = self._limits[chosen].T[..., None]
+            height = points[2]
+            clearance = clearance.minimum(height - floor).minimum(ceiling - height)
+        return clearance
+
+    def _shown(self, by: _Captured, points: Tensor) -> Tensor:
+        """Return what one image shows of points `[3, S, N]`, `[S, N]`."""
         if self.queries is not None:
-            return self.queries(code, position, rotation, points)
-        frame = CaptureFrame(
-            position.movedim(0, -1).contiguous(), rotation.movedim(0, -1).contiguous()
-        )
-        local = frame.from_world(points)
-        seen = self._model.query(code, local)
-        return torch.where(in_view(local) | near(local), seen, seen.clamp(max=UNSEEN_M))
+            return self.queries(by.code, by.position, by.rotation, points)
+        local = by.frame().from_world(points)
+        seen, asked = self._model.query(by.code, local), self._settings
+        known = in_view(local) | near(local, asked.near_m)
+        return torch.where(known, seen, seen.clamp(max=asked.unseen_m))
+
+    def _recalled(
+        self,
+        clearance: Tensor,
+        latest: _Captured,
+        former: Sequence[_Captured],
+        points: Tensor,
+        chosen: Tensor,
+    ) -> Tensor:
+        """Return the clearance with what the last image to show a point said of it."""
+        local = latest.take(chosen).frame().from_world(points)
+        unknown = ~(in_view(local) | near(local, self._settings.near_m))
+        for image in former:
+            taken = image.take(chosen)
+            shown = unknown & in_view(taken.frame().from_world(points))
+            clearance = torch.where(shown, self._shown(taken, points), clearance)
+            unknown &= ~shown
+        return clearance
 
 
 def in_view(points: Tensor) -> Tensor:
@@ -86,10 +164,10 @@ def in_view(points: Tensor) -> Tensor:
     return (x > 0) & (y.abs() < left * x) & (z.abs() < up * x)
 
 
-def near(points: Tensor) -> Tensor:
-    """Return which points `[3, *b]` of the capture frame are within `NEAR_M`, `[*b]`."""
+def near(points: Tensor, radius_m: float) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame are within `radius_m`, `[*b]`."""
     x, y, z = points
-    return (x * x).add_(y * y).add_(z * z) < NEAR_M**2
+    return (x * x).add_(y * y).add_(z * z) < radius_m**2
 
 
 def _misfit(model: ClearanceModel) -> str:
@@ -120,11 +198,11 @@ def _encoder(model: ClearanceModel) -> CompiledEncoder | None:
     return CompiledEncoder(kernels, weights, biases, (RANGE_M, NEAREST_M, INVERSE_SCALE))
 
 
-def _queries(model: ClearanceModel) -> CompiledClearance | None:
+def _queries(model: ClearanceModel, settings: PerceptionSettings) -> CompiledClearance | None:
     kernels = native.kernels()
     if kernels is None:
         return None
     left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-    bounds = Bounds(LOWEST_M, HIGHEST_M, UNSEEN_M, NEAR_M, left, up)
+    bounds = Bounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
     makers = [torch.cat((each.weight, each.bias[:, None]), 1) for each, _ in model.makers()]
     return CompiledClearance(kernels, makers, bounds)

@@ -2,12 +2,14 @@
 
 from faultpath.quadrotor.planner.cem import CEM, CEMSettings
 from faultpath.quadrotor.planner.costs import (
+    BlendedGoal,
     CostWeights,
     GoalCost,
     NavigationCost,
     RunningGoal,
     Scored,
     TerminalGoal,
+    goal_cost,
 )
 from faultpath.quadrotor.planner.modes import BundledSampler, WithinBundle
 from faultpath.quadrotor.planner.mppi import (
@@ -23,6 +25,7 @@ __all__ = [
     "CEM",
     "MPPI",
     "AutoregressiveSampler",
+    "BlendedGoal",
     "BundledSampler",
     "CEMSettings",
     "CostWeights",
@@ -38,6 +41,7 @@ __all__ = [
     "Temperature",
     "TerminalGoal",
     "WithinBundle",
+    "goal_cost",
     "shift",
     "weighted_mean",
 ]

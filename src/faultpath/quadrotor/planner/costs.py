@@ -52,7 +52,10 @@ class Scored:
 
 
 class GoalCost(ABC):
-    """How the distance to the goal enters the cost: the two planner variants differ here."""
+    """How the distance to the goal enters the cost: planner variants differ here."""
+
+    running: float
+    """Share of the mean distance along the horizon; the rest is the distance at its end."""
 
     @abstractmethod
     def distance(self, scored: Scored) -> Tensor:
@@ -70,6 +73,8 @@ class TerminalGoal(GoalCost):
     way, so a thrust error settles into an altitude offset. This is where calibration hurts.
     """
 
+    running = 0.0
+
     @override
     def distance(self, scored: Scored) -> Tensor:
         return _norm(scored.rollout.final.position - scored.goal[..., None])
@@ -78,9 +83,30 @@ class TerminalGoal(GoalCost):
 class RunningGoal(GoalCost):
     """Mean distance along the horizon: stiff in height, so it hides a thrust error."""
 
+    running = 1.0
+
     @override
     def distance(self, scored: Scored) -> Tensor:
         return _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
+
+
+class BlendedGoal(GoalCost):
+    """Between the two: `running` of the mean distance, the rest of that at the end."""
+
+    def __init__(self, running: float) -> None:
+        self.running = running
+
+    @override
+    def distance(self, scored: Scored) -> Tensor:
+        end, way = TerminalGoal().distance(scored), RunningGoal().distance(scored)
+        return torch.lerp(end, way, self.running)
+
+
+def goal_cost(running: float) -> GoalCost:
+    """Return the goal cost with this share of the mean distance along the horizon, 0 to 1."""
+    if running in (0.0, 1.0):
+        return RunningGoal() if running else TerminalGoal()
+    return BlendedGoal(running)
 
 
 class NavigationCost:
@@ -105,13 +131,14 @@ class NavigationCost:
         built = native.kernels_for(*paths)
         if built is None or not self._has_kernel(commands):
             return self._portable(scored)
-        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
-        return costs.cost(built, terms, isinstance(self.goal, RunningGoal), paths)
+        terms = self.weights.model_dump()
+        terms |= {"radius_m": COLLISION_RADIUS_M, "running": self.goal.running}
+        return costs.cost(built, terms, paths)
 
     def _has_kernel(self, commands: Tensor) -> bool:
         """Return whether the compiled kernel adds up what this cost does."""
-        goal = self.goal
-        kind = RunningGoal if isinstance(goal, RunningGoal) else TerminalGoal
+        goal, others = self.goal, (RunningGoal, BlendedGoal)
+        kind = next((each for each in others if isinstance(goal, each)), TerminalGoal)
         return (
             len(commands) > 0
             and native.whole_vectors(commands.shape[-1])

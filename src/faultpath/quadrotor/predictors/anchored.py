@@ -1,5 +1,6 @@
 """WM-A: the kinematic integrator with learned residual accelerations inside it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from torch import Tensor
@@ -9,6 +10,7 @@ from faultpath.quadrotor.predictors.base import History, Memory, Predictor, Pred
 from faultpath.quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
 from faultpath.quadrotor.predictors.network import FoldedNetwork, LatentNetwork
 from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 HIDDEN = 64  # paper, Section IV-A
 LINEAR_BOUND_MPS2 = 8.0
@@ -35,9 +37,14 @@ class AnchoredPredictor(Predictor):
     wind (paper, Section IV-A).
     """
 
-    def __init__(self, network: LatentNetwork, wind: bool) -> None:
+    def __init__(
+        self,
+        network: LatentNetwork,
+        wind: bool,
+        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
+    ) -> None:
         self.network = network
-        self.kinematics = KinematicIntegrator(wind=wind)
+        self.kinematics = KinematicIntegrator(wind=wind, drag_kgps=drag_kgps)
         self.reads = self.kinematics.reads | {"normalise_thrust", "history", "latent"}
 
     @staticmethod

@@ -1,6 +1,7 @@
 """The differentiable kinematic integrator: a double integrator with a rate-loop lag."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
@@ -10,7 +11,7 @@ from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_DRAG_KGPS
 
 RATE_LAG_S = 0.05
 """Time constant of the closed rate loop: the inverse of its gain of 20 1/s."""
@@ -49,14 +50,20 @@ class KinematicIntegrator(Predictor):
     the thrust direction is the mean of the interval's ends: second order in the step.
     """
 
-    def __init__(self, drag: bool = False, wind: bool = True, dt_s: float = CONTROL_DT_S) -> None:
+    def __init__(
+        self,
+        drag: bool = False,
+        wind: bool = True,
+        dt_s: float = CONTROL_DT_S,
+        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
+    ) -> None:
         if drag and not wind:
             raise ValueError("drag acts through the air's velocity: it needs the wind input")
         self.drag = drag
         self.reads = frozenset({"initial_state", "trim", "dynamics"})
         if wind:
             self.reads |= {"wind_map"}
-        self.air = LinearDrag()
+        self.air = LinearDrag(drag_kgps)
         self._dt = dt_s
         self._keep = math.exp(-dt_s / RATE_LAG_S)
         self._mean = RATE_LAG_S / dt_s * (1 - self._keep)

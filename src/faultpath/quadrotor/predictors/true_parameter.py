@@ -1,16 +1,28 @@
 """The true-parameter predictor: the vehicle's own inner loop and aerodynamics, stepped coarsely."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.predictors.base import Memory, Physics, Predictor, PredictorInputs
+from faultpath.quadrotor.predictors.base import (
+    History,
+    Memory,
+    Physics,
+    Predictor,
+    PredictorInputs,
+)
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN_PER_S
 
+CODE = 32
+"""Numbers of a history code, as the interface declares it."""
 SUBSTEPS = 4
+FOLLOWED = 4
+"""Intervals of the history that are replayed: after four of 50 ms even the slowest motors of the
+ranges, 0.08 s, have forgotten where they began but for a twelfth."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +44,29 @@ class TrueParameter(Predictor):
     Mass and thrust scale still come from the calibration taps. It is not the plant: it has no
     mixer, no motor limits, and steps of 12.5 ms in a semi-implicit scheme (paper, Section IV-A:
     "integration is separate").
+
+    With `follows_motors` it replays the commands that were executed over the last intervals, so
+    that it knows the thrust and the torque that its motors hold. Without, it is told their thrust
+    and takes their torque for zero.
     """
 
-    reads = frozenset({"initial_state", "trim", "dynamics", "wind_map", "physics"})
-
-    def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
+    def __init__(self, follows_motors: bool = False, dt_s: float = CONTROL_DT_S) -> None:
         self._h = dt_s / SUBSTEPS
+        self._follows = follows_motors
+        places = {"initial_state", "trim", "dynamics", "wind_map", "physics"}
+        self.reads = frozenset(places | {"history", "latent"} if follows_motors else places)
+
+    @override
+    def encode(self, history: History) -> Tensor | None:
+        """Return the last body rates and commands, `[32, *batch]`: what the replay starts from.
+
+        The motors' parameters are read elsewhere, so the replay itself is in `begin`.
+        """
+        if not self._follows:
+            return None
+        past = torch.cat((history.rate_radps, history.commands))[:, -FOLLOWED:]
+        code = past.flatten(0, 1)
+        return torch.cat((code, code.new_zeros(CODE - len(code), *code.shape[1:])))
 
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Return constants, and motors as they are now; `ValueError` without true parameters."""
@@ -50,7 +79,7 @@ class TrueParameter(Predictor):
         inverse_mass = 1 / inputs.wind_map_mass_kg
         lag = physics.motor_time_constant_s / self._h
         keep = torch.exp(-1 / lag)
-        return _Memory(
+        start = _Memory(
             physics=physics,
             thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
             inverse_mass=inverse_mass,
@@ -66,6 +95,24 @@ class TrueParameter(Predictor):
             thrust=physics.collective_thrust_n,
             torque=torch.zeros_like(inputs.state.rate),
         )
+        if not self._follows:
+            return start
+        assert inputs.code is not None
+        return self._followed(start, inputs.code)
+
+    def _followed(self, start: _Memory, code: Tensor) -> _Memory:
+        """Return the memory with motors that have followed the last commands.
+
+        They start as they would be had the oldest command been held for long.
+        """
+        past = code[: 7 * FOLLOWED].unflatten(0, (7, FOLLOWED)).unbind(1)
+        thrust, torque = past[0][3], start.torque
+        for now in past:
+            rate, command = now[:3], now[3:]
+            for _ in range(SUBSTEPS):
+                thrust = torch.lerp(command[0], thrust, start.keep)
+                rate, torque = self._turn(rate, command[1:], torque, start)
+        return replace(start, thrust=thrust, torque=torque)
 
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         """Advance one interval; see `Predictor.step`."""
@@ -93,11 +140,7 @@ class TrueParameter(Predictor):
     ) -> tuple[State, Tensor]:
         h = self._h
         physics = now.physics
-        inertia = physics.inertia_kgm2
-        gyroscopic = torch.linalg.cross(state.rate, inertia * state.rate, dim=0)
-        wanted = now.stiffness * (target - state.rate) + gyroscopic
-        torque = torch.lerp(wanted, torque, now.keep)
-        rate = state.rate + h * (physics.torque_scale * torque - gyroscopic) / inertia
+        rate, torque = self._turn(state.rate, target, torque, now)
         rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))
 
         acceleration = rotation[:, 2] * (now.thrust_gain * thrust)
@@ -108,3 +151,14 @@ class TrueParameter(Predictor):
         velocity = torch.add(state.velocity, acceleration, alpha=h)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * h)
         return State(position, velocity, rotation, rate), torque
+
+    def _turn(
+        self, rate: Tensor, target: Tensor, torque: Tensor, now: _Memory
+    ) -> tuple[Tensor, Tensor]:
+        """Return the body rate and the lagged torque after a substep of the rate loop."""
+        inertia = now.physics.inertia_kgm2
+        gyroscopic = torch.linalg.cross(rate, inertia * rate, dim=0)
+        wanted = now.stiffness * (target - rate) + gyroscopic
+        torque = torch.lerp(wanted, torque, now.keep)
+        turned = now.physics.torque_scale * torque - gyroscopic
+        return rate + self._h * turned / inertia, torque

@@ -1,6 +1,7 @@
 """The disturbance observer (DOB): what the nominal model does not explain is taken for wind."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
@@ -11,7 +12,12 @@ from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors import Calibration
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction.base import Delivered, Memory, Read, Reconstruction
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_MOTOR_TIME_CONSTANT_S
+from faultpath.quadrotor.vehicle import (
+    CONTROL_DT_S,
+    GRAVITY_MPS2,
+    NOMINAL_DRAG_KGPS,
+    NOMINAL_MOTOR_TIME_CONSTANT_S,
+)
 
 LOW_PASS = 0.5  # paper, appendix: fixed before held-out evaluation
 
@@ -76,10 +82,15 @@ class DisturbanceObserver(Reconstruction):
         }
     )
 
-    def __init__(self, low_pass: float = LOW_PASS, dt_s: float = CONTROL_DT_S) -> None:
+    def __init__(
+        self,
+        low_pass: float = LOW_PASS,
+        dt_s: float = CONTROL_DT_S,
+        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
+    ) -> None:
         self._alpha = low_pass
         self._dt = dt_s
-        self._air = LinearDrag()
+        self._air = LinearDrag(drag_kgps)
         lag = NOMINAL_MOTOR_TIME_CONSTANT_S
         self._keep = math.exp(-dt_s / lag)
         self._mean = lag / dt_s * (1 - self._keep)

@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
+from faultpath.quadrotor.choices import PlatformName
 
 if TYPE_CHECKING:
+    from faultpath.quadrotor.platform import Platform
     from faultpath.quadrotor.training.task import Task
 
-Factory = Callable[[str, int, Path], "Task"]
-"""Makes a task from its name, its seed and the folder of the data; a function of a module, so that
-worker processes find it."""
+Factory = Callable[[str, int, Path, "Platform"], "Task"]
+"""Makes a task from its name, its seed, the folder of the data and the platform; a function of a
+module, so that worker processes find it."""
 
 MODEL_SEEDS = (0, 1, 2)
 """Seeds of the models that results average over (paper, captions of its tables)."""
@@ -47,6 +49,7 @@ class Job:
 
     entry: Entry
     seed: int
+    platform: PlatformName = PlatformName.FIRST
 
     @property
     def stem(self) -> str:
@@ -55,25 +58,27 @@ class Job:
 
     def task(self, data: Path) -> Task:
         """Return what is to be fitted, with data from a folder."""
-        return self.entry.factory(self.entry.name, self.seed, data)
+        from faultpath.quadrotor.platform import PLATFORMS
+
+        return self.entry.factory(self.entry.name, self.seed, data, PLATFORMS[self.platform])
 
 
-def _predictor(name: str, seed: int, data: Path) -> Task:
+def _predictor(name: str, seed: int, data: Path, platform: Platform) -> Task:
     from faultpath.quadrotor.training.predictor_task import PredictorTask
 
-    return PredictorTask(name, seed, data)
+    return PredictorTask(name, seed, data, platform=platform)
 
 
-def _reconstruction(name: str, seed: int, data: Path) -> Task:
+def _reconstruction(name: str, seed: int, data: Path, platform: Platform) -> Task:
     from faultpath.quadrotor.training.reconstruction_task import ReconstructionTask
 
-    return ReconstructionTask(name, seed, data)
+    return ReconstructionTask(name, seed, data, platform)
 
 
-def _clearance(name: str, seed: int, data: Path) -> Task:
+def _clearance(name: str, seed: int, data: Path, platform: Platform) -> Task:
     from faultpath.quadrotor.training.clearance_task import ClearanceTask
 
-    del name
+    del name, platform
     return ClearanceTask(seed, data)
 
 
@@ -112,7 +117,11 @@ GROUPS: dict[str, tuple[Entry, ...]] = {
 }
 
 
-def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
+def choose(
+    names: Sequence[str],
+    seeds: Sequence[int] = (),
+    platform: PlatformName = PlatformName.FIRST,
+) -> tuple[Job, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 
     Without names: everything. Without seeds: the default seeds of each model. Raises `UserError`
@@ -122,7 +131,7 @@ def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[Job, ...]:
         raise UserError(f"the seed {wrong[0]} is negative: seeds start at 0.")
     wanted = {entry.name for name in names or ("all",) for entry in _named(name)}
     entries = [entry for entry in ALL if entry.name in wanted]
-    return tuple(_jobs(entries, seeds))
+    return tuple(_jobs(entries, seeds, platform))
 
 
 def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
@@ -145,6 +154,6 @@ def _named(name: str) -> tuple[Entry, ...]:
     return found
 
 
-def _jobs(entries: Iterable[Entry], seeds: Sequence[int]) -> Iterable[Job]:
+def _jobs(entries: Iterable[Entry], seeds: Sequence[int], platform: PlatformName) -> Iterable[Job]:
     for entry in entries:
-        yield from (Job(entry, seed) for seed in dict.fromkeys(seeds or entry.seeds))
+        yield from (Job(entry, seed, platform) for seed in dict.fromkeys(seeds or entry.seeds))

@@ -16,6 +16,7 @@ from pathlib import Path
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import wind
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.training import pool as pools_on_disk
 from faultpath.quadrotor.training.flight import EPISODE_S, EPISODE_STEPS
 from faultpath.quadrotor.training.provenance import (
@@ -25,6 +26,7 @@ from faultpath.quadrotor.training.provenance import (
     read_provenance,
 )
 from faultpath.quadrotor.training.shards import Shard
+from faultpath.quadrotor.wind import Winds
 from faultpath.store import atomic
 from faultpath.store.lock import locked
 from faultpath.version import __version__
@@ -48,6 +50,7 @@ def collect(
     episodes: Mapping[str, int] | None = None,
     seed: int = 0,
     progress: Progress | None = None,
+    platform: Platform = FIRST,
 ) -> dict[str, Path]:
     """Collect `pools` into `folder` and return the file of each pool.
 
@@ -57,14 +60,14 @@ def collect(
     does not exist, for one that was collected by another recipe, and when `folder` cannot be
     written.
     """
-    recipes = {name: recipe(name, (episodes or {}).get(name), seed) for name in pools}
+    recipes = {name: recipe(name, (episodes or {}).get(name), seed, platform) for name in pools}
     paths = {name: folder / f"{name}.parquet" for name in pools}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with locked(folder, _log.warning):
             atomic.sweep(folder)
             missing = [name for name in pools if not _is_there(paths[name], recipes[name])]
-            shards = {name: _shards(recipes[name], folder) for name in missing}
+            shards = {name: _shards(recipes[name], folder, platform) for name in missing}
             _fly([shard for name in missing for shard in shards[name]], workers, progress)
             for name in missing:
                 _assemble(paths[name], recipes[name], shards[name])
@@ -76,7 +79,9 @@ def collect(
     return paths
 
 
-def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
+def recipe(
+    pool: str, episodes: int | None = None, seed: int = 0, platform: Platform = FIRST
+) -> Recipe:
     """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
     if pool not in EPISODES:
         raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
@@ -87,14 +92,16 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
         pool=pool,
         episodes=count,
         seed=seed,
-        wind=_wind_ranges() if pool == "wind" else {},
+        flight=platform.collection,
+        vehicle=platform.ranges,
+        wind=_wind_ranges(platform.winds) if pool == "wind" else {},
         code_sha256=code_sha256(),
     )
 
 
-def _wind_ranges() -> dict[str, float | tuple[float, float]]:
+def _wind_ranges(winds: Winds) -> dict[str, float | tuple[float, float]]:
     return {
-        "mean_mps": wind.POOL_MEAN_MPS,
+        "mean_mps": winds.pool_mean_mps,
         "turbulence_over_mean": wind.TURBULENCE_OVER_MEAN,
         "length_scale_m": wind.LENGTH_SCALE_M,
         "cruise_mps": wind.CRUISE_MPS,
@@ -109,17 +116,21 @@ def _is_there(path: Path, asked: Recipe) -> bool:
     found = read_provenance(path)
     if found is None:
         return False
-    for field in Recipe.model_fields:
-        if getattr(found, field) != getattr(asked, field):
-            how = "by other code" if field == "code_sha256" else f"with another '{field}'"
-            raise UserError(
-                f"the pool at {path} was collected {how}: choose another folder, "
-                f"or delete its {path.stem}.json to collect it again."
-            )
+    for field in different(found, asked):
+        how = "by other code" if field == "code_sha256" else f"with another '{field}'"
+        raise UserError(
+            f"the pool at {path} was collected {how}: choose another folder, "
+            f"or delete its {path.stem}.json to collect it again."
+        )
     return True
 
 
-def _shards(asked: Recipe, folder: Path) -> list[Shard]:
+def different(found: Recipe, asked: Recipe) -> list[str]:
+    """Return the fields in which two recipes differ."""
+    return [name for name in Recipe.model_fields if getattr(found, name) != getattr(asked, name)]
+
+
+def _shards(asked: Recipe, folder: Path, platform: Platform) -> list[Shard]:
     """Return a pool's shards, in a folder whose name changes with anything that decides them.
 
     The number of episodes does not: a pool that is asked for larger uses what is there.
@@ -127,7 +138,9 @@ def _shards(asked: Recipe, folder: Path) -> list[Shard]:
     content = json.dumps([asked.model_dump(mode="json", exclude={"episodes"}), packages()])
     place = folder / f".{asked.pool}-{hashlib.sha256(content.encode()).hexdigest()[:16]}"
     return [
-        Shard(str(place), asked.pool, asked.seed, first, min(SHARD, asked.episodes - first))
+        Shard(
+            str(place), asked.pool, asked.seed, first, min(SHARD, asked.episodes - first), platform
+        )
         for first in range(0, asked.episodes, SHARD)
     ]
 

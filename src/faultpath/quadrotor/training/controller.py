@@ -12,10 +12,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.flight_settings import ControllerSettings
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.perturbation import Perturbation
 from faultpath.quadrotor.vehicle import (
@@ -31,34 +31,6 @@ LEAST_LIFT = 0.3
 over to fall faster."""
 _TINY = 1e-12
 """Added to norms that divide: their quotients are then zero at zero."""
-
-Range = tuple[float, float]
-
-
-class ControllerSettings(BaseModel):
-    """Ranges from which each episode, or each of its waypoints, draws uniformly."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    arena_m: tuple[Range, Range, Range] = ((-4.5, 4.5), (-3.0, 3.0), (0.0, 3.0))
-    """Box of the waypoints and the starts, the size of the scenes' arenas."""
-    waypoints: int = 16
-    """More than an episode of 6 s uses; the last one is kept."""
-    speed_mps: Range = (1.0, 4.8)
-    """Per waypoint: most that is asked for. The planner's limit is 3.4 m/s (paper, Section IV-A);
-    legs are too short to reach all of it, and a wind may push beyond it."""
-    leg_s: Range = (0.6, 3.0)
-    """Per waypoint: time after which the next one is taken, reached or not."""
-    arrival_m: float = 0.4
-    heading_offset_rad: float = 0.8
-    """Per waypoint: largest angle between the heading and the direction of travel."""
-    position_gain_per_s: Range = (1.2, 2.5)
-    velocity_gain_per_s: Range = (1.5, 3.5)
-    attitude_gain_per_s: Range = (4.0, 9.0)
-    heading_gain_per_s: Range = (0.5, 2.0)
-    tilt_limit_deg: Range = (25.0, 60.0)
-    drag_share: Range = (0.0, 1.0)
-    """How much of drag and wind the controller makes up for in advance."""
 
 
 @dataclass(frozen=True)

@@ -236,6 +236,7 @@ def _recipe(task: Task, module: nn.Module) -> dict[str, Any]:
     recipe = {
         "name": task.name,
         "seed": task.seed,
+        "platform": task.platform,
         "samples": task.count,
         "schedule": asdict(task.schedule),
         "order_key": task.order_key,

@@ -8,7 +8,6 @@ from functools import partial
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 from typing_extensions import override
 
@@ -24,19 +23,15 @@ from faultpath.loop import (
     consumers,
     graph,
 )
-from faultpath.quadrotor import native, so3, wind
+from faultpath.quadrotor import native, so3
+from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
-from faultpath.quadrotor.training.controller import (
-    ControllerSettings,
-    Course,
-    Range,
-    WaypointController,
-)
-from faultpath.quadrotor.training.perturbation import PerturbationSettings
+from faultpath.quadrotor.training.controller import Course, WaypointController
 from faultpath.quadrotor.training.recorded import ACTION, Flights, record
 from faultpath.quadrotor.vehicle import (
     CONTROL_DT_S,
@@ -52,24 +47,6 @@ from faultpath.taps import Taps
 
 EPISODE_S = 6.0  # paper, Section IV-A
 EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)
-
-
-class FlightSettings(BaseModel):
-    """Everything that decides an episode beside its seed, its pool and the vehicle's ranges."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    controller: ControllerSettings = ControllerSettings()
-    perturbation: PerturbationSettings = PerturbationSettings()
-    start_speed_mps: float = 3.0
-    """The start velocity is uniform in a ball of this radius."""
-    start_tilt_deg: float = 30.0
-    start_rate_radps: tuple[float, float, float] = (1.5, 1.5, 0.8)
-    """Start rates are uniform within plus and minus this."""
-    volume_m: tuple[Range, Range, Range] = ((-14.0, 14.0), (-13.0, 13.0), (-10.0, 13.0))
-    """An episode ends outside: about 10 m beyond the arena. Free space, without a floor."""
-    speed_limit_mps: float = 12.0
-    tilt_limit_deg: float = 120.0
 
 
 @dataclass(frozen=True)
@@ -185,7 +162,7 @@ def fly(
     pool: str,
     episodes: Sequence[int],
     seed: int,
-    settings: FlightSettings,
+    platform: Platform = FIRST,
     build: Callable[[Vehicle], VehiclePlant] = TorchPlant,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
@@ -193,7 +170,8 @@ def fly(
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
     vectors.
     """
-    starts = [_draw(pool, episode, seed, settings) for episode in episodes]
+    settings = platform.collection
+    starts = [_draw(pool, episode, seed, platform) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
     course = Course.stack([start.course for start in starts]).take(lanes)
@@ -209,16 +187,18 @@ def fly(
     return Flights(values, steps, tuple(start.vehicle for start in starts))
 
 
-def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Start:
+def _draw(pool: str, episode: int, seed: int, platform: Platform) -> _Start:
+    settings = platform.collection
+
     def stream(what: str) -> np.random.Generator:
         return generator(f"collection/{pool}/{what}", str(episode), seed)
 
     disturbed = perturbation.draw(stream("perturbation"), EPISODE_STEPS, settings.perturbation)
     winds = None
     if pool == "wind":  # one sample more than the plant needs: the wind at the last instant
-        winds = wind.pool_series(seed, episode, EPISODE_S + 1 / PLANT_RATE_HZ)
+        winds = platform.winds.pool_series(seed, episode, EPISODE_S + 1 / PLANT_RATE_HZ)
     return _Start(
-        vehicle=draw(stream("vehicle")),
+        vehicle=draw(stream("vehicle"), platform.ranges),
         course=Course.draw(stream("course"), settings.controller, disturbed),
         state=_draw_state(stream("start"), settings),
         winds=winds,

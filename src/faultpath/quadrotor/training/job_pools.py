@@ -5,9 +5,10 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
-from faultpath.quadrotor.training.collection import collect
+from faultpath.quadrotor.training.collection import collect, different, recipe
 from faultpath.quadrotor.training.pool import provenance_path
 from faultpath.quadrotor.training.provenance import code_sha256, read_provenance
 
@@ -19,18 +20,26 @@ def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
 
 
 def check_pools(jobs: Sequence[Job], data: Path) -> None:
-    """Raise `UserError` where a pool that some jobs need was collected by other code than this."""
-    needed = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
-    for pool in needed:
+    """Raise `UserError` where a pool that some jobs need was collected by other code than this, or
+    for another platform."""
+    needed = {pool: job.platform for job in jobs for pool in job.entry.pools}
+    for pool, platform in needed.items():
         path = data / f"{pool}.parquet"
         if pool == CLEARANCE_POOL or (found := read_provenance(path)) is None:
             continue  # the depth images are checked where they are read
-        code = trajectories.code_sha256() if pool == trajectories.POOL else code_sha256()
+        flown = pool == trajectories.POOL
+        code = trajectories.code_sha256(platform) if flown else code_sha256()
         if found.code_sha256 != code:
             raise UserError(
                 f"the pool at {path} was collected by other code than this, with faultpath "
                 f"{found.faultpath_version}: delete {path.with_suffix('.json')} to collect it "
                 "again, or give another folder of data"
+            )
+        asked = None if flown else recipe(pool, platform=PLATFORMS[platform])
+        if asked and {"flight", "vehicle", "wind"} & set(different(found, asked)):
+            raise UserError(
+                f"the pool at {path} was collected for another platform than {platform}: give "
+                "another folder of data"
             )
 
 
@@ -49,6 +58,7 @@ def collect_missing(
         if pool == CLEARANCE_POOL:
             clearance_data.collect(data, workers=workers, progress=report)
         elif pool == trajectories.POOL:
-            trajectories.record(data, workers, progress=report)
+            trajectories.record(data, workers, jobs[0].platform, report)
         else:
-            collect(data, [pool], workers, progress=report)
+            platform = PLATFORMS[jobs[0].platform]
+            collect(data, [pool], workers, progress=report, platform=platform)

@@ -151,7 +151,7 @@ class _Ledger:
             details.unlink(missing_ok=True)
             self.cards[job.stem] = read_card(end.value)
             if self._shipped:
-                ship(end.value)
+                ship(end.value, job.platform)
         elif isinstance(end, Lost):
             self._failures[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
         elif isinstance(end.error, UserError):

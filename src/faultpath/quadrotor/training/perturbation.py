@@ -4,44 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
 from scipy.signal import lfilter
 
+from faultpath.quadrotor.flight_settings import PerturbationSettings
 from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
 
 Array = NDArray[np.float64]
-
-
-class PerturbationSettings(BaseModel):
-    """Ranges of the perturbations; what an episode gets of them is drawn for it.
-
-    Spread and correlation are those of the planner's candidates (`planner.SamplerSettings`): a
-    predictor is asked about such commands. The rest is derived (`docs/design/collection.md`).
-    """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    thrust_sigma: float = 0.22
-    """Largest standard deviation of the thrust, as a fraction of the hover thrust."""
-    rate_sigma_radps: tuple[float, float, float] = (1.0, 1.0, 0.4)
-    """Largest standard deviations of the body rates."""
-    correlation: tuple[float, float] = (0.6, 0.85)
-    """Of neighbouring steps."""
-    clean_share: float = 0.15
-    """Share of the episodes whose strength is at most `clean_strength`; else it is up to 1."""
-    clean_strength: float = 0.1
-    jitter: float = 0.3
-    """Largest standard deviation of the white part, in units of the correlated one."""
-    pulses_per_s: float = 0.5
-    """Steps and doublets on one axis, on average."""
-    pulse_steps: tuple[int, int] = (2, 6)
-    """Length of a step and of each half of a doublet."""
-    pulse_sigmas: tuple[float, float] = (1.0, 2.5)
-    """Their height in units of the correlated part's standard deviation."""
-    holds_per_s: float = 0.3
-    """Stretches without feedback, on average in an episode that is not clean: a candidate of the
-    planner has none over its whole horizon."""
-    hold_steps: tuple[int, int] = (2, 8)
 
 
 class Perturbation(NamedTuple):

@@ -11,6 +11,7 @@ from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
@@ -39,14 +40,19 @@ class Recipe:
     """What a predictor is and what it learns from."""
 
     network: Callable[[], LatentNetwork]
-    predictor: Callable[[Any], Predictor]
+    predictor: Callable[[Any, Platform], Predictor]
     pools: tuple[str, ...]
     epochs: int
     description: str
 
 
-def _anchored(wind: bool) -> Callable[[LatentNetwork], Predictor]:
-    return lambda network: AnchoredPredictor(network, wind)
+def _anchored(wind: bool) -> Callable[[LatentNetwork, Platform], Predictor]:
+    return lambda network, platform: AnchoredPredictor(network, wind, platform.drag_kgps)
+
+
+def _unanchored(network: UnanchoredNetwork, platform: Platform) -> Predictor:
+    del platform
+    return UnanchoredPredictor(network)
 
 
 _BOTH = ("nominal", "wind")
@@ -54,9 +60,7 @@ RECIPES: Mapping[str, Recipe] = {
     "wm-a": Recipe(
         AnchoredPredictor.build_network, _anchored(False), ("nominal",), 10, "physics-anchored"
     ),
-    "wm-u": Recipe(
-        UnanchoredPredictor.build_network, UnanchoredPredictor, ("nominal",), 30, "unanchored"
-    ),
+    "wm-u": Recipe(UnanchoredPredictor.build_network, _unanchored, ("nominal",), 30, "unanchored"),
     "wm-a-wind": Recipe(
         AnchoredPredictor.build_network, _anchored(True), _BOTH, 10, "wind-conditioned anchored"
     ),
@@ -75,7 +79,12 @@ class PredictorTask(Task):
     """
 
     def __init__(
-        self, name: str, seed: int, data: Path, half_range: float = DCC_HALF_RANGE
+        self,
+        name: str,
+        seed: int,
+        data: Path,
+        half_range: float = DCC_HALF_RANGE,
+        platform: Platform = FIRST,
     ) -> None:
         self.name = name
         self.seed = seed
@@ -86,6 +95,8 @@ class PredictorTask(Task):
         self.schedule = Schedule(epochs=self._recipe.epochs, clip_norm=CLIP_NORM)
         self._data = data
         self._half_range = half_range
+        self._platform = platform
+        self.platform = platform.weights_hash(name)
 
     def load(self) -> None:
         """See `Task.load`; several pools contribute equally many windows."""
@@ -93,11 +104,14 @@ class PredictorTask(Task):
         training, self._validation = _equal_mix(pools)
         self._train = training
         self._scales = scales(training)
-        predictor = self._recipe.predictor(self._recipe.network())
+        predictor = self._predictor(self._recipe.network())
         self._consumers = predictor.consumers()
         faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
         self._corruption = Corruption(faults, self._consumers, training.ids, self.seed)
         self._delivered: DeliveredInputs = {}
+
+    def _predictor(self, network: nn.Module) -> Predictor:
+        return self._recipe.predictor(network, self._platform)
 
     @property
     def is_dcc(self) -> bool:
@@ -130,12 +144,12 @@ class PredictorTask(Task):
     def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
         batch = self._train.take(index)
         delivered = {tap: value[index] for tap, value in self._delivered.items()}
-        predicted = list(predict(self._recipe.predictor(module), batch, delivered))
+        predicted = list(predict(self._predictor(module), batch, delivered))
         return error(predicted, batch, self._scales)
 
     def validate(self, module: nn.Module) -> Mapping[str, float]:
         """Return the median 20-step position error under correct calibration, and the loss."""
-        predictor = self._recipe.predictor(module)
+        predictor = self._predictor(module)
         windows = self._validation
         predicted = list(predict(predictor, windows, correct(predictor, windows)))
         missed = (predicted[-1].position[..., 0] - windows.position[:, -1]).norm(dim=0)

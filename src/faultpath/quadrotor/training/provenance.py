@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
 
 from faultpath.code import Root, read_code
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.flight import FlightSettings
+from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.vehicle import VehicleRanges
 
 FORMAT = 1
@@ -25,11 +25,11 @@ class Recipe(BaseModel):
     pool: str
     episodes: int
     seed: int
-    flight: FlightSettings | None = FlightSettings()
+    flight: FlightSettings | None
     """`None` for a pool that was recorded in closed loop."""
     closed_loop: dict[str, JsonValue] | None = None
     """What flew where in closed loop."""
-    vehicle: VehicleRanges = VehicleRanges()
+    vehicle: VehicleRanges
     wind: dict[str, float | tuple[float, float]]
     """Ranges and constants of the wind; empty in still air."""
     code_sha256: str

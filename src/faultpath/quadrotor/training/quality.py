@@ -8,12 +8,15 @@ from pydantic import JsonValue
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import ModelCard, read_card, stem
-from faultpath.quadrotor.checkpoint import (
-    checkpoint_path,
-    load_checkpoint,
-    shipped_folder,
+from faultpath.quadrotor.models import (
+    PREDICTORS,
+    RECONSTRUCTIONS,
+    Kind,
+    Model,
+    Shelf,
+    clearance_model,
 )
-from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS, Kind, Model
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.training import quality_rows
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
 from faultpath.quadrotor.training.pool import Pool, read_pool
@@ -33,7 +36,7 @@ from faultpath.quadrotor.training.quality_rows import (
 )
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, cut
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.wind import WIND_LEVELS
+from faultpath.quadrotor.wind import Winds
 
 POOLS = ("nominal", "wind")
 _LEARNED = frozenset(entry.name for entry in ALL)
@@ -45,8 +48,8 @@ Progress = Callable[[str], None]
 class Checkpoints:
     """The finished checkpoints of a folder, and which of the catalogue are not there."""
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, shelf: Shelf) -> None:
+        self._shelf = shelf
         jobs = choose(())
         there = {job.stem for job in jobs if self._path(job.stem).with_suffix(".json").is_file()}
         self.missing = tuple(job.stem for job in jobs if job.stem not in there)
@@ -59,7 +62,7 @@ class Checkpoints:
         """
         seeds = [seed for found, seed in self.present if found == name]
         every = seeds if name in _LEARNED else [None]
-        return {seed: kind.load(name, seed, self._folder) for seed in every}
+        return {seed: kind.load(name, seed, self._shelf) for seed in every}
 
     def cards(self) -> list[ModelCard]:
         """Return the cards of all that is there; `UserError` for a damaged one."""
@@ -69,31 +72,34 @@ class Checkpoints:
         """Return how good the clearance model is, `None` without one."""
         if (CLEARANCE.name, 0) not in self.present:
             return None
-        from faultpath.quadrotor.perception import ClearanceModel
         from faultpath.quadrotor.training.clearance_task import evaluate
 
-        model = ClearanceModel()
-        load_checkpoint(model, checkpoint_path(CLEARANCE.name, 0, self._folder))
-        return evaluate(model.eval())
+        return evaluate(clearance_model(shelf=self._shelf))
 
     def _path(self, name: str) -> Path:
-        return self._folder / f"{name}.safetensors"
+        return self._shelf.place / f"{name}.safetensors"
 
 
-def measure(data: Path, folder: Path | None = None, progress: Progress | None = None) -> Quality:
+def measure(
+    data: Path,
+    folder: Path | None = None,
+    progress: Progress | None = None,
+    platform: Platform = FIRST,
+) -> Quality:
     """Measure every checkpoint of a folder, by default of the package, on validation windows.
 
     Args:
         data: Folder of the pools `nominal` and `wind`.
         folder: Folder of the checkpoints.
         progress: Is told what comes next.
+        platform: That of the checkpoints and the pools.
 
     Raises:
         UserError: A pool is missing, a checkpoint is damaged, or was fitted to other data than
             the pool of the same name: its validation windows are then not these.
     """
     tell = progress or (lambda text: None)
-    checkpoints = Checkpoints(folder or shipped_folder())
+    checkpoints = Checkpoints(Shelf(platform, folder))
     pools = {name: read_pool(data / f"{name}.parquet") for name in POOLS}
     _check_data(checkpoints.cards(), pools)
     held_out = {name: cut(pool).split()[1] for name, pool in pools.items()}
@@ -110,14 +116,17 @@ def measure(data: Path, folder: Path | None = None, progress: Progress | None = 
             if loaded := checkpoints.load(row.name, RECONSTRUCTIONS[row.name]):
                 tell(row.name)
                 pool = row.pool
-                found = measure_reconstruction(row, loaded, held_out[pool], episodes[pool])
-                reconstructions.append(found)
+                reconstructions.append(
+                    measure_reconstruction(
+                        row, loaded, held_out[pool], episodes[pool], platform.winds
+                    )
+                )
         tell(CLEARANCE.name)
         clearance = checkpoints.clearance()
     return Quality(
-        settings=_settings(),
+        settings=_settings(platform.winds),
         pools={
-            name: _pool(pools[name], windows, episodes[name].count)
+            name: _pool(pools[name], windows, episodes[name].count, platform.winds)
             for name, windows in held_out.items()
         },
         checkpoints=tuple(
@@ -143,22 +152,22 @@ def _check_data(cards: Sequence[ModelCard], pools: dict[str, Pool]) -> None:
                 )
 
 
-def _pool(pool: Pool, windows: Windows, episodes: int) -> PoolUsed:
-    level = levels(windows)
+def _pool(pool: Pool, windows: Windows, episodes: int, winds: Winds) -> PoolUsed:
+    level = levels(windows, winds)
     return PoolUsed(
         rows_sha256=pool.provenance.rows_sha256,
         windows=len(windows),
         episodes=episodes,
-        by_level={name: int((level == name).sum()) for name in WIND_LEVELS},
+        by_level={name: int((level == name).sum()) for name in winds.levels},
     )
 
 
-def _settings() -> Settings:
+def _settings(winds: Winds) -> Settings:
     return Settings(
         history=HISTORY,
         horizon=HORIZON,
         step_s=CONTROL_DT_S,
         resamples=RESAMPLES,
         calibration_errors=quality_rows.ERRORS,
-        level_mean_mps={name: level.mean_mps for name, level in WIND_LEVELS.items()},
+        level_mean_mps={name: level.mean_mps for name, level in winds.levels.items()},
     )

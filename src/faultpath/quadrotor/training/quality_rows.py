@@ -25,7 +25,7 @@ from faultpath.quadrotor.training.quality_results import (
     ReconstructionUnderError,
 )
 from faultpath.quadrotor.training.windows import HISTORY, Windows
-from faultpath.quadrotor.wind import WIND_LEVELS
+from faultpath.quadrotor.wind import Winds
 
 ERRORS = (-0.2, -0.1, 0.0, 0.1, 0.2)
 """Coupled calibration errors e: m~ = m (1 + e), T~ = T (1 - e) (paper, Section IV-B)."""
@@ -87,16 +87,16 @@ def estimate(reconstruction: Reconstruction, windows: Windows, error: float = 0.
     ).wind()
 
 
-def levels(windows: Windows) -> NDArray[np.str_]:
+def levels(windows: Windows, winds: Winds) -> NDArray[np.str_]:
     """Return the wind level of each window, `[W]`: the one whose sustained speed is nearest.
 
     The mean wind over the window stands for the sustained one. The pool's winds reach beyond L3,
     which takes all that are stronger.
     """
     speed = windows.wind_mps.mean(1).norm(dim=0)
-    means = torch.tensor([level.mean_mps for level in WIND_LEVELS.values()])
+    means = torch.tensor([level.mean_mps for level in winds.levels.values()])
     nearest = (speed - means[:, None]).abs().argmin(0)
-    return np.array(list(WIND_LEVELS))[nearest.numpy()]
+    return np.array(list(winds.levels))[nearest.numpy()]
 
 
 def measure_predictor(
@@ -133,14 +133,18 @@ def measure_predictor(
 
 
 def measure_reconstruction(
-    row: Row, models: Mapping[int | None, Reconstruction], windows: Windows, episodes: Episodes
+    row: Row,
+    models: Mapping[int | None, Reconstruction],
+    windows: Windows,
+    episodes: Episodes,
+    winds: Winds,
 ) -> ReconstructionQuality:
     """Return the errors of one reconstruction, by seed (`None`: nothing is learned)."""
-    level, truth = levels(windows), windows.wind_mps[:, HISTORY]
+    level, truth = levels(windows, winds), windows.wind_mps[:, HISTORY]
     found: dict[int | None, tuple[Drawn, ReconstructionScore]] = {}
     for seed, model in models.items():
-        winds = [estimate(model, windows, error) for error in ERRORS]
-        squared = [(each - truth).square().sum(0).double().numpy() for each in winds]
+        found_mps = [estimate(model, windows, error) for error in ERRORS]
+        squared = [(each - truth).square().sum(0).double().numpy() for each in found_mps]
         rmse = episodes.root_mean_square(squared[_CORRECT])
         found[seed] = (
             rmse,
@@ -148,16 +152,15 @@ def measure_reconstruction(
                 rmse_mps=rmse.interval(),
                 by_level={
                     name: float(np.sqrt(squared[_CORRECT][level == name].mean()))
-                    for name in WIND_LEVELS
-                    if (level == name).any()
+                    for name in np.unique(level).tolist()
                 },
                 under_error=tuple(
                     ReconstructionUnderError(
                         error=error,
                         rmse_mps=float(np.sqrt(each.mean())),
-                        vertical_shift_mps=float((wind - winds[_CORRECT])[2].mean()),
+                        vertical_shift_mps=float((wind - found_mps[_CORRECT])[2].mean()),
                     )
-                    for error, each, wind in zip(ERRORS, squared, winds, strict=True)
+                    for error, each, wind in zip(ERRORS, squared, found_mps, strict=True)
                 ),
             ),
         )

@@ -15,6 +15,7 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.pool import read_provenance
@@ -90,13 +91,14 @@ class ReconstructionTask(Task):
     a stream of its own, because a flight begins with few.
     """
 
-    def __init__(self, name: str, seed: int, data_folder: Path) -> None:
+    def __init__(self, name: str, seed: int, data_folder: Path, platform: Platform = FIRST) -> None:
         if name not in MODELS:
             raise UserError(
                 f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
             )
         self.name = name
         self.seed = seed
+        self.platform = platform.weights_hash(name)
         self.schedule = Schedule(epochs=40, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
         self._path = data_folder / f"{self._model.pool}.parquet"

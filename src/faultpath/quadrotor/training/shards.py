@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.training.flight import fly
 from faultpath.quadrotor.training.pool import encode_episodes, encode_rows
 from faultpath.store import atomic
 
@@ -19,6 +20,7 @@ class Shard:
     seed: int
     first: int
     count: int
+    platform: Platform
 
     @property
     def rows(self) -> Path:
@@ -33,7 +35,7 @@ class Shard:
     def fly(self) -> None:
         """Fly the episodes and write both files; `OSError` when they cannot be written."""
         members = range(self.first, self.first + self.count)
-        flights = fly(self.pool, members, self.seed, FlightSettings())
+        flights = fly(self.pool, members, self.seed, self.platform)
         atomic.write(self.episodes, encode_episodes(members, flights))
         atomic.write(self.rows, encode_rows(members, flights))
 

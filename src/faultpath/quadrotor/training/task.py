@@ -41,6 +41,8 @@ class Task(ABC):
     """Name of the model, for example `wm-a+dcc`; with the seed it names the checkpoint."""
     seed: int
     schedule: Schedule
+    platform: str = ""
+    """`Platform.weights_hash` of the model; empty for a task that no platform decides."""
 
     @abstractmethod
     def load(self) -> None:

@@ -14,6 +14,8 @@ from pathlib import Path
 
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import native
+from faultpath.quadrotor.choices import PlatformName
+from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.closed_loop import record_flights
 from faultpath.quadrotor.training.pool import (
@@ -49,6 +51,7 @@ class Shard:
 
     level: str
     first: int
+    platform: PlatformName = PlatformName.FIRST
 
     @property
     def name(self) -> str:
@@ -62,23 +65,28 @@ class Shard:
         return range(first, first + BLOCK)
 
 
-def shards() -> list[Shard]:
+def shards(platform: PlatformName = PlatformName.FIRST) -> list[Shard]:
     """Return every shard of the pool, in its order."""
-    return [Shard(*parts) for parts in product(LEVELS, range(0, SCENES, BLOCK))]
+    return [Shard(*parts, platform) for parts in product(LEVELS, range(0, SCENES, BLOCK))]
 
 
-def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> Path:
+def record(
+    folder: Path,
+    workers: int = 2,
+    platform: PlatformName = PlatformName.FIRST,
+    progress: Progress | None = None,
+) -> Path:
     """Fly and write the pool, from wherever an earlier call left it; return its file.
 
     `progress` is called with the flights done and those in all. Raises `UserError` where the
     predictor's checkpoint is missing.
     """
     path = folder / f"{POOL}.parquet"
-    place = folder / f".{POOL}-{code_sha256()[:16]}"
+    place = folder / f".{POOL}-{code_sha256(platform)[:16]}"
     place.mkdir(parents=True, exist_ok=True)
     with locked(folder, lambda text: None):
         atomic.sweep(place)
-        todo = [shard for shard in shards() if not (place / f"{shard.name}.rows").exists()]
+        todo = [shard for shard in shards(platform) if not (place / f"{shard.name}.rows").exists()]
         done = len(shards()) - len(todo)
         tell = progress or (lambda done, total: None)
         tell(done * BLOCK, len(shards()) * BLOCK)
@@ -86,30 +94,31 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
             for _ in run_all(executor, [partial(fly, shard, place) for shard in todo]):
                 done += 1
                 tell(done * BLOCK, len(shards()) * BLOCK)
-        _assemble(path, place)
+        _assemble(path, place, platform)
     return path
 
 
 @native.using(native.PORTABLE)
 def fly(shard: Shard, place: Path) -> None:
     """Fly a shard and write its two files, the rows last."""
-    system = Quadrotor.parse(wind=shard.level, clearance="true")
+    system = Quadrotor.parse(platform=shard.platform, wind=shard.level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
     flights = record_flights(system, VARIANT, scenes[shard.first : shard.first + BLOCK], SEED)
     atomic.write(place / f"{shard.name}.episodes", encode_episodes(shard.episodes, flights))
     atomic.write(place / f"{shard.name}.rows", encode_rows(shard.episodes, flights))
 
 
-def code_sha256() -> str:
+def code_sha256(platform: PlatformName = PlatformName.FIRST) -> str:
     """Return a hash of what decides the pool: the system, its weights, and the settings here."""
-    spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
+    spec = SystemSpec(name=Quadrotor.name, options={"platform": platform, "clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
     code = code_of("training.trajectories")
-    content = repr((state.contents, code, LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK))
+    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORMS[platform].hash)
+    content = repr((state.contents, code, *settings))
     return hashlib.sha256(content.encode()).hexdigest()
 
 
-def _assemble(path: Path, place: Path) -> None:
+def _assemble(path: Path, place: Path, platform: PlatformName) -> None:
     rows = join((place / f"{shard.name}.rows").read_bytes() for shard in shards())
     episodes = join((place / f"{shard.name}.episodes").read_bytes() for shard in shards())
     steps = steps_of(episodes)
@@ -118,6 +127,7 @@ def _assemble(path: Path, place: Path) -> None:
         episodes=len(steps),
         seed=SEED,
         flight=None,
+        vehicle=PLATFORMS[platform].ranges,
         closed_loop={
             "library": LIBRARY,
             "scenes": SCENES,
@@ -125,7 +135,7 @@ def _assemble(path: Path, place: Path) -> None:
             "variant": VARIANT,
         },
         wind={},
-        code_sha256=code_sha256(),
+        code_sha256=code_sha256(platform),
         faultpath_version=__version__,
         packages=packages(),
         rows=int(steps.sum()) + len(steps),

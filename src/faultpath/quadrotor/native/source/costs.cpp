@@ -6,7 +6,7 @@
 extern "C" {
 
 struct Weights {
-  int64_t running;  // the mean distance along the horizon counts, not the one at its end
+  float running;  // share of the mean distance along the horizon; the rest is that at its end
   float goal, risk, hit, margin, radius, speed, v_max, heading, rate_effort, thrust_effort;
 };
 
@@ -73,14 +73,15 @@ void score(const Weights& w, const Scene& at, int64_t steps, int64_t candidates,
   for (float* weight : {&mean.risk, &mean.hit, &mean.speed, &mean.rate_effort,
                         &mean.thrust_effort})
     *weight /= steps;
-  const float goal = w.running ? w.goal / steps : w.goal;
+  const float way = w.running * (w.goal / steps), end = (1.0f - w.running) * w.goal + way;
   for (int64_t h = 0; h < steps; ++h) {
     const bool last = h == steps - 1;
     for (int64_t k = 0; k < candidates; k += LANES) {
       const int64_t place = h * candidates + k;
       Vector cost = h == 0 ? splat(0.0f) : load(costs + k);
       cost = cost + along_the_way(mean, at, place, at.commands + 4 * h * at.row + k);
-      if (last || w.running) cost = fma(distance(at, place), splat(goal), cost);
+      const float goal = last ? end : way;
+      if (goal != 0.0f) cost = fma(distance(at, place), splat(goal), cost);
       if (last) cost = fma(heading(at, place, k), splat(w.heading), cost);
       store(costs + k, cost);
     }
