@@ -15,8 +15,9 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
 from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import decision, wording
+from faultpath.report import wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.report.terminal import decision
 from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.markdown import grid
 

@@ -18,8 +18,11 @@ from paper_blocks import SHIPPED
 from faultpath.door.saved import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
-from faultpath.report import ReportInput, Traces, write_report
-from faultpath.report.reproduction import ReproductionInput, ledger_markdown, reproduction_page
+from faultpath.report.html import write_report
+from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.reproduction.inputs import ReproductionInput
+from faultpath.report.reproduction.page import reproduction_page
+from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal

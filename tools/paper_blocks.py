@@ -9,7 +9,7 @@ from typing import TypeVar
 from blocks import REFERENCE, ROOT, TAKE_AGAIN, Wrong, copied, parsed, tabled
 
 from faultpath.record import Reproduction, RunProvenance
-from faultpath.report.reproduction import ledger_markdown
+from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.tables.markdown import block
 
 T = TypeVar("T")

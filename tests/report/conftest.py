@@ -16,7 +16,7 @@ from playwright.sync_api import Browser, sync_playwright
 from faultpath.interface import Interface, read_interface
 from faultpath.record import Path, Question, StruckTap, decide
 from faultpath.record.provenance import RunProvenance
-from faultpath.report import ReportInput, Traces
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 

@@ -11,8 +11,8 @@ from faultpath.record import (
     Series,
     Sweep,
 )
-from faultpath.report import ReportInput
-from faultpath.report.reproduction import ReproductionInput
+from faultpath.report.inputs import ReportInput
+from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.tables import Entry, Line, Table
 
 NASTY = '<script>alert("x")</script> & co'

@@ -6,7 +6,9 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from faultpath.report import ReportInput, wording, write_report
+from faultpath.report import wording
+from faultpath.report.html import write_report
+from faultpath.report.inputs import ReportInput
 
 pytestmark = pytest.mark.browser
 

@@ -10,10 +10,12 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
 
-from faultpath.report import ReportInput, markdown_table, report_page
 from faultpath.report.frame import render
-from faultpath.report.reproduction import ledger_markdown
+from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput
+from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.report.svg import Svg
+from faultpath.report.tables import markdown_table
 from faultpath.tables import Entry, Line, Table, escapes
 from faultpath.tables.markdown import block as table_markdown
 

@@ -9,8 +9,11 @@ import pytest
 
 from faultpath.interface import Interface
 from faultpath.record import PathBreakEven
-from faultpath.report import ReportInput, draw_interface, figures, struck_paths, wording
+from faultpath.report import figures, wording
+from faultpath.report.inputs import ReportInput
+from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_layout import CHANNEL_HEIGHT, SOURCE_HEIGHT, lay_out
+from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.scale import Axis, covering
 from faultpath.report.svg import Svg, number, shortened, text_width, wrapped

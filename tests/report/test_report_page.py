@@ -9,7 +9,9 @@ from itertools import pairwise
 
 import pytest
 
-from faultpath.report import ReportInput, Traces, report_page, wording
+from faultpath.report import wording
+from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Kind, read_pairs
 
 MINUS = "−"

@@ -10,8 +10,9 @@ import pytest
 from playwright.sync_api import Browser
 from reproduction_toys import source as reproduction_source
 
-from faultpath.report import ReportInput, report_page
-from faultpath.report.reproduction import reproduction_page
+from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput
+from faultpath.report.reproduction.page import reproduction_page
 
 PAGES = ("report", "reproduction")
 

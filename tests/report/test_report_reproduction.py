@@ -9,16 +9,13 @@ import pytest
 from reproduction_toys import NASTY, ledger, source, sweep, tables
 from rich.console import Console
 
-from faultpath.report import ReportInput, Traces
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
-from faultpath.report.reproduction import (
-    ReproductionInput,
-    ledger_markdown,
-    ledger_view,
-    reproduction_page,
-)
+from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.intervals import interval_plot, plot_axis
+from faultpath.report.reproduction.page import reproduction_page
+from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
 from faultpath.report.svg import number
 from faultpath.tables import Entry, Line, Table
 from faultpath.trials import FloorPlan, OutcomeTable, Prism

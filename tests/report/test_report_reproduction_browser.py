@@ -6,8 +6,8 @@ import pytest
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 from reproduction_toys import ledger, source
 
-from faultpath.report import ReportInput
-from faultpath.report.reproduction import reproduction_page
+from faultpath.report.inputs import ReportInput
+from faultpath.report.reproduction.page import reproduction_page
 
 pytestmark = pytest.mark.browser
 

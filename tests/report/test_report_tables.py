@@ -10,15 +10,11 @@ from rich.console import Console
 from faultpath.errors import UserError
 from faultpath.interface import Interface
 from faultpath.record import DecisionRecord, Effect
-from faultpath.report import (
-    ReportInput,
-    decision,
-    interface_table,
-    latex_table,
-    markdown_table,
-    wording,
-    write_report,
-)
+from faultpath.report import wording
+from faultpath.report.html import write_report
+from faultpath.report.inputs import ReportInput
+from faultpath.report.tables import latex_table, markdown_table
+from faultpath.report.terminal import decision, interface_table
 
 
 def _expected(record: DecisionRecord) -> dict[str, list[str]]:

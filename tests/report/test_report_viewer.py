@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from faultpath.report import ReportInput
+from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import choose, parting_step, viewer_data
 from faultpath.trials import Outcome, Status

@@ -8,8 +8,9 @@ import pytest
 
 from faultpath.interface import Interface
 from faultpath.record import Path, StruckTap
-from faultpath.report import ReportInput, StruckPath, draw_interface, struck_paths
-from faultpath.report.interface_wiring import Who, Wiring
+from faultpath.report.inputs import ReportInput
+from faultpath.report.interface_drawing import draw_interface
+from faultpath.report.interface_wiring import StruckPath, Who, Wiring, struck_paths
 from faultpath.trials import System, SystemSpec, VariantShown, load_system, variant_shown
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -82,7 +82,7 @@ def command(
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
-    from faultpath.report import decision
+    from faultpath.report.terminal import decision
 
     console.print(decision(run.record))
     console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)

@@ -89,7 +89,7 @@ def _show(run: Path | None, as_json: bool) -> int:
         _print(answers)
         return 0
     from faultpath.door.display import SafeConsole
-    from faultpath.report.reproduction import ledger_view
+    from faultpath.report.reproduction.terminal import ledger_view
 
     SafeConsole().print(ledger_view(answers))
     return 0

@@ -26,7 +26,8 @@ def command(
     from faultpath.door.display import SafeConsole
     from faultpath.errors import UserError
     from faultpath.interface import Interface, interface_yaml
-    from faultpath.report import draw_interface, interface_table
+    from faultpath.report.interface_drawing import draw_interface
+    from faultpath.report.terminal import interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
 

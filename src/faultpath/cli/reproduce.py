@@ -55,7 +55,7 @@ def command(
 def tell(run: "ReproductionRun", whole: bool) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
     from faultpath.door.display import SafeConsole
-    from faultpath.report.reproduction import ledger_view
+    from faultpath.report.reproduction.terminal import ledger_view
     from faultpath.tables.terminal import drawn
 
     console = SafeConsole()

@@ -10,12 +10,10 @@ from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
-from faultpath.report import Traces
-from faultpath.report.reproduction import (
-    ReproductionInput,
-    ledger_markdown,
-    reproduction_page,
-)
+from faultpath.report.inputs import Traces
+from faultpath.report.reproduction.inputs import ReproductionInput
+from faultpath.report.reproduction.page import reproduction_page
+from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import traces_of, write_text
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal

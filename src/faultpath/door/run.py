@@ -13,7 +13,8 @@ import pyarrow as pa
 from faultpath.door.saved import RECORD, read_provenance, read_run
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import ReportInput, notebook_view, write_report
+from faultpath.report.html import notebook_view, write_report
+from faultpath.report.inputs import ReportInput
 from faultpath.trials import Status
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from faultpath.errors import UserError
 from faultpath.planning import struck_taps
 from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import ReportInput, Traces
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.store import read_table
 from faultpath.store.parquet import Unreadable
 from faultpath.store.sealed import AGAIN, read_regular, unseal

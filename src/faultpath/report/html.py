@@ -1,18 +1,21 @@
-"""The report as one page that opens without a network."""
+"""The report as one page that opens without a network, as a notebook's cell, and as files."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 
 from markupsafe import Markup
 
 from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.report import figures, wording
-from faultpath.report.frame import render
+from faultpath.report.frame import fragment, render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
-from faultpath.report.tables import SHOWN, by_path
+from faultpath.report.svg import template
+from faultpath.report.tables import SHOWN, by_path, latex_table, markdown_table
 from faultpath.report.viewer import choose, viewer_data
+from faultpath.store import make_folder, write_text
 from faultpath.tables.html import html
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
@@ -42,6 +45,36 @@ def report_page(source: ReportInput) -> str:
         viewer=chosen and viewer_data(source.record, source.traces, source.plans, chosen),
         w=wording,
     )
+
+
+def notebook_view(record: DecisionRecord) -> str:
+    """Return HTML for one cell's output; its colours and rules stay within it."""
+    asked = record.question
+    styles = template("tokens.css").replace(":root", ".faultpath") + template("svg.css")
+    return fragment(
+        "notebook.html.j2",
+        styles=Markup(styles + template("notebook.css")),
+        record=record,
+        table=Markup(html(by_path(record, SHOWN), caption=False)),
+        forest=Markup(figures.forest(figures.effect_rows(record), asked.baseline, asked.repair)),
+        w=wording,
+    )
+
+
+def write_report(source: ReportInput, folder: Path) -> list[Path]:
+    """Write `report.html`, `table.tex` and `table.md` into `folder` and return their paths.
+
+    Each file appears whole or not at all. Raises `UserError` where the folder cannot be written.
+    """
+    makers: dict[str, Callable[[], str]] = {
+        "report.html": lambda: report_page(source),
+        "table.tex": lambda: latex_table(source.record),
+        "table.md": lambda: markdown_table(source.record),
+    }
+    make_folder(folder)
+    for name, make in makers.items():
+        write_text(folder / name, make(), folder)
+    return [folder / name for name in makers]
 
 
 def _path_titles(record: DecisionRecord) -> dict[str, str]:

@@ -7,8 +7,7 @@ crossing wires is kept, and the declared one wins ties, so that a drawing stays 
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
-from typing import TypeVar
+from itertools import combinations, groupby
 
 from faultpath.interface import Interface
 
@@ -19,8 +18,6 @@ MARGIN_TOP = 40.0
 SOURCE_PITCH, SOURCE_HEIGHT = 44.0, 36.0
 CHANNEL_HEIGHT = 34.0
 TAP_PITCH, PLACE_GAP, MODULE_HEAD, MODULE_GAP = 18.0, 5.0, 28.0, 16.0
-
-_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -58,9 +55,10 @@ class _Order:
 def lay_out(interface: Interface) -> Layout:
     """Return where every part stands."""
     order = _best_order(interface)
-    heights = _module_heights(order.taps)
+    heights = _stack(order.taps, 0.0)[-1].bottom if order.taps else 0.0
     tallest = max(len(order.sources) * SOURCE_PITCH, heights, len(order.channels) * 40.0)
-    sources = _evenly(order.sources, tallest)
+    pitch = tallest / max(len(order.sources), 1)
+    sources = {name: MARGIN_TOP + pitch * (i + 0.5) for i, name in enumerate(order.sources)}
     modules = _stack(order.taps, MARGIN_TOP + 0.5 * (tallest - heights))
     taps = {tap: y for module in modules for tap, y in module.rows}
     channels = _near_neighbours(interface, order, sources, taps, tallest)
@@ -99,9 +97,8 @@ def _declared(interface: Interface) -> _Order:
     channels = tuple(c.name for c in interface.channels)
     sources = tuple(s.name for s in interface.sources)
     group = {s.name: s.correlation_group or s.name for s in interface.sources}
-    firsts = {name: i for i, name in reversed(list(enumerate(sources)))}
-    first_of_group = {group[s]: firsts[s] for s in reversed(sources)}
-    sources = tuple(sorted(sources, key=lambda s: (first_of_group[group[s]], firsts[s])))
+    groups = list(dict.fromkeys(group.values()))
+    sources = tuple(sorted(sources, key=lambda s: groups.index(group[s])))
     taps = tuple((c.name, consumer) for c in interface.channels for consumer in c.consumers)
     return _Order(sources, channels, _gathered(taps, {c: i for i, c in enumerate(channels)}))
 
@@ -190,31 +187,12 @@ def _rising(values: Sequence[float]) -> list[float]:
     return [total / size for total, size in pools for _ in range(size)]
 
 
-def _evenly(names: Sequence[str], tallest: float) -> dict[str, float]:
-    pitch = tallest / max(len(names), 1)
-    return {name: MARGIN_TOP + pitch * (i + 0.5) for i, name in enumerate(names)}
-
-
-def _runs(taps: Sequence[Tap], key: Callable[[Tap], _T]) -> list[tuple[_T, list[Tap]]]:
-    runs: list[tuple[_T, list[Tap]]] = []
-    for tap in taps:
-        if not runs or runs[-1][0] != key(tap):
-            runs.append((key(tap), []))
-        runs[-1][1].append(tap)
-    return runs
-
-
-def _module_heights(taps: Sequence[Tap]) -> float:
-    blocks = _stack(taps, 0.0)
-    return blocks[-1].bottom if blocks else 0.0
-
-
 def _stack(taps: Sequence[Tap], top: float) -> tuple[ModuleBlock, ...]:
     blocks: list[ModuleBlock] = []
-    for module, inside in _runs(taps, _module):
+    for module, inside in groupby(taps, _module):
         y = top + MODULE_HEAD
         rows: list[tuple[Tap, float]] = []
-        for _, place in _runs(inside, lambda tap: tap[1]):
+        for _, place in groupby(inside, lambda tap: tap[1]):
             for tap in place:
                 rows.append((tap, y + TAP_PITCH / 2))
                 y += TAP_PITCH

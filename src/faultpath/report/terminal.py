@@ -1,11 +1,13 @@
-"""What the command line prints of a decision record, as rich renderables."""
+"""What the command line prints of a decision record and of an interface."""
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
+from faultpath.tables import Line, Table, line
 from faultpath.tables.terminal import drawn
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
@@ -14,7 +16,8 @@ _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 def decision(record: DecisionRecord) -> RenderableType:
     """Return the decision record as text and tables: verdict, effects, what would change it."""
     asked = record.question
-    names = _EFFECTS if any(effect.void_pairs for effect in record.effects) else _WITHOUT_VOID
+    void = any(effect.void_pairs for effect in record.effects)
+    names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_path(record, names, f"{asked.repair} minus {asked.baseline}")
     parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
@@ -25,11 +28,31 @@ def decision(record: DecisionRecord) -> RenderableType:
     return Group(*parts)
 
 
-_WITHOUT_VOID = tuple(name for name in _EFFECTS if name != "void")
-
-
 def _list(title: str, items: tuple[str, ...], style: str) -> list[RenderableType]:
     if not items:
         return []
     points = (Padding(Text(f"- {item}"), (0, 0, 0, 2)) for item in items)
     return [Text(""), Text(title, style=style), *points]
+
+
+def interface_table(interface: Interface) -> RenderableType:
+    """Return the channels of an interface, most consumers first, and what is reconstructed."""
+    columns = ("fed by", "read by")
+    table = Table(
+        title=f"Information interface of {interface.name}",
+        corner="channel",
+        columns=columns,
+        words=columns,
+        lines=tuple(_line(interface, channel) for channel in rank(interface)),
+    )
+    made = [Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions]
+    return Group(drawn(table), *made)
+
+
+def _line(interface: Interface, channel: Channel) -> Line:
+    """Who feeds a channel, who reads it, and who is reached through a reconstruction."""
+    sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
+    further = sorted(set(transitive_consumers(interface, channel.name)) - set(channel.consumers))
+    consumers = (*channel.consumers, *(f"reaches {name}" for name in further))
+    gap = "no" if channel.gap is Gap.NONE else channel.gap.value
+    return line(channel.name, "\n".join(sources), "\n".join(consumers), aside=f"{gap} gap")

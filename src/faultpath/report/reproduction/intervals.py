@@ -1,11 +1,12 @@
 """Estimates with their intervals, small enough to stand in a line of text."""
 
+from collections.abc import Sequence
+
 from faultpath.report.scale import Axis, covering, tick_label
 from faultpath.report.svg import Svg
 
 WIDTH = 150.0
 _HEIGHT, _LABELLED = 20.0, 31.0
-Interval = tuple[float, float]
 
 
 def plot_axis(ends: list[float]) -> Axis:
@@ -26,7 +27,7 @@ def scale_plot(axis: Axis, title: str) -> str:
 def interval_plot(
     title: str,
     value: float,
-    interval: Interval,
+    interval: Sequence[float],
     least_detectable: float | None,
     shared: Axis | None,
 ) -> str:

@@ -13,7 +13,7 @@ from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
-from faultpath.report.reproduction.ledger import ledger_rows
+from faultpath.report.reproduction.ledger import ledger_plots
 from faultpath.report.viewer import choose, viewer_data
 from faultpath.tables.html import html
 
@@ -31,7 +31,7 @@ def reproduction_page(source: ReproductionInput) -> str:
         _SCRIPTS,
         found=reproduction,
         ledger=reproduction.ledger,
-        rows=ledger_rows(reproduction.ledger),
+        plots=ledger_plots(reproduction.ledger),
         tables=[
             (table, Markup(html(table, "beside", caption=False))) for table in reproduction.tables
         ],

@@ -20,24 +20,24 @@ def typeset(text: str) -> str:
     return wording.typeset(text)
 
 
-def figure(value: float, unit: str) -> str:
-    """Return a value with its unit; differences carry their sign."""
-    text = (wording.signed if unit in _DIFFERENCES else wording.plain)(value, _digits(unit))
-    return f"{text}{_behind(unit)}"
-
-
-def interval(ends: tuple[float, float] | None, unit: str) -> str:
-    """Return `[48.3, 66.3]`, or nothing without an interval."""
-    if ends is None:
+def figure(of: ClaimVerdict | Part) -> str:
+    """Return the estimate with its unit, nothing without one; differences carry their sign."""
+    if of.estimate is None:
         return ""
-    return f"[{', '.join(wording.plain(end, _digits(unit)) for end in ends)}]"
+    write = wording.signed if of.unit in _DIFFERENCES else wording.plain
+    return f"{write(of.estimate, _digits(of.unit))}{_behind(of.unit)}"
+
+
+def interval(of: ClaimVerdict | Part) -> str:
+    """Return `[48.3, 66.3]`, or nothing without an interval."""
+    if of.interval is None:
+        return ""
+    return f"[{', '.join(wording.plain(end, _digits(of.unit)) for end in of.interval)}]"
 
 
 def estimate(of: ClaimVerdict | Part) -> str:
     """Return estimate and interval; nothing where there is no estimate."""
-    if of.estimate is None:
-        return ""
-    return f"{figure(of.estimate, of.unit)} {interval(of.interval, of.unit)}".rstrip()
+    return f"{figure(of)} {interval(of)}".rstrip() if figure(of) else ""
 
 
 def least_detectable(of: ClaimVerdict | Part) -> str:
