@@ -9,7 +9,11 @@ import pytest
 
 from faultpath.interface import Interface
 from faultpath.record import PathBreakEven
-from faultpath.report import figures, wording
+from faultpath.report import wording
+from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
+from faultpath.report.figures.frequency import frequency_panel, shared_range
+from faultpath.report.figures.outcomes import outcome_bars
+from faultpath.report.figures.pairs import pair_grid, pair_key
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_layout import CHANNEL_HEIGHT, SOURCE_HEIGHT, lay_out
@@ -80,18 +84,15 @@ def test_empty_interface_can_be_drawn() -> None:
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     record = one_seed.record
     pairs = read_pairs(one_seed.outcomes, record)
-    rows = figures.effect_rows(record)
+    rows = effect_rows(record)
     drawn = [
-        figures.forest(rows, "a<b", "c&d"),
-        figures.forest(rows, "a<b", "c&d", narrow=True),
-        figures.pair_grid('"<title>"', pairs, {"timeout": "<late>"}),
-        figures.pair_grid("nothing", (), {}),
-        figures.outcome_bars("<x>", record.cells, {"timeout": "<late>"}),
-        *(sign for sign, _ in figures.pair_key(pairs)),
-        *(
-            figures.frequency_panel(b, "<&>", figures.shared_range(record.break_even))
-            for b in record.break_even
-        ),
+        forest(rows, "a<b", "c&d"),
+        forest(rows, "a<b", "c&d", narrow=True),
+        pair_grid('"<title>"', pairs, {"timeout": "<late>"}),
+        pair_grid("nothing", (), {}),
+        outcome_bars("<x>", record.cells, {"timeout": "<late>"}),
+        *(sign for sign, _ in pair_key(pairs)),
+        *(frequency_panel(b, "<&>", shared_range(record.break_even)) for b in record.break_even),
     ]
     for picture in drawn:
         ElementTree.fromstring(picture)
@@ -102,20 +103,20 @@ def test_a_secondary_outcome_looks_decided_nowhere() -> None:
     e = Estimate(
         value=0.9, low=0.5, high=1.4, unit="m", method="m", estimand="e", n_scenes=9, n_seeds=1
     )
-    panel = figures.secondary_panel("distance", "m", [("shared", e), ("none", None)], "less")
+    panel = secondary_panel("distance", "m", [("shared", e), ("none", None)], "less")
     assert "dot" not in panel
     assert not re.search(r'class="[^"]*(repair|baseline|bold)', panel)
     assert "secondary; less is better" in panel
 
 
 def _row(one_seed: ReportInput, **changes: object) -> str:
-    row = replace(figures.effect_rows(one_seed.record)[0], **changes)
-    return figures.forest([row], "a", "b")
+    row = replace(effect_rows(one_seed.record)[0], **changes)
+    return forest([row], "a", "b")
 
 
 def test_only_a_decided_difference_is_bold(one_seed: ReportInput) -> None:
     for sign in (-1, 0, 1):
-        value = f">{figures.effect_rows(one_seed.record)[0].effect.value:+.1f}".replace("-", "−")
+        value = f">{effect_rows(one_seed.record)[0].effect.value:+.1f}".replace("-", "−")
         (drawn,) = (line for line in _row(one_seed, sign=sign).split("<text") if value in line)
         assert ("bold" in drawn) == (sign != 0)
 
@@ -130,7 +131,7 @@ def test_a_dot_is_filled_for_what_is_decided_and_for_nothing_else(one_seed: Repo
 
 def test_system_names_its_own_ends(one_seed: ReportInput) -> None:
     cells = [cell for cell in one_seed.record.cells if cell.timeout]
-    drawn = figures.outcome_bars("x", cells, {"timeout": "missed"})
+    drawn = outcome_bars("x", cells, {"timeout": "missed"})
     assert "missed" in drawn
     assert "timeout" not in re.sub(r'class="[^"]*"', "", drawn)
 
@@ -142,7 +143,7 @@ def _panel(words: str, pieces: tuple[tuple[float, float], ...], *regions: Region
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
     path = PathBreakEven(path="shared", result=result, curve=curve, words=words)
-    return figures.frequency_panel(path, "Shared", figures.shared_range([path]))
+    return frequency_panel(path, "Shared", shared_range([path]))
 
 
 def test_the_curve_is_coloured_where_an_arm_is_decided_to_be_ahead() -> None:

@@ -6,7 +6,11 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.record.model import Cell, DecisionRecord, Effect
-from faultpath.report import figures, wording
+from faultpath.report import wording
+from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
+from faultpath.report.figures.frequency import frequency_panel, shared_range
+from faultpath.report.figures.outcomes import outcome_bars
+from faultpath.report.figures.pairs import pair_grid, pair_key
 from faultpath.report.frame import fragment, render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
@@ -56,7 +60,7 @@ def notebook_view(record: DecisionRecord) -> str:
         styles=Markup(styles + template("notebook.css")),
         record=record,
         table=Markup(html(by_path(record, SHOWN), caption=False)),
-        forest=Markup(figures.forest(figures.effect_rows(record), asked.baseline, asked.repair)),
+        forest=Markup(forest(effect_rows(record), asked.baseline, asked.repair)),
         w=wording,
     )
 
@@ -100,26 +104,25 @@ def _tiles(record: DecisionRecord) -> list[tuple[str, Effect, Cell, Cell]]:
 def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
     record = source.record
     titles, asked = _path_titles(record), record.question
-    rows = figures.effect_rows(record)
-    axis = figures.shared_range(record.break_even)
+    rows = effect_rows(record)
+    axis = shared_range(record.break_even)
     drawing = draw_interface(
         source.interface, struck_paths(record), source.variants, standalone=False
     )
     return {
         "interface": Markup(drawing),
-        "forest": Markup(figures.forest(rows, asked.baseline, asked.repair)),
-        "forest_narrow": Markup(figures.forest(rows, asked.baseline, asked.repair, narrow=True)),
+        "forest": Markup(forest(rows, asked.baseline, asked.repair)),
+        "forest_narrow": Markup(forest(rows, asked.baseline, asked.repair, narrow=True)),
         "frequency": [
-            Markup(figures.frequency_panel(b, titles.get(b.path, b.path), axis))
-            for b in record.break_even
+            Markup(frequency_panel(b, titles.get(b.path, b.path), axis)) for b in record.break_even
         ],
         "pairs": [
-            Markup(figures.pair_grid(title, [p for p in pairs if p.path == name], asked.ends))
+            Markup(pair_grid(title, [p for p in pairs if p.path == name], asked.ends))
             for name, title in titles.items()
         ],
-        "pair_key": [(Markup(sign), words) for sign, words in figures.pair_key(pairs)],
+        "pair_key": [(Markup(sign), words) for sign, words in pair_key(pairs)],
         "outcomes": [
-            Markup(figures.outcome_bars(title, _cells(record, name), asked.ends))
+            Markup(outcome_bars(title, _cells(record, name), asked.ends))
             for name, title in titles.items()
         ],
         "secondary": _secondary(record),
@@ -138,7 +141,7 @@ def _secondary(record: DecisionRecord) -> list[Markup]:
         ("Least clearance", "m", clearance, "more"),
     )
     return [
-        Markup(figures.secondary_panel(name, unit, rows, good))
+        Markup(secondary_panel(name, unit, rows, good))
         for name, unit, rows, good in panels
         if any(estimate for _, estimate in rows)
     ]

@@ -1,8 +1,10 @@
-"""Linear axes with round tick marks."""
+"""Linear axes with round tick marks, and what every picture draws along them."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+from faultpath.report.svg import Svg
 
 
 @dataclass(frozen=True)
@@ -44,6 +46,36 @@ def covering(values: Iterable[float], margin: float = 0.06, least: float = 1.0) 
 def tick_label(value: float) -> str:
     """Return a short label with a real minus sign."""
     return f"{value:g}".replace("-", "−")
+
+
+def draw_levels(svg: Svg, x: Axis, y: Axis, about: int, zero: str = "axis") -> None:
+    """Draw the round levels of an upward axis across the plot, labels to their left."""
+    for tick in y.ticks(about):
+        svg.line((x.start, y(tick)), (x.end, y(tick)), zero if tick == 0 else "axis")
+        svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
+
+
+def draw_tick(svg: Svg, x: Axis, y: Axis, value: float, label: str) -> None:
+    """Draw a tick of the lower axis with its label below."""
+    svg.line((x(value), y.start), (x(value), y.start + 4), "axis")
+    svg.text(x(value), y.start + 17, label, "small soft", "middle")
+
+
+def draw_uprights(svg: Svg, x: Axis, top: float, bottom: float, about: int) -> None:
+    """Draw the round numbers of an axis from top to bottom, labels below."""
+    for tick in x.ticks(about):
+        svg.line((x(tick), top), (x(tick), bottom), "zero" if tick == 0 else "axis")
+        svg.text(x(tick), bottom + 16, tick_label(tick), "small soft", "middle")
+
+
+def draw_interval(
+    svg: Svg, x: Axis, ends: Sequence[float], y: float, half: float, cls: str
+) -> None:
+    """Draw an interval with whiskers that reach `half` to either side."""
+    low, high = ends
+    svg.line((x(low), y), (x(high), y), cls)
+    for end in ends:
+        svg.line((x(end), y - half), (x(end), y + half), cls)
 
 
 def _round_step(raw: float) -> float:

@@ -98,15 +98,11 @@ class Svg:
 
     def polygon(self, points: Sequence[Point], cls: str, tip: str | None = None) -> None:
         """Draw a closed polygon."""
-        self._add(
-            "polygon", cls, tip, points=" ".join(f"{number(x)},{number(y)}" for x, y in points)
-        )
+        self._add("polygon", cls, tip, points=_joined(points))
 
     def polyline(self, points: Sequence[Point], cls: str) -> None:
         """Draw an open line through `points`."""
-        self._add(
-            "polyline", cls, None, points=" ".join(f"{number(x)},{number(y)}" for x, y in points)
-        )
+        self._add("polyline", cls, None, points=_joined(points))
 
     def text(
         self, x: float, y: float, content: str, cls: str = "", anchor: str = "", tip: str = ""
@@ -163,6 +159,10 @@ class Svg:
             f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'
         )
         return head + "".join(self._parts) + "</svg>"
+
+
+def _joined(points: Sequence[Point]) -> str:
+    return " ".join(f"{number(x)},{number(y)}" for x, y in points)
 
 
 def _attributes(cls: str, attributes: dict[str, float | str] | dict[str, str]) -> str:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord
 from faultpath.report import wording
-from faultpath.report.scale import Axis, covering, tick_label
+from faultpath.report.scale import Axis, covering, draw_interval, draw_uprights
 from faultpath.report.svg import Svg, shortened, wrapped
 from faultpath.statistics import Estimate
 
@@ -74,7 +74,7 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
     bottom = top + pitch * len(rows)
     svg = Svg(880, bottom + 46, title, told)
     plot = axis.at(292, 592)
-    _frame(svg, plot, top - 8, bottom)
+    draw_uprights(svg, plot, top - 8, bottom, 6)
     svg.text(266, 20, "success, %", "small soft", "end")
     for x, words in ((214, "baseline"), (266, "repair")):
         svg.text(x, 34, words, f"small {words}", "end")
@@ -107,7 +107,7 @@ def _narrow(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg
     bottom = top + pitch * len(rows)
     svg = Svg(350, bottom + 46, title, told)
     plot = axis.at(8, 342)
-    _frame(svg, plot, top - 4, bottom)
+    draw_uprights(svg, plot, top - 4, bottom, 6)
     _directions(svg, plot, 12)
     for i, row in enumerate(rows):
         y = top + pitch * i
@@ -141,7 +141,7 @@ def secondary_panel(
     svg.text(0, 14, f"{title}, {unit}", "head")
     svg.text(0, 31, f"secondary; {good} is better", "small soft")
     plot = covering(ends, least=10.0**-digits).at(6, _PANEL - 6)
-    _frame(svg, plot, top, bottom, about=4)
+    draw_uprights(svg, plot, top, bottom, 4)
     for i, (label, estimate) in enumerate(rows):
         y = top + pitch * i
         svg.rect(0, y + 5, _PANEL, 18, "paper")
@@ -172,12 +172,6 @@ def _all_95(rows: Sequence[EffectRow]) -> bool:
     return all(abs(row.effect.level - 0.95) < 1e-9 for row in rows)
 
 
-def _frame(svg: Svg, plot: Axis, top: float, bottom: float, about: int = 6) -> None:
-    for tick in plot.ticks(about):
-        svg.line((plot(tick), top), (plot(tick), bottom), "zero" if tick == 0 else "axis")
-        svg.text(plot(tick), bottom + 16, tick_label(tick), "small soft", "middle")
-
-
 def _directions(svg: Svg, plot: Axis, y: float) -> None:
     zero = plot(0.0)
     if zero - plot.start > 96:
@@ -199,9 +193,7 @@ def _mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: flo
             svg.line((plot(edge), y - 11), (plot(edge), y + 11), "band-edge")
         svg.line((plot(0), y - 11), (plot(0), y + 11), "zero")
     if e.low is not None and e.high is not None:
-        svg.line((plot(e.low), y), (plot(e.high), y), "range" + side)
-        for end in (e.low, e.high):
-            svg.line((plot(end), y - 4), (plot(end), y + 4), "range" + side)
+        draw_interval(svg, plot, (e.low, e.high), y, 4, "range" + side)
     if e.per_seed is not None and len(e.per_seed) > 1:
         for value in e.per_seed:
             svg.line((plot(value), y + 6), (plot(value), y + 11), "seed")

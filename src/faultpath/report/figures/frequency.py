@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from faultpath.record.model import PathBreakEven
 from faultpath.report import wording
-from faultpath.report.scale import Axis, covering, tick_label
+from faultpath.report.scale import Axis, covering, draw_levels, draw_tick
 from faultpath.report.svg import Point, Svg, shortened, wrapped
 
 _ROOM = 26.0  # pixels beside zero that a label of a side needs
@@ -30,7 +30,10 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     for i, line in enumerate(wrapped(words, 285, 11, 2)):
         svg.text(0, 31 + 14 * i, line, "small soft", tip=words)
     x, y = Axis(0.0, 1.0, 34, 280), vertical.at(222, 56)
-    _axes(svg, x, y)
+    draw_levels(svg, x, y, 5, zero="zero")
+    for percent in (0, 25, 50, 75, 100):
+        draw_tick(svg, x, y, percent / 100, str(percent))
+    svg.text(x(0.5), y.start + 34, "episodes with the fault, %", "small soft", "middle")
     if not path.curve:
         return svg.render()
     upper = [(x(p), y(high)) for p, _, _, high in path.curve]
@@ -43,18 +46,6 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     if y.start - y(0) > _ROOM:
         svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
     return svg.render()
-
-
-def _axes(svg: Svg, x: Axis, y: Axis) -> None:
-    for tick in y.ticks(5):
-        cls = "zero" if tick == 0 else "axis"
-        svg.line((x.start, y(tick)), (x.end, y(tick)), cls)
-        svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
-    for percent in (0, 25, 50, 75, 100):
-        at = x(percent / 100)
-        svg.line((at, y.start), (at, y.start + 4), "axis")
-        svg.text(at, y.start + 17, str(percent), "small soft", "middle")
-    svg.text(x(0.5), y.start + 34, "episodes with the fault, %", "small soft", "middle")
 
 
 def _curve(svg: Svg, path: PathBreakEven, x: Axis, y: Axis) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from faultpath.record.sweep import Point, Series, Sweep
 from faultpath.report import wording
-from faultpath.report.scale import Axis, tick_label
+from faultpath.report.scale import Axis, draw_levels, draw_tick, tick_label
 from faultpath.report.svg import Svg, text_width
 
 LOOKS = 4
@@ -23,7 +23,11 @@ def sweep_plot(sweep: Sweep, narrow: bool = False) -> str:
     x = _across(sweep.series).at(34, width - 10)
     y = _upward(sweep.series).at(top + height, top)
     svg.text(0, top - 12, sweep.y_title, "small soft")
-    _axes(svg, x, y, about=4 if narrow else 8)
+    draw_levels(svg, x, y, 6)
+    for tick in x.ticks(4 if narrow else 8):
+        if tick == 0:
+            svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
+        draw_tick(svg, x, y, tick, tick_label(round(tick, 9)))
     svg.text((x.start + x.end) / 2, top + height + 36, sweep.x_title, "small soft", "middle")
     for i, line in enumerate(sweep.series):
         _band(svg, line, x, y, f"spread s{i % LOOKS}")
@@ -54,17 +58,6 @@ def _upward(series: Sequence[Series]) -> Axis:
     values = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
     low, high = min(values), max(values)
     return Axis(low, high + (0.04 * (high - low) or 1.0), 0.0, 1.0)
-
-
-def _axes(svg: Svg, x: Axis, y: Axis, about: int) -> None:
-    for tick in y.ticks(6):
-        svg.line((x.start, y(tick)), (x.end, y(tick)), "axis")
-        svg.text(x.start - 6, y(tick) + 4, tick_label(tick), "small soft", "end")
-    for tick in x.ticks(about):
-        if tick == 0:
-            svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
-        svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
-        svg.text(x(tick), y.start + 17, tick_label(round(tick, 9)), "small soft", "middle")
 
 
 def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from faultpath.report.scale import Axis, covering, tick_label
+from faultpath.report.scale import Axis, covering, draw_interval, tick_label
 from faultpath.report.svg import Svg
 
 WIDTH = 150.0
@@ -47,9 +47,7 @@ def interval_plot(
         svg.rect(left, y - 8, right - left, 16, "band", 2)
     svg.line((0, y), (WIDTH, y), "axis")
     svg.line((axis(0.0), 0), (axis(0.0), _HEIGHT), "zero")
-    svg.line((axis(low), y), (axis(high), y), "range")
-    for end in interval:
-        svg.line((axis(end), y - 3.5), (axis(end), y + 3.5), "range")
+    draw_interval(svg, axis, interval, y, 3.5, "range")
     svg.circle((axis(value), y), 3.8, "dot open" if open_ else "dot")
     if not shared:
         for tick in _ends_of(axis):

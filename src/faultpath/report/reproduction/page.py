@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 from markupsafe import Markup
 
-from faultpath.report import figures, wording
+from faultpath.report import wording
+from faultpath.report.figures.effects import effect_rows, forest
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
@@ -71,11 +72,11 @@ def _reversal(source: ReproductionInput, struck: tuple[StruckPath, ...]) -> Mapp
     drawing = Markup(draw_interface(source.interface, struck, source.variants, standalone=False))
     if source.decision is None:
         return {"interface": drawing, "forest": None}
-    rows, asked = figures.effect_rows(source.decision), source.decision.question
+    rows, asked = effect_rows(source.decision), source.decision.question
     return {
         "interface": drawing,
-        "forest": Markup(figures.forest(rows, asked.baseline, asked.repair)),
-        "forest_narrow": Markup(figures.forest(rows, asked.baseline, asked.repair, narrow=True)),
+        "forest": Markup(forest(rows, asked.baseline, asked.repair)),
+        "forest_narrow": Markup(forest(rows, asked.baseline, asked.repair, narrow=True)),
     }
 
 
