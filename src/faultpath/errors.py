@@ -17,6 +17,10 @@ class Stopped(UserError):
     """Ctrl-C ended the command; the sentence says what is kept and how to go on."""
 
 
+class Notice(UserWarning):
+    """What a user should know of a run, in a sentence; workers hand it to their parent."""
+
+
 class SystemMistake(UserError):
     """A mistake in the code of a user's system."""
 

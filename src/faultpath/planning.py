@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from faultpath.errors import UserError
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import Interface, module_of
-from faultpath.interface.words import unknown
 from faultpath.record import (
     CORRECT,
     SHARED,
@@ -19,6 +18,7 @@ from faultpath.record import (
     primary_path,
 )
 from faultpath.taps import TapCount
+from faultpath.text import unknown
 from faultpath.trials import (
     Arm,
     Deliveries,

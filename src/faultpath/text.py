@@ -1,7 +1,9 @@
-"""Text from elsewhere, made fit for a terminal."""
+"""Text from elsewhere, made fit for a terminal; sentences for names that do not exist."""
 
 import re
 import unicodedata
+from collections.abc import Iterable
+from difflib import get_close_matches
 
 _WORD = re.compile(r"\S{240,}")
 _LONGEST = 4000
@@ -29,6 +31,19 @@ def one_line(text: str) -> str:
     line = printable(" ".join(part.strip() for part in text.split("\n") if part.strip()))
     line = _WORD.sub(lambda word: _cut(word[0], 120), line)
     return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
+
+
+def listed(names: Iterable[str]) -> str:
+    """Return names in one line, `none` when there are none."""
+    return ", ".join(sorted(names)) or "none"
+
+
+def unknown(what: str, name: str, known: Iterable[str]) -> str:
+    """Return `unknown WHAT 'NAME'`, a close match where there is one, and the known names."""
+    known = tuple(known)
+    close = get_close_matches(name, known, n=1)
+    hint = f"did you mean '{close[0]}'? " if close else ""
+    return f"unknown {what} '{name}'; {hint}known: {listed(known)}"
 
 
 def _escaped(character: str) -> str:

@@ -54,10 +54,26 @@ def test_a_part_is_audited_by_the_name_of_what_builds_it(baseline, repair, optio
     assert "mine.py" in files
 
 
+READS = """
+
+def reads(seed):
+    with open("secret.txt"):
+        return Heavy(seed)
+"""
+
+
 @pytest.mark.slow
-def test_workers_build_the_part_too():
-    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:exact", workers=1, scenes=1)
+@pytest.mark.filterwarnings("default::faultpath.quadrotor.native.lending.PortableNotice")
+def test_workers_build_the_part_too_and_what_they_find_is_told_once():
+    Path("secret.txt").touch()
+    Path("mine.py").write_text(PARTS.read_text() + READS)
+    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:reads", workers=2, scenes=1)
     assert ended.status == 0, ended.err
+    said = " ".join(ended.out.split())
+    assert said.count("The system reads") == 1
+    assert "secret.txt, not named in its data_files" in said
+    (line,) = ended.err.splitlines()
+    assert line.startswith("faultpath: The predictor Heavy runs on the portable path")
 
 
 def test_an_edited_part_is_other_code():

@@ -1,7 +1,6 @@
 """Who does what next."""
 
-from faultpath.execution.schedule import Schedule, Task
-from faultpath.execution.units import Unit, plan
+from faultpath.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
 

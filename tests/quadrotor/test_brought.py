@@ -8,10 +8,10 @@ from textwrap import dedent
 import pytest
 from flights import HELD_OUT, bits, fly, quadrotor
 
+from faultpath.door.systems import with_parts
 from faultpath.errors import UserError
 from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
 from faultpath.trials import SystemSpec
-from faultpath.trials.parts import with_parts
 from faultpath.trials.state import system_code
 
 PARTS = Path(__file__).with_name("own_parts.py")
@@ -69,7 +69,7 @@ def test_a_subclass_flies_the_portable_path_and_says_so():
 @pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
 def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
     system = quadrotor(predictor=PREDICTOR, predictor_seed="1")
-    named, chosen = system.choices[PREDICTOR], system.choices["gru"]
+    named, chosen = system.setups[PREDICTOR], system.setups["gru"]
     assert (named.load_predictor(2).seed, chosen.load_predictor(2).seed) == (2, 1)
     assert named.load_predictor(None).seed is None
     assert named.load_predictor(2) is not named.load_predictor(2)
@@ -234,13 +234,16 @@ def test_code_and_data_of_a_part_are_part_of_what_flies(tmp_path):
 
 
 def test_variants_name_what_is_brought():
-    given = with_parts("quadrotor", {"wind": "L1"}, ("gru", "a/b.py:create/gru"))
-    assert given == {"wind": "L1", "bring": "a/b.py:create"}
-    given = with_parts("quadrotor", {"bring": "a.py:x"}, ("a.py:x/b.py:y", "zero-wind"))
-    assert given == {"bring": "a.py:x,b.py:y"}
-    assert with_parts("quadrotor", {}, ("gru", "gru+dcc")) == {}
+    def given(variants, system="quadrotor", **options):
+        return with_parts(SystemSpec(name=system, options=options), variants).options
+
+    brought = given(("gru", "a/b.py:create/gru"), wind="L1")
+    assert brought == {"wind": "L1", "bring": "a/b.py:create"}
+    brought = given(("a.py:x/b.py:y", "zero-wind"), bring="a.py:x")
+    assert brought == {"bring": "a.py:x,b.py:y"}
+    assert given(("gru", "gru+dcc")) == {}
     with pytest.raises(UserError, match=r"'a\.py:create'"):
-        with_parts("quadrotor", {}, ("a.py", "gru"))
+        given(("a.py", "gru"))
     toy = f"{PARTS.parents[2] / 'examples' / 'toy.py'}:create"
-    assert with_parts(toy, {}, ("a.py:create", "blind")) == {}
+    assert given(("a.py:create", "blind"), toy) == {}
     assert quadrotor(bring=f"wm-a-wind/{os.path.relpath(WIND)}").parts == (os.path.relpath(WIND),)

@@ -11,7 +11,7 @@ from faultpath.quadrotor.models import predictor, reconstruction
 from faultpath.quadrotor.modules.history import STEPS as HISTORY
 from faultpath.quadrotor.predictors import History
 from faultpath.quadrotor.presets import STATE_NOISE_STD
-from faultpath.quadrotor.variants import choices
+from faultpath.quadrotor.variants import setups
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -33,12 +33,12 @@ def test_every_variant_reads_what_it_declares_and_needs_no_privilege(name):
 
 
 def test_an_arms_seed_chooses_the_training_of_what_its_variant_names():
-    found = {choice.name: choice for choice in choices(quadrotor(**LEARNED).options)}
+    found = {each.name: each for each in setups(quadrotor(**LEARNED).options)}
     assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
     assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)
     assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2)
     assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2)
-    other = {c.name: c for c in choices(quadrotor(**LEARNED, predictor_seed="1").options)}
+    other = {each.name: each for each in setups(quadrotor(**LEARNED, predictor_seed="1").options)}
     assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1)
 
 

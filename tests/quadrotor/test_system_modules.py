@@ -43,7 +43,7 @@ def graphs(systems: tuple[Quadrotor, ...]) -> list[Graph]:
 def test_variants_are_all_predictors_with_all_winds(systems):
     """Otherwise the tests below would speak of some of them only."""
     for system in systems:
-        flown = {(choice.predictor, choice.wind) for choice in system.choices.values()}
+        flown = {(setup.predictor, setup.wind) for setup in system.setups.values()}
         assert {predictor for predictor, _ in flown} == set(PREDICTORS)
         winds = {wind for predictor, wind in flown if predictor == "wm-a-wind"}
         assert winds == {"zero-wind", "true-wind", *RECONSTRUCTIONS}

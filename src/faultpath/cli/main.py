@@ -6,12 +6,13 @@ It imports next to nothing itself, so that Ctrl-C while the rest loads ends in a
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 from traceback import format_exception
 from types import FrameType
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
-from faultpath.errors import Stopped
+from faultpath.errors import Notice, Stopped
 from faultpath.text import one_line
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def main() -> None:
     """
     arguments, told = _arguments(sys.argv[1:])
     ctrl_c = _CtrlC()
+    shown, warnings.showwarning = warnings.showwarning, _show
     try:
         status = _run(arguments)
     except BaseException as error:
@@ -52,7 +54,19 @@ def main() -> None:
         _end(sentence, USER_ERROR)
     finally:
         ctrl_c.leave()
+        warnings.showwarning = shown
     sys.exit(status)
+
+
+def _show(message: Warning | str, *more: Any, **named: Any) -> None:
+    """Show a notice as a sentence; warnings of libraries as Python does."""
+    if isinstance(message, Notice):
+        sys.stderr.write(f"faultpath: {message}\n")
+    else:
+        _shown(message, *more, **named)
+
+
+_shown = warnings.showwarning
 
 
 class _CtrlC:

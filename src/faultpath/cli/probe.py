@@ -80,20 +80,14 @@ def command(
 def _measure(
     measure: "Measurer", plan: "ProbePlan", scenes: int | None, folder: Path, workers: int
 ) -> "EvidenceTable":
-    from rich.progress import Progress
+    from faultpath.door.display import Display, Now, SafeConsole
 
-    from faultpath.door.display import SafeConsole
+    with Display(SafeConsole(stderr=True)).progress("Measuring") as show:
 
-    console = SafeConsole(stderr=True)
-    with Progress(console=console, transient=True, disable=not console.is_interactive) as bar:
-        task = bar.add_task("Measuring", total=None)
-        return measure(
-            plan.measurements(),
-            scenes,
-            folder,
-            workers,
-            lambda done, total: bar.update(task, completed=done, total=total),
-        )
+        def note(done: float, total: float) -> None:
+            show(Now(done, total, f"{done:.0f} of {total:.0f} flights"))
+
+        return measure(plan.measurements(), scenes, folder, workers, note)
 
 
 def _table(probe: "Probe") -> "Table":

@@ -1,7 +1,6 @@
 """`faultpath scenes`: libraries of the quadrotor."""
 
-from collections.abc import Callable, Generator
-from contextlib import contextmanager
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -23,49 +22,27 @@ def generate(
     count: Annotated[int, typer.Option(max=MOST_SCENES, help="Number of scenes.")] = 100,
 ) -> None:
     """Generate a library from a seed; audits take the file as `--library`."""
+    from faultpath.door.display import Display, Now, SafeConsole
     from faultpath.errors import UserError
     from faultpath.quadrotor.scenes.library import write_library
 
     name = out.name.partition(".")[0]
     if not name:
         raise UserError(f"the file {str(out)!r} gives the library no name: call it mine.json, say.")
+    began = time.monotonic()
     try:
-        with _making(count) as made:
-            write_library(out, seed=seed, count=count, name=name, progress=made)
+        with Display(SafeConsole(stderr=True)).progress("Making scenes") as show:
+
+            def note(made: int) -> None:
+                left = (time.monotonic() - began) * (count - made) / max(1, made)
+                show(Now(made, count, f"{made} of {count}", left))
+
+            write_library(out, seed=seed, count=count, name=name, progress=note)
     except OSError as error:
         raise UserError(
             f"cannot write {out} ({error.strerror}): choose a place that you may write to."
         ) from error
     typer.echo(f"Written: {out}")
-
-
-@contextmanager
-def _making(count: int) -> Generator[Callable[[int], None]]:
-    """Show on the standard error how many scenes there are, and how long the others will take."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-    from rich.progress import TimeRemainingColumn as TimeLeft
-
-    from faultpath.door.display import SafeConsole
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeLeft(),
-        TextColumn("left"),
-    )
-    bar = Progress(*columns, console=SafeConsole(stderr=True))
-    task = bar.add_task("Making scenes", total=count)
-
-    def show(made: int) -> None:
-        bar.start()  # with the first scene: what is refused shows no bar
-        bar.update(task, completed=made)
-
-    try:
-        yield show
-    finally:
-        if bar.live.is_started:
-            bar.stop()
 
 
 @app.command("list")

@@ -34,9 +34,7 @@ def statistics(
     detectable difference, false announcements. Exits with 1 where a promise is not kept."""
     import os
 
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    from faultpath.door.display import SafeConsole, left
+    from faultpath.door.display import Display, Now, SafeConsole
     from faultpath.selfcheck import check_statistics, failures
     from faultpath.selfcheck.terminal import show
     from faultpath.store import check_writable, write_text
@@ -44,18 +42,10 @@ def statistics(
     if out is not None:
         check_writable(out)
     console = SafeConsole()
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total} settings"),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
-    )
-    with Progress(*columns, console=console) as bar:
-        task = bar.add_task("Simulating", total=None, left="")
+    with Display(console).progress("Simulating") as simulating:
 
         def note(done: int, total: int, seconds: float | None) -> None:
-            bar.update(task, total=total, completed=done, left=left(seconds))
+            simulating(Now(done, total, f"{done}/{total} settings", seconds))
 
         report = check_statistics(
             "quick" if quick else "full", processes or os.cpu_count() or 1, note

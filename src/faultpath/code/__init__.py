@@ -1,19 +1,8 @@
 """Which source decides a result: what a module imports, where it lies, and what it is made of."""
 
+# pyright: reportUnusedImport=false
 from faultpath.code.graph import Root
 from faultpath.code.reads import Reads
 from faultpath.code.shadows import Shadowed, shadowed
 from faultpath.code.state import Code, CodeState, named, read_code
 from faultpath.code.watch import Watch
-
-__all__ = [
-    "Code",
-    "CodeState",
-    "Reads",
-    "Root",
-    "Shadowed",
-    "Watch",
-    "named",
-    "read_code",
-    "shadowed",
-]

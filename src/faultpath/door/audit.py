@@ -74,6 +74,7 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
+    given = dict(locals())
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
     drawn = checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
@@ -95,23 +96,8 @@ def audit(
         primary=primary,
         generalise=generalise,
     )
-    told = display(
-        progress,
-        "audit",
-        system=chosen.spec.name,
-        baseline=baseline,
-        repair=repair,
-        fault=fault,
-        library=library,
-        scenes=scenes,
-        seeds=seeds,
-        primary=primary,
-        generalise=generalise,
-        options=chosen.spec.options,
-        folder=None if folder is None else str(folder),
-        workers=workers,
-        time_limit_s=time_limit_s,
-    )
+    said = {"system": chosen.spec.name, "options": chosen.spec.options}
+    told = display(progress, "audit", given | said)
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.carrying_out import carry_out

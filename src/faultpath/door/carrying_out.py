@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from faultpath.door.display import Display
+from faultpath.door.display import Display, Now
 from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM
 from faultpath.errors import Stopped
 from faultpath.execution import (
@@ -64,7 +64,7 @@ def _run(
 
         def note(now: Progress) -> None:
             count = f"{now.trials_done} of {now.trials_total} trials"
-            show(now.trials_estimated, now.trials_total, count, now.seconds_left, "")
+            show(Now(now.trials_estimated, now.trials_total, count, now.seconds_left))
 
         try:
             return run_study(

@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -13,8 +13,20 @@ from rich.segment import Segment
 
 from faultpath.text import printable
 
-Show = Callable[[float, float | None, str, float | None, str], None]
-"""Shows how much is done of how much, the same in words, seconds left, and a remark."""
+
+@dataclass(frozen=True)
+class Now:
+    """How much is done of how much, the same in words, seconds left, and a remark."""
+
+    done: float
+    total: float | None
+    count: str
+    seconds: float | None = None
+    remark: str = ""
+
+
+Show = Callable[[Now], None]
+
 
 _LINE_S = 10.0
 """Seconds between two lines, where no bar can move."""
@@ -66,7 +78,7 @@ class Display:
     def progress(self, what: str) -> Generator[Show]:
         """Show how far something has come: as a bar that moves, or in a line now and then."""
         if self.console is None:
-            yield _nowhere
+            yield lambda now: None
         elif self.console.is_terminal or (self.console.is_jupyter and find_spec("ipywidgets")):
             with _bar(self.console, what) as show:
                 yield show
@@ -74,19 +86,24 @@ class Display:
             yield _Lines(self.console, what).show
 
 
-def display(progress: bool | Display, name: str, **given: object) -> Display:
+def display(progress: bool | Display, name: str, given: Mapping[str, object]) -> Display:
     """Return who is told of a call from Python: notebooks in their cell, others on stderr.
 
-    `name` and `given` are what was called, and with what; left out is what is `None` or empty.
+    `name` and `given` are what was called, and with what; left out is what is `None` or empty,
+    and `progress` itself.
     """
     if isinstance(progress, Display):
         return progress
-    said = (f"{key}={value!r}" for key, value in given.items() if value not in (None, (), {}))
+    said = (
+        f"{key}={(str(value) if key == 'folder' else value)!r}"
+        for key, value in given.items()
+        if key != "progress" and value not in (None, (), {})
+    )
     call = f"faultpath.{name}({', '.join(said)})"
     return Display(SafeConsole(stderr=True) if progress else None, (call,))
 
 
-def left(seconds: float | None) -> str:
+def _left(seconds: float | None) -> str:
     """Say how long it will still take, where that is known."""
     return "" if seconds is None else f"{_clock(seconds)} left"
 
@@ -101,17 +118,25 @@ def _bar(console: Console, what: str) -> Generator[Show]:
         TextColumn("{task.fields[left]}"),
         TextColumn("{task.fields[remark]}"),
     )
-    with Progress(*columns, console=console) as bar:
-        task = bar.add_task(what, total=None, count="", left="", remark="")
+    bar = Progress(*columns, console=console)
+    task = bar.add_task(what, total=None, count="", left="", remark="")
 
-        def show(
-            done: float, total: float | None, count: str, seconds: float | None, remark: str
-        ) -> None:
-            bar.update(
-                task, completed=done, total=total, count=count, left=left(seconds), remark=remark
-            )
+    def show(now: Now) -> None:
+        bar.start()  # with the first news: what is refused shows no bar
+        bar.update(
+            task,
+            completed=now.done,
+            total=now.total,
+            count=now.count,
+            left=_left(now.seconds),
+            remark=now.remark,
+        )
 
+    try:
         yield show
+    finally:
+        if bar.live.is_started:
+            bar.stop()
 
 
 class _Lines:
@@ -123,20 +148,14 @@ class _Lines:
         self._began = self._last = time.monotonic()
         self._ended = False
 
-    def show(
-        self, done: float, total: float | None, count: str, seconds: float | None, remark: str
-    ) -> None:
-        now = time.monotonic()
-        ends = total is not None and done >= total
-        if self._ended or not (ends or now - self._last >= _LINE_S):
+    def show(self, now: Now) -> None:
+        moment = time.monotonic()
+        ends = now.total is not None and now.done >= now.total
+        if self._ended or not (ends or moment - self._last >= _LINE_S):
             return
-        self._last, self._ended = now, ends
-        parts = (
-            count,
-            f"{_clock(now - self._began)} so far",
-            "" if ends else left(seconds),
-            remark,
-        )
+        self._last, self._ended = moment, ends
+        so_far, left = f"{_clock(moment - self._began)} so far", "" if ends else _left(now.seconds)
+        parts = (now.count, so_far, left, now.remark)
         line = f"{self._what}: {', '.join(filter(None, parts))}"
         self._console.print(line, markup=False, soft_wrap=True)
 
@@ -145,9 +164,3 @@ def _clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
-
-
-def _nowhere(
-    done: float, total: float | None, count: str, seconds: float | None, remark: str
-) -> None:
-    del done, total, count, seconds, remark

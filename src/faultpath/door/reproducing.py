@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from faultpath.door.display import Display
+from faultpath.door.display import Display, Now
 from faultpath.door.reproduced import ReproductionRun
 from faultpath.door.saved import DELIVERIES
 from faultpath.errors import Stopped
@@ -63,7 +63,7 @@ def _fly(
 
         def flying(now: Pace) -> None:
             count = f"{now.trials_done:.0f} of {now.trials_total:.0f} trials"
-            show(now.trials_done, now.trials_total, count, now.seconds_left, now.leg)
+            show(Now(now.trials_done, now.trials_total, count, now.seconds_left, now.leg))
 
         return fly(legs, folder, workers, flying, told.say, time_limit_s)
 
@@ -74,7 +74,7 @@ def _measure(told: Display, plan: Plan, folder: Path, workers: int) -> EvidenceT
     with told.progress("Measuring") as show:
 
         def measuring(done: float, total: float) -> None:
-            show(done, total, f"{done:.0f} of {total:.0f} flights", None, "")
+            show(Now(done, total, f"{done:.0f} of {total:.0f} flights"))
 
         return measure_all(plan, folder, workers, measuring)
 

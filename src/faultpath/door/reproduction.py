@@ -39,6 +39,7 @@ def reproduce(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
+    given = dict(locals())
     named = (pages,) if isinstance(pages, str) else tuple(pages)
     options = {} if device is None else {"device": device}
     asked = plan(named, profile, standing(library), options)
@@ -46,17 +47,7 @@ def reproduce(
     if folder is None:
         own = "" if library is None else f"-{Path(library).stem}"
         place, other = asked.folder(f"{name}{own}-{asked.profile.name}")
-    told = display(
-        progress,
-        "reproduce",
-        pages=named,
-        profile=profile,
-        library=library,
-        folder=None if folder is None else str(folder),
-        workers=workers,
-        device=device,
-        time_limit_s=time_limit_s,
-    )
+    told = display(progress, "reproduce", given | {"pages": named, "name": None})
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.reproducing import carry_out

@@ -1,6 +1,7 @@
 """A system from whatever names it: a name, a file, or the object itself."""
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,10 +13,15 @@ from faultpath.errors import UserError
 from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
-from faultpath.trials.parts import with_parts
 
 _FACTORY = "create"
 """What builds the system in a file that is named without it."""
+
+_BRING = "bring"
+"""The option of a system that takes parts of the user's own, separated by commas; a system without
+it takes no parts."""
+
+_PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
 
 _LOADED = "_faultpath_loaded"
 """Under which name an object keeps what it was loaded from."""
@@ -59,7 +65,7 @@ def choose(
     Raises as `load_system`, and for what an object cannot do.
     """
     if not isinstance(system, System):
-        spec = _with_parts(_spec(system, options), variants)
+        spec = with_parts(_spec(system, options), variants)
         return Chosen(trials.load_system(spec), spec, workers)
     if options:
         raise UserError(
@@ -68,7 +74,7 @@ def choose(
         )
     spec = _loaded(system)
     if spec is not None:
-        spec = _with_parts(spec, variants)
+        spec = with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec, workers)
     if workers:
         raise UserError(
@@ -103,8 +109,28 @@ def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
     )
 
 
-def _with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
-    return SystemSpec(name=spec.name, options=with_parts(spec.name, spec.options, variants))
+def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
+    """Return a system with the parts of the user's own that `variants` name among its options.
+
+    So worker processes, fingerprint and record get them as they get every option. A variant is
+    named by a part, or by a part and more after a slash, as in `my_model.py:create/gru`.
+    `UserError` for a file without the name of what builds the part, or a comma in its path.
+    """
+    named = [name for name in variants if ":" in name or name.endswith(".py")]
+    if not named or _BRING not in {option.name for option in trials.system_options(spec.name)}:
+        return spec
+    for name in named:
+        if ":" not in name:
+            raise UserError(
+                f"'{name}' is a file: name the function in it that builds your part too, as in "
+                f"'{name}:create'."
+            )
+        if "," in name:
+            raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
+    found = [part for part in spec.options.get(_BRING, "").split(",") if part]
+    found += [part for name in named for part in _PART.findall(name)]
+    options = {**spec.options, _BRING: ",".join(dict.fromkeys(found))}
+    return SystemSpec(name=spec.name, options=options)
 
 
 def _loaded(system: System) -> SystemSpec | None:

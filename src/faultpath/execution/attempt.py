@@ -16,7 +16,6 @@ from faultpath.taps import TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
-from faultpath.work.threads import one_thread
 
 
 class WrongOutcomes(SystemMistake):
@@ -65,8 +64,7 @@ def attempt(
     """Run an arm over some scenes; an error comes back as a value. `guard` is that of `Taps`."""
     started = time.perf_counter()
     try:
-        with one_thread():
-            outcomes, taps = _run(system, arm, scenes, guard)
+        outcomes, taps = _run(system, arm, scenes, guard)
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.execution.limits import FEW, NothingRuns, TimeLimit
-from faultpath.execution.schedule import Task
-from faultpath.execution.units import Unit
+from faultpath.execution.schedule import Task, Unit
 from faultpath.store.folder import RunFolder
 from faultpath.store.tables import Shard
 from faultpath.taps import TapCount, added

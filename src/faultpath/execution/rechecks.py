@@ -11,10 +11,8 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from faultpath.execution.attempt import Reply, Wrong
-from faultpath.execution.differences import difference
-from faultpath.execution.recheck_words import findings
-from faultpath.execution.schedule import Recheck, Task
-from faultpath.execution.units import Unit
+from faultpath.execution.differences import difference, findings
+from faultpath.execution.schedule import Recheck, Task, Unit
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.taps import WrittenTo

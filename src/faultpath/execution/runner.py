@@ -1,22 +1,21 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from faultpath.code import Code
+from faultpath.code import Code, named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
-from faultpath.execution.changes import kept_trials, unnamed
 from faultpath.execution.flying import Flying
 from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.rechecks import Rechecks
-from faultpath.execution.schedule import Schedule, Task
-from faultpath.execution.units import Unit, plan
+from faultpath.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.execution.worker import Brief, fly, fly_here
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
@@ -144,7 +143,7 @@ def run_study(
                 if recheck:
                     _recheck(flying, again, ledger)
             if flying.undeclared:
-                notice(unnamed(sorted(flying.undeclared)))
+                notice(_unnamed(sorted(flying.undeclared)))
             table = assemble(study, library, ledger.outcomes)
             deliveries = Deliveries.of(study, ledger.taps, table, again.findings())
             for finding in deliveries.findings:
@@ -185,7 +184,9 @@ def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
             kept.append(unit.key)
             again += ledger.keep(unit, shard)
     if kept:
-        notice(kept_trials(ledger.progress(), sum(len(t.scenes) for t in again), run.written(kept)))
+        notice(
+            _kept_trials(ledger.progress(), sum(len(t.scenes) for t in again), run.written(kept))
+        )
     schedule = Schedule(missing)
     schedule.put(again)
     return schedule
@@ -221,6 +222,22 @@ def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:
                 where = details if details.exists() else None
                 failures.append(Failure(unit.arm, scene, outcome.error or "", where))
     return tuple(failures)
+
+
+def _kept_trials(now: Progress, again: int, written: tuple[datetime, datetime]) -> str:
+    """Say how many trials an earlier invocation left, and from when they are."""
+    first, last = (f"{moment:%Y-%m-%d %H:%M}" for moment in written)
+    when = f"from {first}" if first == last else f"from {first} to {last}"
+    tried = f"; {again} that failed are tried again" if again else ""
+    return f"Kept {now.trials_done} of {now.trials_total} trials, {when} UTC{tried}."
+
+
+def _unnamed(paths: Sequence[str]) -> str:
+    """Say that a system reads files whose change nobody would notice."""
+    return (
+        f"The system reads {named(paths)}, not named in its data_files: a change there would not "
+        "be noticed, and trials of before would be taken for trials of now."
+    )
 
 
 def _ignore(progress: Progress) -> None:

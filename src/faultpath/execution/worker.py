@@ -1,12 +1,13 @@
 """What a worker does for a study: builds the system that it is told, then flies what it is sent."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
 from faultpath.blame import explained
 from faultpath.code import Code, CodeState, Reads, Watch, named
+from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply, Wrong, attempt
-from faultpath.execution.changes import check_same, watched
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
@@ -81,7 +82,9 @@ def fly(brief: Brief, order: Order) -> Reply:
 
 def fly_here(system: System, unread: Watch, order: Order) -> Reply:
     """Fly with a system that is built; raises what makes the audit itself wrong."""
-    reply = watched(unread, attempt(system, order.arm, order.scenes, order.guard))
+    reply = attempt(system, order.arm, order.scenes, order.guard)
+    if changed := unread.changed():  # before it was read
+        raise _under_way(changed)
     if isinstance(reply, Wrong):
         raise reply.error
     return reply
@@ -96,9 +99,9 @@ def _build(brief: Brief) -> _Built:
     library = system.library(brief.library)
     code = system_code(system, brief.system)
     reads.forget(opened)  # scenes have a hash of their own
-    check_same(before, code.state)
+    _check_same(before, code.state)
     if (code.state, library.content_hash) != (brief.state, brief.library_hash):
-        check_same(brief.state, code.state)
+        _check_same(brief.state, code.state)
         differ = brief.state.changed(code.state) or ("the library",)
         raise WorkerLost(
             f"system {brief.system.name!r} is another one in a worker process than here "
@@ -112,3 +115,23 @@ def _reads() -> Reads:
     reads = Reads()
     reads.start()
     return reads
+
+
+def _check_same(before: CodeState, now: CodeState) -> None:
+    """Raise `UserError` where a file has other contents now; files in one of them alone may be."""
+    changed = tuple(
+        name
+        for mine, theirs in ((before.files, now.files), (before.data, now.data))
+        for name, digest in mine.items()
+        if theirs.get(name, digest) != digest
+    )
+    if changed:
+        raise _under_way(changed)
+
+
+def _under_way(names: Sequence[str]) -> UserError:
+    """Say that files changed under a run, and what becomes of it."""
+    return UserError(
+        f"{named(names)} changed while the run was under way: trials of the code before are kept "
+        "as such and not mixed with others; run the command again to run the code as it is now"
+    )

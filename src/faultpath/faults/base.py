@@ -2,12 +2,12 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Self, TypeAlias
+from typing import Any, ClassVar, Self, TypeAlias, cast
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.arrays import Array, Constant, HostArray, like
+from faultpath.arrays import Array, Constant, HostArray, like, misfit
 from faultpath.faults.draws import Draws
 from faultpath.interface import Channel
 
@@ -63,24 +63,31 @@ class Intervention(BaseModel, ABC):
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `(value, memory)`: what the consumer would get, and what to carry on."""
 
-    @abstractmethod
+    said: ClassVar[str] = ""
+    """What is done, in a few words; a field's name in braces stands for its value."""
+
     def words(self) -> str:
         """Return what is done, in a few words."""
+        return self.said.format_map({name: number(value) for name, value in self})
 
     def resolved(self, channel: Channel) -> Self:
         """Return the intervention with what it takes from the channel's declaration filled in."""
         return self
 
     def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Return why it cannot act on one scene's reading of `shape`, or `None`."""
-        return None
+        """Return why it cannot act on one scene's reading of `shape`, or `None`.
+
+        By default, because the numbers of a field that holds several do not fit it.
+        """
+        laid: list[tuple[str, Any]] = [each for each in self if isinstance(each[1], tuple)]
+        return next(filter(None, (misfit(name, value, shape) for name, value in laid)), None)
 
 
-def number(value: Constant) -> str:
-    """Return a number or nested tuple of numbers in short form."""
+def number(value: Any) -> str:
+    """Return a number or nested tuple of numbers in short form, and anything else as it is."""
     if isinstance(value, tuple):
-        return "(" + ", ".join(number(part) for part in value) + ")"
-    return f"{value:g}"
+        return "(" + ", ".join(map(number, cast("tuple[Any, ...]", value))) + ")"
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def with_error(reading: Array, error: HostArray, relative: bool) -> Array:

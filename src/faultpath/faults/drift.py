@@ -12,7 +12,6 @@ from faultpath.arrays import (
     HostArray,
     is_zero,
     like,
-    misfit,
     namespace,
     pick,
     place,
@@ -82,10 +81,6 @@ class Drift(Intervention):
             return ramp
         return walk if is_zero(self.rate_per_s) else f"{ramp} and {walk}"
 
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a rate whose shape the reading does not have."""
-        return misfit("rate_per_s", self.rate_per_s, shape)
-
 
 class Bias(Intervention):
     """Add a Gaussian error, constant in a scene or wandering as an Ornstein-Uhlenbeck process.
@@ -138,7 +133,3 @@ class Bias(Intervention):
         if self.time_constant_s is None:
             return f"{what}, one draw a scene"
         return f"{what}, wandering with a time constant of {number(self.time_constant_s)} s"
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a deviation whose shape the reading does not have."""
-        return misfit("std", self.std, shape)

@@ -13,7 +13,7 @@ from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
 from faultpath.faults.window import Window
 from faultpath.interface import Interface, module_of, modules
-from faultpath.interface.words import listed, unknown
+from faultpath.text import listed, unknown
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from faultpath.arrays import Array, Constant, is_zero, misfit
+from faultpath.arrays import Array, Constant, is_zero
 from faultpath.faults.base import Intervention, Memory, Moment, check_std, number, with_error
 
 
@@ -34,7 +34,3 @@ class Noise(Intervention):
     def words(self) -> str:
         """Return `noise of std STD`."""
         return f"{'relative ' if self.relative else ''}noise of std {number(self.std)}"
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a deviation whose shape the reading does not have."""
-        return misfit("std", self.std, shape)

@@ -24,7 +24,7 @@ from faultpath.faults.fault import Coupled, Fault
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.interface import Interface, groups
-from faultpath.interface.words import listed, unknown
+from faultpath.text import listed, unknown
 
 FaultPreset: TypeAlias = Callable[[float], Coupled]
 """A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""

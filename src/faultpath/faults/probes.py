@@ -4,28 +4,21 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from faultpath.arrays import Array, Constant, filled, misfit, namespace, place
-from faultpath.faults.base import Intervention, Memory, Moment, number
+from faultpath.arrays import Array, Constant, filled, namespace, place
+from faultpath.faults.base import Intervention, Memory, Moment
 
 
 class Replace(Intervention):
     """Deliver a fixed value, in the reading's unit, instead of the reading."""
 
     kind: Literal["replace"] = "replace"
+    said = "replaced by {value}"
     value_field: ClassVar[str | None] = "value"
     value: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the value for every scene."""
         return filled(self.value, reading), None
-
-    def words(self) -> str:
-        """Return `replaced by VALUE`."""
-        return f"replaced by {number(self.value)}"
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a value whose shape the reading does not have."""
-        return misfit("value", self.value, shape)
 
 
 class Shuffle(Intervention):
@@ -36,6 +29,7 @@ class Shuffle(Intervention):
     """
 
     kind: Literal["shuffle"] = "shuffle"
+    said = "shuffled along axis {axis}"
     value_field: ClassVar[str | None] = "axis"
     axis: int = Field(default=1, ge=1)
     """Axis of `[B, ...]`; 1 is the first axis of one scene's reading."""
@@ -50,10 +44,6 @@ class Shuffle(Intervention):
         ones[self.axis - 1] = -1
         order = xp.broadcast_to(xp.reshape(order, (order.shape[0], *ones)), reading.shape)
         return xp.take_along_axis(reading, order, axis=self.axis), None
-
-    def words(self) -> str:
-        """Return `shuffled along axis AXIS`."""
-        return f"shuffled along axis {self.axis}"
 
     def misfit(self, shape: tuple[int, ...]) -> str | None:
         """Refuse an axis that the reading does not have."""

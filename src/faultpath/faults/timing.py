@@ -17,6 +17,7 @@ class Delay(Intervention):
     """Deliver the reading of some steps ago; the first reading until there is one that old."""
 
     kind: Literal["delay"] = "delay"
+    said = "delayed by {steps} steps"
     value_field: ClassVar[str | None] = "steps"
     steps: int = Field(ge=0)
 
@@ -31,15 +32,12 @@ class Delay(Intervention):
             past = past[1:]
         return past[0][1], past
 
-    def words(self) -> str:
-        """Return `delayed by STEPS steps`."""
-        return f"delayed by {self.steps} steps"
-
 
 class Hold(Intervention):
     """Refresh the reading at every n-th step from the onset on: a lower rate."""
 
     kind: Literal["hold"] = "hold"
+    said = "refreshed every {every} steps"
     value_field: ClassVar[str | None] = "every"
     every: int = Field(ge=1)
     """Steps between two refreshes."""
@@ -55,10 +53,6 @@ class Hold(Intervention):
         held = kept((now != turn) | (at.elapsed < 0), reading, held)
         return held, (held, now)
 
-    def words(self) -> str:
-        """Return `refreshed every EVERY steps`."""
-        return f"refreshed every {self.every} steps"
-
 
 class Freeze(Intervention):
     """Hold the reading of the onset (paper: freezing).
@@ -67,6 +61,7 @@ class Freeze(Intervention):
     """
 
     kind: Literal["freeze"] = "freeze"
+    said = "frozen"
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the reading to hold."""
@@ -76,10 +71,6 @@ class Freeze(Intervention):
         """Return the held reading, which follows the readings up to the onset."""
         held = kept(at.elapsed <= 0, reading, memory)
         return held, held
-
-    def words(self) -> str:
-        """Return `frozen`."""
-        return "frozen"
 
 
 class Dropout(Intervention):

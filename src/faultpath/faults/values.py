@@ -4,7 +4,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.arrays import Array, Constant, constant, filled, is_zero, like, misfit, namespace
+from faultpath.arrays import Array, Constant, constant, filled, is_zero, like, namespace
 from faultpath.arrays import rows as as_rows
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.interface import Channel
@@ -14,20 +14,13 @@ class Scale(Intervention):
     """Multiply the reading by a factor."""
 
     kind: Literal["scale"] = "scale"
+    said = "scaled by {factor}"
     value_field: ClassVar[str | None] = "factor"
     factor: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading * factor`."""
         return reading * constant(self.factor, reading), None
-
-    def words(self) -> str:
-        """Return `scaled by FACTOR`."""
-        return f"scaled by {number(self.factor)}"
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a factor whose shape the reading does not have."""
-        return misfit("factor", self.factor, shape)
 
 
 class UniformScale(Intervention):
@@ -38,6 +31,7 @@ class UniformScale(Intervention):
     """
 
     kind: Literal["uniform_scale"] = "uniform_scale"
+    said = "scaled by 1 ± {half_range}, one draw a scene"
     value_field: ClassVar[str | None] = "half_range"
     random: ClassVar[bool] = True
     half_range: float = Field(ge=0, lt=1)
@@ -51,15 +45,12 @@ class UniformScale(Intervention):
         """Return `reading * factor of the scene`."""
         return reading * memory, memory
 
-    def words(self) -> str:
-        """Return `scaled by 1 ± HALF_RANGE, one draw a scene`."""
-        return f"scaled by 1 ± {number(self.half_range)}, one draw a scene"
-
 
 class Offset(Intervention):
     """Add a number, or a vector along the last axis, in the reading's unit."""
 
     kind: Literal["offset"] = "offset"
+    said = "offset by {by}"
     value_field: ClassVar[str | None] = "by"
     by: Constant
 
@@ -67,19 +58,12 @@ class Offset(Intervention):
         """Return `reading + by`; an offset of zero leaves even the sign of a zero alone."""
         return (reading if is_zero(self.by) else reading + constant(self.by, reading)), None
 
-    def words(self) -> str:
-        """Return `offset by BY`."""
-        return f"offset by {number(self.by)}"
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse an offset whose shape the reading does not have."""
-        return misfit("by", self.by, shape)
-
 
 class Quantise(Intervention):
     """Round to the nearest multiple of a step, halves to the even multiple."""
 
     kind: Literal["quantise"] = "quantise"
+    said = "rounded to multiples of {step_size}"
     value_field: ClassVar[str | None] = "step_size"
     step_size: float = Field(gt=0)
     """In the reading's unit."""
@@ -87,10 +71,6 @@ class Quantise(Intervention):
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return the rounded reading."""
         return namespace(reading).round(reading / self.step_size) * self.step_size, None
-
-    def words(self) -> str:
-        """Return `rounded to multiples of STEP_SIZE`."""
-        return f"rounded to multiples of {number(self.step_size)}"
 
 
 class Erase(Intervention):
@@ -116,7 +96,3 @@ class Erase(Intervention):
         if self.default is not None:
             return self
         return self.model_copy(update={"default": channel.erasure_default})
-
-    def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Refuse a default whose shape the reading does not have."""
-        return None if self.default is None else misfit("default", self.default, shape)

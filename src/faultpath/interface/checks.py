@@ -9,7 +9,7 @@ from pydantic_core import PydanticCustomError
 from faultpath.arrays import misfit
 from faultpath.interface.graph import readers
 from faultpath.interface.model import Channel, Declared, Source
-from faultpath.interface.words import listed, unknown
+from faultpath.text import listed, unknown
 
 _LONGEST_CYCLE = 10
 """Names of a cycle that are shown."""

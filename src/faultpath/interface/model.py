@@ -23,8 +23,7 @@ from pydantic import (
 
 from faultpath.arrays import Constant
 from faultpath.errors import UserError
-from faultpath.interface.words import unknown
-from faultpath.text import steers
+from faultpath.text import steers, unknown
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
 Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from faultpath.errors import SystemMistake
 from faultpath.interface import Interface
-from faultpath.interface.words import listed
 from faultpath.loop.module import Graph, Module, Part, Plant
+from faultpath.text import listed
 
 
 def graph(

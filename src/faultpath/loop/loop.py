@@ -7,12 +7,12 @@ from typing import Any
 from faultpath.arrays import Array
 from faultpath.errors import SystemMistake
 from faultpath.interface import Interface
-from faultpath.interface.words import listed
 from faultpath.loop.clock import Clock
 from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
 from faultpath.loop.ports import Inputs, Port
 from faultpath.loop.trace import Trace
 from faultpath.taps import Reading, Taps
+from faultpath.text import listed
 
 
 @dataclass(frozen=True)
@@ -25,48 +25,35 @@ class Instant:
     """What reaches the plant."""
 
 
+@dataclass(frozen=True)
 class Loop:
-    """Executes a graph over batches of scenes.
+    """Executes a graph over batches of scenes."""
 
-    Args:
-        interface: Declares rates and latencies of the sources.
-        graph: What is executed; see `faultpath.loop.graph`.
-        trace: Takes down who reads what, if given.
-    """
-
-    def __init__(self, interface: Interface, graph: Graph, trace: Trace | None = None) -> None:
-        self.graph = graph
-        self._interface = interface
-        self._trace = trace
+    interface: Interface
+    """Declares rates and latencies of the sources."""
+    graph: Graph
+    """What is executed; see `faultpath.loop.graph`."""
+    trace: Trace | None = None
+    """Takes down who reads what, if given."""
 
     def execute(self, batch: Batch, taps: Taps) -> Iterator[Instant]:
         """Start a batch, and yield each of its control steps and the one at which nothing runs.
 
         The last instant's `inputs` are empty: nothing reaches the plant any more.
         """
-        return _Execution(self._interface, self.graph, self._trace, batch, taps).run()
+        return _Execution(self, batch, taps).run()
 
 
 class _Execution:
     """One execution: what the sources hold, now and one step before."""
 
-    def __init__(
-        self,
-        interface: Interface,
-        graph: Graph,
-        trace: Trace | None,
-        batch: Batch,
-        taps: Taps,
-    ) -> None:
-        self._graph = graph
-        self._trace = trace
+    def __init__(self, loop: Loop, batch: Batch, taps: Taps) -> None:
+        self._graph = graph = loop.graph
+        self._trace = loop.trace
         self._taps = taps
-        self._read_sources = {
-            graph.bindings[port.channel] for part in graph.parts for port in part.ports
-        }
-        self._clocks = {
-            name: Clock(interface.source(name), batch.dt_s) for name in self._read_sources
-        }
+        read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
+        self._clocks = {name: Clock(loop.interface.source(name), batch.dt_s) for name in read}
+        """Of the sources that somebody reads."""
         self._ports = {id(part): sorted(part.ports) for part in graph.parts}
         self._now: dict[str, Reading] = {}
         self._past: dict[str, Reading] = {}
@@ -109,7 +96,7 @@ class _Execution:
     ) -> None:
         """Take in what a part's sources hold at a step, as far as somebody reads them."""
         for name in wanted:
-            if name not in self._read_sources:
+            if name not in self._clocks:
                 continue
             if name in outputs:
                 value = outputs[name]

@@ -7,7 +7,6 @@ import torch
 from torch import Tensor
 
 from faultpath.errors import SystemMistake
-from faultpath.interface.words import listed
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.planner import Planner, SamplerSettings, Scored
 from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor
@@ -16,6 +15,7 @@ from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.rollout import rollout
 from faultpath.quadrotor.state import LANE_MULTIPLE, State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.text import listed
 
 _STEPS, _CANDIDATES = 3, 8
 _CODE = 32

@@ -9,6 +9,7 @@ from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.choices import DeviceName
+from faultpath.work import one_thread
 
 CPU = torch.device("cpu")
 
@@ -43,20 +44,17 @@ def send(host: Tensor, device: torch.device) -> Tensor:
 def arithmetic() -> Generator[None]:
     """Compute as flights do, and leave the process as it was.
 
-    On one thread: a block is small, a second thread costs more than it brings, and a sum over
-    several may differ in its last bits. On a GPU in full single precision, as everywhere, and
+    On one thread, as any worker does; on a GPU in full single precision, as everywhere, and
     repeatable.
     """
-    threads = torch.get_num_threads()
     cudnn: Any = torch.backends.cudnn
     flags = (cudnn.allow_tf32, cudnn.deterministic) if cudnn.is_available() else None
-    torch.set_num_threads(1)
     if flags is not None:
         cudnn.allow_tf32, cudnn.deterministic = False, True
     try:
-        yield
+        with one_thread():
+            yield
     finally:
-        torch.set_num_threads(threads)
         if flags is not None:
             cudnn.allow_tf32, cudnn.deterministic = flags
 

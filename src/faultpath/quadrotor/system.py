@@ -30,7 +30,7 @@ from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.variants import choices
+from faultpath.quadrotor.variants import setups
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
@@ -51,7 +51,7 @@ class Quadrotor(LoopSystem):
         self._scenes: dict[str, Scene] = {}
         self._shelf = Shelf(options.settings, options.checkpoints)
         self.brought = bring(options.parts, options.sampling)
-        self.choices = {choice.name: choice for choice in choices(options, self.brought)}
+        self.setups = {setup.name: setup for setup in setups(options, self.brought)}
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -112,7 +112,7 @@ class Quadrotor(LoopSystem):
     @property
     @override
     def wirings(self) -> Mapping[str, Wiring]:
-        return {name: choice.wiring(self.options) for name, choice in self.choices.items()}
+        return {name: setup.wiring(self.options) for name, setup in self.setups.items()}
 
     @override
     def plant(self) -> Plant:
@@ -135,11 +135,11 @@ class Quadrotor(LoopSystem):
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
-        choice, place = self.choices[variant], self.options.place
-        predictor = choice.load_predictor(seed, place)
-        reconstruction = choice.load_reconstruction(seed, place)
+        setup, place = self.setups[variant], self.options.place
+        predictor = setup.load_predictor(seed, place)
+        reconstruction = setup.load_reconstruction(seed, place)
         found = modelled(predictor, reconstruction, place)
-        found.append(Planning(choice.load_planner(seed, self.options), place))
+        found.append(Planning(setup.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
             found.append(self._perception(place))
         return found

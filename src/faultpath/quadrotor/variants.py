@@ -41,7 +41,7 @@ _FIXED = {
 
 
 @dataclass(frozen=True)
-class Choice:
+class Setup:
     """What a variant puts where."""
 
     name: str
@@ -81,7 +81,7 @@ class Choice:
         return self.brought[self.planner].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
-        """Describe the choice to an audit: in words, and which sources it takes."""
+        """Describe the setup to an audit: in words, and which sources it takes."""
         seen = options.clearance is not ClearanceName.TRUE
         bindings = {
             "clearance": "estimated_clearance" if seen else "true_clearance",
@@ -103,30 +103,23 @@ class Choice:
         return (self.brought.get(name) or shipped[name]).description
 
 
-def choices(
+def setups(
     options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
-) -> Iterator[Choice]:
+) -> Iterator[Setup]:
     """Yield every way to wire the quadrotor under these options, with the parts brought to it."""
     mine, shelf = brought or {}, Shelf(options.settings, options.checkpoints)
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
     if _has_wind(chosen, mine):
         for wind in winds:
-            yield Choice(wind, chosen, seed, wind, shelf, brought=mine)
-    for name in (*PREDICTORS, *_of(Predictor, mine)):
-        if not _has_wind(name, mine):
-            yield Choice(name, name, None, None, shelf, brought=mine)
-            continue
-        yield Choice(name, name, None, ZERO_WIND, shelf, brought=mine)
-        for wind in winds:
-            yield Choice(f"{name}/{wind}", name, None, wind, shelf, brought=mine)
-    for name in _of(Planner, mine):
-        if not _has_wind(chosen, mine):
-            yield Choice(name, chosen, seed, None, shelf, name, mine)
-            continue
-        yield Choice(name, chosen, seed, ZERO_WIND, shelf, name, mine)
-        for wind in winds:
-            yield Choice(f"{name}/{wind}", chosen, seed, wind, shelf, name, mine)
+            yield Setup(wind, chosen, seed, wind, shelf, brought=mine)
+    named = [(name, name, None, None) for name in (*PREDICTORS, *_of(Predictor, mine))]
+    named += [(name, chosen, seed, name) for name in _of(Planner, mine)]
+    for name, predicts, trained, plans in named:
+        windy = _has_wind(predicts, mine)
+        yield Setup(name, predicts, trained, ZERO_WIND if windy else None, shelf, plans, mine)
+        for wind in winds if windy else ():
+            yield Setup(f"{name}/{wind}", predicts, trained, wind, shelf, plans, mine)
 
 
 def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:

@@ -49,12 +49,17 @@ def write(path: Path, data: bytes, inside: Path | None = None) -> None:
     _sync_folder(place.parent)
 
 
-def write_text(path: Path, text: str, inside: Path | None = None) -> None:
-    """Write a text file as `write` does; `UserError` when it cannot be written."""
+def write_file(path: Path, data: bytes, inside: Path | None = None) -> None:
+    """Write a file as `write` does; `UserError` when it cannot be written."""
     try:
-        write(path, text.encode(), inside)
+        write(path, data, inside)
     except OSError as error:
         raise _unwritable(path, error) from error
+
+
+def write_text(path: Path, text: str, inside: Path | None = None) -> None:
+    """Write a text file as `write_file` does."""
+    write_file(path, text.encode(), inside)
 
 
 def check_writable(path: Path) -> None:

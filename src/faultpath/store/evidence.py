@@ -1,5 +1,6 @@
 """Evidence as Parquet: one row a window of a measurement."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -7,30 +8,25 @@ import numpy as np
 
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measured, Measurement
-from faultpath.store import atomic
-from faultpath.store.parquet import Column, Kind, Unreadable, decode, encode
+from faultpath.store.atomic import write_file
+from faultpath.store.parquet import INTEGER, NUMBER, TEXT, Row, Unreadable, decode, encode
 
-_COLUMNS = (
-    Column("measurement", Kind.TEXT),
-    Column("recording", Kind.TEXT),
-    Column("quantity", Kind.TEXT),
-    Column("subject", Kind.TEXT),
-    Column("seed", Kind.INTEGER),
-    Column("faults", Kind.TEXT),
-    Column("scene", Kind.TEXT),
-    Column("step", Kind.INTEGER),
-    Column("value", Kind.NUMBER),
-)
+_COLUMNS = {
+    "measurement": TEXT,
+    "recording": TEXT,
+    "quantity": TEXT,
+    "subject": TEXT,
+    "seed": INTEGER,
+    "faults": TEXT,
+    "scene": TEXT,
+    "step": INTEGER,
+    "value": NUMBER,
+}
 
 
 def write_evidence(path: Path, table: EvidenceTable) -> None:
     """Write a table; the bytes depend on the table alone. `UserError` when it cannot be written."""
-    try:
-        atomic.write(path, encode_evidence(table), path.parent)
-    except OSError as error:
-        raise UserError(
-            f"cannot write {path} ({error.strerror}): choose a place that you may write to"
-        ) from error
+    write_file(path, encode_evidence(table), path.parent)
 
 
 def read_evidence(path: Path) -> EvidenceTable:
@@ -51,7 +47,10 @@ def encode_evidence(table: EvidenceTable) -> bytes:
     `measurement` is the measurement as JSON, from which it is read back; the columns beside it say
     the same to whoever opens the file with something else.
     """
-    values: dict[str, list[Any]] = {column.name: [] for column in _COLUMNS}
+    return encode(_COLUMNS, _rows(table))
+
+
+def _rows(table: EvidenceTable) -> Iterator[Row]:
     for measurement in table:
         found = table.values(measurement)
         same = {
@@ -62,29 +61,22 @@ def encode_evidence(table: EvidenceTable) -> bytes:
             "seed": measurement.seed,
             "faults": " ".join(measurement.faults),
         }
-        for name, value in same.items():
-            values[name] += [value] * len(found)
-        values["scene"] += found.scenes
-        values["step"] += found.steps.tolist()
-        values["value"] += found.values.tolist()
-    return encode(_COLUMNS, values)
+        windows = zip(found.scenes, found.steps.tolist(), found.values.tolist(), strict=True)
+        for scene, step, value in windows:
+            yield {**same, "scene": scene, "step": step, "value": value}
 
 
 def decode_evidence(data: bytes) -> EvidenceTable:
     """Return the table in a Parquet file's bytes; `Unreadable` when they are none."""
-    columns = decode(data, _COLUMNS)
-    rows: dict[str, list[int]] = {}
-    for row, text in enumerate(columns["measurement"]):
-        rows.setdefault(text, []).append(row)
+    windows: dict[str, list[tuple[Any, ...]]] = {}
+    for row in decode(data, _COLUMNS)[0]:
+        windows.setdefault(row["measurement"], []).append((row["scene"], row["step"], row["value"]))
     entries: dict[Measurement, Measured] = {}
-    for text, chosen in rows.items():
+    for text, found in windows.items():
         try:
             measurement = Measurement.model_validate_json(text)
         except ValueError as error:
             raise Unreadable("a measurement is not of this version") from error
-        entries[measurement] = Measured(
-            scenes=tuple(columns["scene"][row] for row in chosen),
-            steps=np.array([columns["step"][row] for row in chosen], dtype=np.int64),
-            values=np.array([columns["value"][row] for row in chosen], dtype=np.float64),
-        )
+        scenes, steps, values = zip(*found, strict=True)
+        entries[measurement] = Measured(scenes, np.array(steps, np.int64), np.array(values))
     return EvidenceTable(entries)

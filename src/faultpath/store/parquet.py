@@ -1,49 +1,36 @@
-"""Columns to Parquet bytes and back: the only file that talks to pyarrow.
+"""Rows to Parquet bytes and back: the only file that talks to pyarrow.
 
-The bytes depend on the columns and on the version of pyarrow alone.
+The bytes depend on the rows and on the version of pyarrow alone.
 """
 
 # pyarrow ships no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from enum import Enum
-from typing import Any
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any, TypeAlias
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-Values = Sequence[Any]
+TEXT, INTEGER, NUMBER = pa.string(), pa.int64(), pa.float64()
+NUMBERS = pa.list_(pa.float32())
 
-
-class Kind(Enum):
-    """The types that a column may have; each may hold null."""
-
-    TEXT = pa.string()
-    INTEGER = pa.int64()
-    NUMBER = pa.float64()
-    NUMBERS = pa.list_(pa.float32())
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column's name and type."""
-
-    name: str
-    kind: Kind
+Schema: TypeAlias = Mapping[str, Any]
+"""Columns by name, each with one of the types above."""
+Row: TypeAlias = Mapping[str, Any]
 
 
 class Unreadable(Exception):
     """The bytes are no Parquet file, or not one with the columns asked for."""
 
 
-def encode(
-    columns: Sequence[Column], values: Mapping[str, Values], notes: Mapping[str, str] | None = None
-) -> bytes:
-    """Return a Parquet file with these columns, in this order, and `notes` in its metadata."""
-    arrays = [pa.array(values[column.name], type=column.kind.value) for column in columns]
-    table = pa.table(arrays, names=[column.name for column in columns])
+def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None = None) -> bytes:
+    """Return a Parquet file with these columns of `rows`, and `notes` in its metadata."""
+    columns: dict[str, list[Any]] = {name: [] for name in schema}
+    for row in rows:
+        for name, values in columns.items():
+            values.append(row[name])
+    table = pa.table({name: pa.array(columns[name], type=kind) for name, kind in schema.items()})
     if notes:
         table = table.replace_schema_metadata(dict(notes))
     sink = pa.BufferOutputStream()
@@ -60,31 +47,32 @@ def read_table(data: bytes) -> pa.Table:
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
-def decode(data: bytes, columns: Sequence[Column]) -> dict[str, list[Any]]:
-    """Return these columns of a Parquet file; `Unreadable` when it has not got them."""
-    return decode_noted(data, columns)[0]
+def decode(
+    data: bytes, schema: Schema, may_lack: Collection[str] = ()
+) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
+    """Return the rows of a Parquet file and its notes.
 
-
-def decode_noted(
-    data: bytes, columns: Sequence[Column]
-) -> tuple[dict[str, list[Any]], dict[str, str]]:
-    """Return these columns of a Parquet file and its notes; `Unreadable` as `decode`."""
+    `Unreadable` when it has not got the columns of `schema`, or one has gaps that is not among
+    those that `may_lack` values.
+    """
     try:
         table = read_table(data)
     except (pa.ArrowException, OSError) as error:
         raise Unreadable(str(error)) from error
-    out: dict[str, list[Any]] = {}
-    for column in columns:
-        if column.name not in table.column_names:
-            raise Unreadable(f"there is no column {column.name!r}")
-        out[column.name] = _values(table.column(column.name), column.kind)
+    columns: list[list[Any]] = []
+    for name, kind in schema.items():
+        if name not in table.column_names:
+            raise Unreadable(f"there is no column {name!r}")
+        column = table.column(name)
+        if column.type != kind:
+            raise Unreadable(f"a column is {column.type}, not {kind}")
+        if column.null_count and name not in may_lack:
+            raise Unreadable(f"column {name!r} has gaps")
+        columns.append(_arrays(column) if kind is NUMBERS else column.to_pylist())
+    rows = (dict(zip(schema, row, strict=True)) for row in zip(*columns, strict=True))
     notes = table.schema.metadata or {}
-    return out, {key.decode(): text.decode() for key, text in notes.items()}
+    return rows, {key.decode(): text.decode() for key, text in notes.items()}
 
 
-def _values(column: Any, kind: Kind) -> list[Any]:
-    if column.type != kind.value:
-        raise Unreadable(f"a column is {column.type}, not {kind.value}")
-    if kind is not Kind.NUMBERS:
-        return column.to_pylist()
+def _arrays(column: Any) -> list[Any]:
     return [scalar.values.to_numpy() if scalar.is_valid else None for scalar in column]

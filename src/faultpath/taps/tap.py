@@ -1,64 +1,44 @@
 """One consumer's end of one channel, and how a variant's taps come about."""
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 
 from faultpath.arrays import Array
 from faultpath.errors import UserError
 from faultpath.interface import Interface, Provenance
-from faultpath.interface.words import unknown
 from faultpath.taps.guard import Watch
 from faultpath.taps.receipts import Receipt, StrikeReceipt
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Tally
+from faultpath.text import unknown
 
 
+@dataclass(slots=True, eq=False)
 class Tap:
     """One consumer's end of one channel."""
 
-    __slots__ = (
-        "altered",
-        "asked",
-        "asks",
-        "cached",
-        "channel",
-        "consumer",
-        "deliveries",
-        "finite",
-        "given",
-        "last_step",
-        "legal",
-        "shape",
-        "source",
-        "strikes",
-        "struck",
-        "watch",
-    )
-
-    def __init__(
-        self, channel: str, consumer: str, source: str, legal: bool, shape: tuple[int, ...]
-    ) -> None:
-        self.channel = channel
-        self.consumer = consumer
-        self.source = source
-        self.legal = legal
-        self.shape = shape
-        """Of every reading, scenes first."""
-        self.strikes: tuple[Strike, ...] = ()
-        self.deliveries = 0
-        self.asks = 0
-        """Answers of a query, over all steps."""
-        self.asked = 0
-        """Those of the last step."""
-        self.last_step = -1
-        self.given: Array = None
-        """The value of the step's reading."""
-        self.cached: Array = None
-        """What the consumer got of it."""
-        self.finite: Array = None
-        """Where the first reading was finite, until that has been looked at."""
-        self.watch: Watch | None = None
-        self.struck = Tally()
-        self.altered = Tally()
+    channel: str
+    consumer: str
+    source: str
+    legal: bool
+    shape: tuple[int, ...]
+    """Of every reading, scenes first."""
+    strikes: tuple[Strike, ...] = ()
+    deliveries: int = 0
+    asks: int = 0
+    """Answers of a query, over all steps."""
+    asked: int = 0
+    """Those of the last step."""
+    last_step: int = -1
+    given: Array = None
+    """The value of the step's reading."""
+    cached: Array = None
+    """What the consumer got of it."""
+    finite: Array = None
+    """Where the first reading was finite, until that has been looked at."""
+    watch: Watch | None = None
+    struck: Tally = field(default_factory=Tally)
+    altered: Tally = field(default_factory=Tally)
 
     def __str__(self) -> str:
         return f"{self.channel} -> {self.consumer}"

@@ -13,7 +13,6 @@ from faultpath.arrays import Array, differs, read_only
 from faultpath.errors import UserError
 from faultpath.faults import Coupled, Draws, Fault
 from faultpath.interface import Interface, modules
-from faultpath.interface.words import listed, unknown
 from faultpath.taps.checks import check_finite, check_first, check_same, check_shape
 from faultpath.taps.errors import (
     IllegalRead,
@@ -28,6 +27,7 @@ from faultpath.taps.receipts import Receipts, check_delivered
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Running, Tally
 from faultpath.taps.tap import Tap, wire
+from faultpath.text import listed, unknown
 
 
 @dataclass(frozen=True, slots=True)

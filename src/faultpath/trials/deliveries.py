@@ -1,13 +1,13 @@
 """What the taps did in every arm of a study, from their receipts."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Self
 
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.taps import TapCount, added
 from faultpath.trials.arm import Study
-from faultpath.trials.findings import unproven, unread
+from faultpath.trials.outcome import Outcome
 from faultpath.trials.table import OutcomeTable
 
 
@@ -43,7 +43,7 @@ class Deliveries(BaseModel):
     ) -> Self:
         """Lay the counts, by arm key, out in the order of the study's rows.
 
-        To `findings` it adds what counts and outcomes show: see `faultpath.trials.findings`.
+        To `findings` it adds what counts and outcomes show of the declarations.
         """
         rows = tuple(
             RowDeliveries(
@@ -55,7 +55,7 @@ class Deliveries(BaseModel):
             for row in study.rows
         )
         reads = [(row.variant, tap) for row in rows for tap in row.taps]
-        return cls(rows=rows, findings=(*findings, *unread(reads), *unproven(table)))
+        return cls(rows=rows, findings=(*findings, *_unread(reads), *_unproven(table)))
 
     def at(self, variant: str, path: str) -> tuple[TapCount, ...]:
         """Return the taps of a variant on a path, all seeds together; `KeyError` without any."""
@@ -63,3 +63,37 @@ class Deliveries(BaseModel):
         if not rows:
             raise KeyError((variant, path))
         return added(count for row in rows for count in row.taps)
+
+
+def _unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
+    """Name the consumers that a variant declares and that never read, in any of its arms.
+
+    `counts` are what the taps did in each arm, with the name of the variant.
+    """
+    reads: dict[tuple[str, str, str], int] = {}
+    for variant, tap in counts:
+        key = (variant, tap.channel, tap.consumer)
+        reads[key] = reads.get(key, 0) + tap.deliveries
+    return tuple(
+        f"Variant '{variant}' declares that {consumer} reads '{channel}', but it never did: take "
+        "it out of the variant's consumers, or deliver the channel to it."
+        for (variant, channel, consumer), count in reads.items()
+        if count == 0
+    )
+
+
+def _unproven(table: OutcomeTable) -> tuple[str, ...]:
+    """Say so where the hashes are the same in all scenes, and so prove nothing about the pairs."""
+    sound = [row.outcome for row in table.rows if not row.outcome.failed]
+    scenes = {outcome.scene for outcome in sound}
+    if len(scenes) < 2 or len({_conditions(outcome) for outcome in sound}) > 1:
+        return ()
+    return (
+        f"All {len(scenes)} scenes carry the same hashes of initial state, disturbance and planner "
+        f"noise ({', '.join(map(repr, _conditions(sound[0])))}), so nothing proves that two trials "
+        "met the same conditions: hash what each scene begins with and meets.",
+    )
+
+
+def _conditions(outcome: Outcome) -> tuple[str, str, str]:
+    return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash

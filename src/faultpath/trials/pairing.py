@@ -1,7 +1,8 @@
 """Two arms over the same scenes; a pair that did not meet the same conditions is void."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,13 +51,8 @@ class Trials:
 
     def only(self, keep: Bools) -> "Trials":
         """Return the scenes where `keep` `[scenes]` is true."""
-        return Trials(
-            self.success[keep],
-            self.crash[keep],
-            self.time_s[keep],
-            None if self.terminal_distance_m is None else self.terminal_distance_m[keep],
-            None if self.min_clearance_m is None else self.min_clearance_m[keep],
-        )
+        kept: dict[str, Any] = {k: None if a is None else a[keep] for k, a in vars(self).items()}
+        return Trials(**kept)
 
 
 @dataclass(frozen=True)
@@ -118,16 +114,13 @@ class Pairs:
         kept = [i for i, scene in enumerate(self.scenes) if scene in wanted]
         keep = np.zeros(len(self.scenes), dtype=np.bool_)
         keep[kept] = True
-        return Pairs(
+        return replace(
+            self,
             scenes=tuple(self.scenes[i] for i in kept),
             scene_indices=tuple(self.scene_indices[i] for i in kept),
             topologies=tuple(self.topologies[i] for i in kept),
-            seeds=self.seeds,
             first=self.first.only(keep),
             second=self.second.only(keep),
-            void=self.void,
-            void_scenes=self.void_scenes,
-            mismatches=self.mismatches,
         )
 
 

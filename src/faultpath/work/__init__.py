@@ -1,5 +1,6 @@
 """Where work runs: a call goes out to a worker, and what it returns comes back."""
 
+# pyright: reportUnusedImport=false
 from faultpath.work.executor import (
     End,
     Executor,
@@ -13,18 +14,3 @@ from faultpath.work.executor import (
 )
 from faultpath.work.processes import Processes, local
 from faultpath.work.threads import one_thread
-
-__all__ = [
-    "End",
-    "Executor",
-    "Failed",
-    "Here",
-    "Lost",
-    "Processes",
-    "Returned",
-    "WorkerLost",
-    "local",
-    "one_thread",
-    "run_all",
-    "tell",
-]

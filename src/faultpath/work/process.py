@@ -6,12 +6,14 @@ import pickle
 import signal
 import threading
 import traceback
+import warnings
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from faultpath.work.executor import Failed, Returned, ended
+from faultpath.errors import Notice
+from faultpath.work.executor import Failed, Returned, ended, tell
 
 
 def main(channel: int, lifeline: int) -> None:
@@ -23,10 +25,22 @@ def main(channel: int, lifeline: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     faulthandler.enable()
+    warnings.showwarning = _show
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     with Connection(channel) as parent, suppress(EOFError, ConnectionError):
         while True:
             parent.send_bytes(_served(parent, parent.recv_bytes()))
+
+
+_shown = warnings.showwarning
+
+
+def _show(message: Warning | str, *more: Any, **named: Any) -> None:
+    """Hand a notice to the parent, which shows it once; show other warnings as Python does."""
+    if isinstance(message, Notice):
+        tell(message)
+    else:
+        _shown(message, *more, **named)
 
 
 def _served(parent: "Connection[Any, Any]", packed: bytes) -> memoryview:

@@ -6,12 +6,13 @@ import signal
 import socket
 import subprocess
 import sys
+import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
-from faultpath.errors import UserError
+from faultpath.errors import Notice, UserError
 from faultpath.work.executor import Call, End, Executor, Failed, Here, Lost, Returned, Told, ignore
 from faultpath.work.threads import ONE_THREAD
 
@@ -65,7 +66,11 @@ class Processes(Executor):
             worker = next(w for c, w in channels.items() if c is channel)
             message = self._processes[worker].receive()
             if not isinstance(message, (Returned, Failed, Lost)):
-                self._busy[worker](message[0])
+                (told,) = message
+                if isinstance(told, Notice):
+                    warnings.warn(told, stacklevel=1)  # which shows the same text once
+                else:
+                    self._busy[worker](told)
                 continue
             del self._busy[worker]
             if isinstance(message, Lost):

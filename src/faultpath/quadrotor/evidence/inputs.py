@@ -36,7 +36,7 @@ class Subject:
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
         """Load a variant; `UserError` for an unknown one, or where a checkpoint is missing."""
-        found = system.choices
+        found = system.setups
         if name not in found:
             raise UserError(
                 f"the quadrotor has no variant {name!r} to measure: choose from {', '.join(found)}"

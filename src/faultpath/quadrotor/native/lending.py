@@ -13,12 +13,13 @@ from typing import TypeGuard, TypeVar
 import torch
 from torch import Tensor
 
+from faultpath.errors import Notice
 from faultpath.quadrotor.device import host_readable
 
 T = TypeVar("T")
 
 
-class PortableNotice(UserWarning):
+class PortableNotice(Notice):
     """A part has no compiled form, or not of its size: it runs as it is, more slowly."""
 
 
