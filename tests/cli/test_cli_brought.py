@@ -3,12 +3,14 @@
 import json
 import shutil
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
 from faultpath.door.run import open_run
+from faultpath.errors import Notice
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
 
@@ -63,11 +65,12 @@ def reads(seed):
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("default::faultpath.quadrotor.native.lending.PortableNotice")
 def test_workers_build_the_part_too_and_what_they_find_is_told_once():
     Path("secret.txt").touch()
     Path("mine.py").write_text(PARTS.read_text() + READS)
-    ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:reads", workers=2, scenes=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("default", Notice)
+        ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:reads", workers=2, scenes=1)
     assert ended.status == 0, ended.err
     said = " ".join(ended.out.split())
     assert said.count("The system reads") == 1

@@ -10,23 +10,22 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import Field
 
 from faultpath.code.graph import Graph, Root
 from faultpath.code.watch import Watch, Watched
 from faultpath.errors import UserError
+from faultpath.frozen import Frozen
 
 _NAMED = 3
 
 
-class CodeState(BaseModel):
+class CodeState(Frozen):
     """Digests of everything outside installed packages that decides a result, and versions."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     files: dict[str, str]
     """SHA-256 of each source file, by module."""
-    data: dict[str, str] = {}
+    data: dict[str, str] = Field(default_factory=dict[str, str])
     """SHA-256 of each data file."""
     packages: dict[str, str]
     """Versions of the installed packages that these files import."""

@@ -8,11 +8,12 @@ import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 from faultpath.execution.attempt import Reply, Wrong
 from faultpath.execution.differences import difference, findings
 from faultpath.execution.schedule import Recheck, Task, Unit
+from faultpath.frozen import Frozen
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.taps import WrittenTo
@@ -25,10 +26,8 @@ SAMPLE = 4
 """Scenes of a unit that are flown again."""
 
 
-class _Kept(BaseModel):
+class _Kept(Frozen):
     """What `rechecks.json` holds."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: int = 2
     flown: tuple[FlownAgain, ...] = ()

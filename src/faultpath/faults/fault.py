@@ -5,13 +5,14 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from faultpath.errors import UserError
 from faultpath.faults.draws import Draws
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
 from faultpath.faults.window import Window
+from faultpath.frozen import Frozen
 from faultpath.interface import Interface, module_of, modules
 from faultpath.text import listed, unknown
 
@@ -27,11 +28,7 @@ Onset: TypeAlias = Annotated[int, Field(ge=0)]
 Duration: TypeAlias = Annotated[int, Field(ge=1)]
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Fault(_Frozen):
+class Fault(Frozen):
     """One intervention on one channel, at some or all of its consumers, for some time.
 
     `isolated` and `shared` are the same fault with two values of `consumers`. During recovery the
@@ -177,7 +174,7 @@ class Fault(_Frozen):
         return words + (f", {self.intermittence.words()}" if self.intermittence else "")
 
 
-class Coupled(_Frozen):
+class Coupled(Frozen):
     """Faults on several channels with one cause, for instance a calibration error.
 
     They draw the same random numbers. A name in `consumers` needs to read only one of the channels.

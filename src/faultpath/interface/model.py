@@ -12,9 +12,7 @@ from typing import Annotated, Self
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     PlainSerializer,
     StringConstraints,
@@ -23,6 +21,7 @@ from pydantic import (
 
 from faultpath.arrays import Constant
 from faultpath.errors import UserError
+from faultpath.frozen import Frozen
 from faultpath.text import steers, unknown
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
@@ -57,10 +56,6 @@ Words = Annotated[str, AfterValidator(_readable)]
 """Text for people: line breaks, but no other control characters."""
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
 class Provenance(StrEnum):
     """Where a source's numbers come from."""
 
@@ -84,7 +79,7 @@ class Gap(StrEnum):
     AVAILABILITY = "availability"
 
 
-class Uncertainty(_Frozen):
+class Uncertainty(Frozen, allow_inf_nan=False):
     """The error expected of a source at deployment: a standard deviation or a half-range.
 
     In the source's unit, or as a fraction of its value when `relative`.
@@ -110,7 +105,7 @@ class Uncertainty(_Frozen):
         return (self.half_range or 0.0) / 3**0.5
 
 
-class Source(_Frozen):
+class Source(Frozen, allow_inf_nan=False):
     """Something that produces a reading at every step."""
 
     name: Name
@@ -139,7 +134,7 @@ class Source(_Frozen):
         return None if self.scale is None else self.uncertainty.expected_std / self.scale
 
 
-class Channel(_Frozen):
+class Channel(Frozen, allow_inf_nan=False):
     """A source as consumers see it."""
 
     name: Name
@@ -153,7 +148,7 @@ class Channel(_Frozen):
     description: Words = ""
 
 
-class Declared(_Frozen):
+class Declared(Frozen, allow_inf_nan=False):
     """All sources and channels of a system, and which modules produce a source themselves."""
 
     name: Name

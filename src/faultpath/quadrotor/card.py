@@ -2,21 +2,20 @@
 
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
+from pydantic import JsonValue, ValidationError
 
 from faultpath.errors import UserError
+from faultpath.frozen import Frozen
 
 FORMAT = "faultpath-model/1"
 
 
-class ModelCard(BaseModel):
+class ModelCard(Frozen):
     """Where the weights of one model come from and how good they are.
 
     It is `<stem>.json` beside `<stem>.safetensors`. Only `weights_sha256` identifies the model:
     durations and versions differ between fits that gave the same weights.
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: str = FORMAT
     name: str

@@ -4,20 +4,19 @@ import json
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 from faultpath.code import CodeState, named
 from faultpath.errors import UserError
+from faultpath.frozen import Frozen
 from faultpath.trials.arm import Study
 
 FORMAT = 2
 """Version of the folder's layout and of its columns."""
 
 
-class Manifest(BaseModel):
+class Manifest(Frozen):
     """The study of a run folder and the exact system and scenes that it was run with."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: int = FORMAT
     faultpath_version: str

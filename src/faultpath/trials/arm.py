@@ -3,22 +3,19 @@
 import hashlib
 import json
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import Field
 
 from faultpath.faults import AnyFault
+from faultpath.frozen import Frozen
 
 _OBJECT = " object"
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class SystemSpec(_Frozen):
+class SystemSpec(Frozen):
     """How a worker process builds the system: a registered name or `module:attribute`."""
 
     name: str
-    options: dict[str, str] = {}
+    options: dict[str, str] = Field(default_factory=dict[str, str])
 
     @classmethod
     def of_class(cls, kind: type) -> "SystemSpec":
@@ -31,7 +28,7 @@ class SystemSpec(_Frozen):
         return self.name.endswith(_OBJECT) and ":" not in self.name
 
 
-class Arm(_Frozen):
+class Arm(Frozen):
     """One variant of the system under one set of faults, with one seed."""
 
     variant: str
@@ -44,7 +41,7 @@ class Arm(_Frozen):
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
 
-class Row(_Frozen):
+class Row(Frozen):
     """Where an arm stands in the outcome table. Two rows may share an arm, which runs once."""
 
     variant: str
@@ -53,7 +50,7 @@ class Row(_Frozen):
     arm: Arm
 
 
-class Study(_Frozen):
+class Study(Frozen):
     """Which arms run over which scenes."""
 
     name: str

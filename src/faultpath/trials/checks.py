@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from numbers import Integral, Real
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from faultpath.errors import SystemMistake, UserError
 from faultpath.interface import Interface
@@ -10,23 +10,23 @@ from faultpath.taps.tap import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
 from faultpath.trials.system import System
 
+_Kind = TypeVar("_Kind")
+
 
 def library_of(system: System, name: str) -> Library:
     """Return a library of a system; `SystemMistake` for what is none, `UserError` for no name."""
-    found: Any = system.library(name)
-    if not isinstance(found, Library):
-        raise SystemMistake(
-            f"system '{system.name}': `library` returned {shown(found)}: it must return a Library"
-        )
-    return found
+    return _returned(system, "library", system.library(name), Library, "a Library")
 
 
 def fingerprint_of(system: System) -> str:
     """Return what the system says of itself; `SystemMistake` for what is no text."""
-    found: Any = system.fingerprint()
-    if not isinstance(found, str):
+    return _returned(system, "fingerprint", system.fingerprint(), str, "text")
+
+
+def _returned(system: System, method: str, found: object, kind: type[_Kind], wanted: str) -> _Kind:
+    if not isinstance(found, kind):
         raise SystemMistake(
-            f"system '{system.name}': `fingerprint` returned {shown(found)}: it must return text"
+            f"system '{system.name}': `{method}` returned {shown(found)}: it must return {wanted}"
         )
     return found
 

@@ -42,7 +42,14 @@ class Variant:
 
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for parts of another type."""
-        _check_variant(self)
+        check_name("the name of a variant", self.name)
+        said = f"variant '{self.name}'"
+        for what in ("consumers", "privileged"):
+            for name in _items(f"{said}: {what}", getattr(self, what)):
+                check_name(f"{said}: one of {what}", name)
+        bindings: Any = self.bindings
+        if not isinstance(bindings, Mapping):
+            raise SystemMistake(f"{said}: bindings is {shown(bindings)}: map channels to sources")
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,15 @@ class SceneRef:
 
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for what no table could hold."""
-        _check_scene(self)
+        check_name("the id of a scene", self.id)
+        index: Any = self.index
+        if not isinstance(index, Integral) or not 0 <= int(index) <= _LARGEST_INDEX:
+            raise SystemMistake(
+                f"scene '{self.id}' has the index {shown(index)}: it is its place in the library, "
+                "a whole number from 0 to 2^63 - 1"
+            )
+        if self.topology != "":
+            check_name(f"the topology of scene '{self.id}'", self.topology)
 
 
 @dataclass(frozen=True)
@@ -68,46 +83,16 @@ class Library:
 
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for scenes that are none, or that share a name."""
-        _check_library(self)
-
-
-def _check_scene(scene: SceneRef) -> None:
-    """Raise `SystemMistake` for a scene that no table could hold."""
-    check_name("the id of a scene", scene.id)
-    index: Any = scene.index
-    if not isinstance(index, Integral) or not 0 <= int(index) <= _LARGEST_INDEX:
-        raise SystemMistake(
-            f"scene '{scene.id}' has the index {shown(index)}: it is its place in the library, a "
-            "whole number from 0 to 2^63 - 1"
-        )
-    if scene.topology != "":
-        check_name(f"the topology of scene '{scene.id}'", scene.topology)
-
-
-def _check_library(library: Library) -> None:
-    """Raise `SystemMistake` for scenes that are none, or that share a name."""
-    check_name("the name of a library", library.name)
-    said = f"library '{library.name}'"
-    check_name(f"the content hash of {said}", library.content_hash)
-    seen: set[str] = set()
-    for scene in _items(f"{said}: scenes", library.scenes):
-        if not isinstance(scene, SceneRef):
-            raise SystemMistake(f"{said} holds {shown(scene)}: every scene is a SceneRef")
-        if scene.id in seen:
-            raise SystemMistake(f"{said} holds scene '{scene.id}' twice: name each scene once")
-        seen.add(scene.id)
-
-
-def _check_variant(variant: Variant) -> None:
-    """Raise `SystemMistake` for a variant whose parts are of other types than declared."""
-    check_name("the name of a variant", variant.name)
-    said = f"variant '{variant.name}'"
-    for what in ("consumers", "privileged"):
-        for name in _items(f"{said}: {what}", getattr(variant, what)):
-            check_name(f"{said}: one of {what}", name)
-    bindings: Any = variant.bindings
-    if not isinstance(bindings, Mapping):
-        raise SystemMistake(f"{said}: bindings is {shown(bindings)}: map channels to sources")
+        check_name("the name of a library", self.name)
+        said = f"library '{self.name}'"
+        check_name(f"the content hash of {said}", self.content_hash)
+        seen: set[str] = set()
+        for scene in _items(f"{said}: scenes", self.scenes):
+            if not isinstance(scene, SceneRef):
+                raise SystemMistake(f"{said} holds {shown(scene)}: every scene is a SceneRef")
+            if scene.id in seen:
+                raise SystemMistake(f"{said} holds scene '{scene.id}' twice: name each scene once")
+            seen.add(scene.id)
 
 
 def _items(what: str, found: Any) -> Iterable[Any]:

@@ -3,18 +3,15 @@
 from collections.abc import Iterable, Mapping
 from typing import Self
 
-from pydantic import BaseModel, ConfigDict
-
+from faultpath.frozen import Frozen
 from faultpath.taps import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.outcome import Outcome
 from faultpath.trials.table import OutcomeTable
 
 
-class RowDeliveries(BaseModel):
+class RowDeliveries(Frozen):
     """The taps of one row of a study."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     variant: str
     path: str
@@ -23,10 +20,8 @@ class RowDeliveries(BaseModel):
     """In the order of the interface; empty where every trial failed."""
 
 
-class Deliveries(BaseModel):
+class Deliveries(Frozen):
     """The taps of a study, row by row; written as `deliveries.json`."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     format: int = 1
     rows: tuple[RowDeliveries, ...] = ()

@@ -46,22 +46,15 @@ def load_system(spec: SystemSpec) -> System:
     flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
     imports later is found. Where loading fails both are put back.
     """
-    with _undone_on_failure():
-        return _load(spec)
-
-
-def _load(spec: SystemSpec) -> System:
-    try:
+    with _undone_on_failure(), _needing(spec.name):
         system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
-    except ModuleNotFoundError as error:
-        raise _missing(spec.name, error) from error
-    if not isinstance(system, System):
-        raise UserError(
-            f"{':'.join(_target(spec.name))} returned a {type(system).__name__}: it must return a "
-            "faultpath.trials.system.System"
-        )
-    check_system(system, spec.name)
-    return system
+        if not isinstance(system, System):
+            raise UserError(
+                f"{':'.join(_target(spec.name))} returned a {type(system).__name__}: it must "
+                "return a faultpath.trials.system.System"
+            )
+        check_system(system, spec.name)
+        return system
 
 
 def system_options(name: str) -> tuple[Option, ...]:
@@ -69,11 +62,8 @@ def system_options(name: str) -> tuple[Option, ...]:
 
     A user's system is imported for that. `UserError` as `load_system`.
     """
-    try:
-        with _undone_on_failure():
-            return options_of(_factory(name))
-    except ModuleNotFoundError as error:
-        raise _missing(name, error) from error
+    with _undone_on_failure(), _needing(name):
+        return options_of(_factory(name))
 
 
 def load_parts(names: Iterable[str]) -> dict[str, Factory]:
@@ -86,10 +76,8 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
     found: dict[str, Factory] = {}
     for name in names:
         place, attribute = _split(name)
-        try:
+        with _needing(name):
             modules[place] = modules.get(place) or _module(place, name)
-        except ModuleNotFoundError as error:
-            raise _missing(name, error) from error
         found[name] = _attribute(modules[place], place, attribute)
     return found
 
@@ -138,10 +126,8 @@ def load_measurer(name: str) -> "Measurer":
             f"{', '.join(sorted(MEASURERS))} does"
         )
     place, _, attribute = MEASURERS[name].partition(":")
-    try:
+    with _needing(name):
         return getattr(importlib.import_module(place), attribute)
-    except ModuleNotFoundError as error:
-        raise _missing(name, error) from error
 
 
 def _target(name: str) -> tuple[str, str]:
@@ -267,10 +253,16 @@ def _look_beside(path: Path) -> None:
         sys.path.append(str(path.parent))
 
 
-def _missing(name: str, error: ModuleNotFoundError) -> SystemMistake:
-    package = (error.name or "").partition(".")[0]
-    extra = _EXTRAS.get(package)
-    hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
-    mistake = SystemMistake(f"{name!r} needs the package {package!r}, not installed here: {hint}")
-    mistake.place = where(error)
-    return mistake
+@contextmanager
+def _needing(name: str) -> Generator[None]:
+    """Say which package `name` needs where one is missing."""
+    try:
+        yield
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        extra = _EXTRAS.get(package)
+        hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
+        said = f"{name!r} needs the package {package!r}, not installed here: {hint}"
+        mistake = SystemMistake(said)
+        mistake.place = where(error)
+        raise mistake from error

@@ -4,20 +4,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from faultpath.errors import UserError
+from faultpath.frozen import Frozen
 from faultpath.interface import Interface
 from faultpath.trials.declared import Variant
 from faultpath.trials.floorplan import FloorPlan
 from faultpath.trials.system import System
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class VariantShown(_Frozen):
+class VariantShown(Frozen, allow_inf_nan=False):
     """How one of the two variants of an audit is wired."""
 
     name: str
@@ -28,7 +25,7 @@ class VariantShown(_Frozen):
     """Channel to source, where it is not the channel's first source."""
 
 
-class SystemShown(_Frozen):
+class SystemShown(Frozen, allow_inf_nan=False):
     """What a run keeps of the system beside its trials; written as `system.json`.
 
     Raises `ValueError` for variants that do not fit the interface.
