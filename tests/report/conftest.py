@@ -18,7 +18,7 @@ from faultpath.record import Path, Question, StruckTap, decide
 from faultpath.record.provenance import RunProvenance
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
-from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+from faultpath.trials.declared import FloorPlan, Pillar, Prism
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import CodeState
-from faultpath.store.earlier import keyed
+from faultpath.store.manifest import keyed
 
 
 def _code(text: str) -> CodeState:

@@ -9,7 +9,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from faultpath.door.checks import checked_count, checked_seeds, checked_texts
 from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose, worker_count
 from faultpath.errors import UserError
@@ -75,8 +74,8 @@ def audit(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     given = dict(locals())
-    checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
-    drawn = checked_seeds(seeds)
+    _checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
+    drawn = _checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
     limit = patience(str(system), time_limit_s) if called else nullcontext()
     with limit:
@@ -91,7 +90,7 @@ def audit(
         fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
         fault_text=fault,
         library=scenes_from,
-        scenes=checked_count("scenes", scenes),
+        scenes=_checked_count("scenes", scenes),
         seeds=drawn,
         primary=primary,
         generalise=generalise,
@@ -123,7 +122,7 @@ def audit(
 
 def _folder(audit: Audit, chosen: Chosen, library: str, scenes: int | None) -> tuple[Path, str]:
     """Return the run folder of a question and the code as it is, and a sentence about others."""
-    from faultpath.store.earlier import keyed
+    from faultpath.store.manifest import keyed
 
     name = _name(audit, library, scenes)
     if chosen.own:
@@ -146,3 +145,30 @@ def _name(audit: Audit, library: str, scenes: int | None) -> str:
     if len(name) > _LONGEST_NAME:
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     return name
+
+
+def _checked_texts(**given: object) -> None:
+    """Raise `UserError` for what is no text."""
+    for name, value in given.items():
+        if not isinstance(value, str):
+            raise UserError(f"{name} is {value!r:.80}: give it as text.")
+
+
+def _checked_count(name: str, value: object) -> int | None:
+    """Return a whole number or `None`; `UserError` for anything else."""
+    if value is None or (isinstance(value, int) and not isinstance(value, bool)):
+        return value
+    raise UserError(f"{name} is {value!r:.80}: give a whole number, or None.")
+
+
+def _checked_seeds(seeds: int | Sequence[int]) -> tuple[int, ...]:
+    """Return the seeds; `UserError` for what is no whole number between 0 and 2^63 - 1."""
+    found: tuple[object, ...] = (
+        tuple(seeds) if isinstance(seeds, Sequence) and not isinstance(seeds, str) else (seeds,)
+    )
+    for seed in found:
+        if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed < 2**63:
+            raise UserError(
+                f"{seed!r:.80} is not a seed: give whole numbers between 0 and 2^63 - 1."
+            )
+    return tuple(seed for seed in found if isinstance(seed, int))

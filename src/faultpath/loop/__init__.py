@@ -1,9 +1,7 @@
 """The closed loop, executed: modules declare ports, and who reads what is what runs."""
 
-from faultpath.loop.clock import Clock
-from faultpath.loop.derive import interface_of
-from faultpath.loop.graph import graph
-from faultpath.loop.loop import Instant, Loop
+from faultpath.loop.graph import graph, interface_of
+from faultpath.loop.loop import Clock, Instant, Loop
 from faultpath.loop.module import (
     Batch,
     Graph,

@@ -18,7 +18,7 @@ from faultpath.store import (
     write_evidence,
     write_text,
 )
-from faultpath.store.earlier import keyed
+from faultpath.store.manifest import keyed
 from faultpath.store.sealed import read_regular, unseal
 from faultpath.studies import reversal, stand_in
 from faultpath.studies.cells import HELD_OUT, PROFILES, Profile

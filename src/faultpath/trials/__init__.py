@@ -2,9 +2,8 @@
 
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
 from faultpath.trials.checks import library_of
-from faultpath.trials.declared import Library, SceneRef, Variant
+from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
-from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
 from faultpath.trials.looped import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status

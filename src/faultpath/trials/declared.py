@@ -1,4 +1,4 @@
-"""What a system is declared with: variants and libraries of scenes, checked as they are made."""
+"""What a system declares: variants, libraries of scenes, floor plans; checked as they are made."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -105,3 +105,36 @@ def shown(found: Any) -> str:
     """Return a wrong value in a line that is short enough for a message."""
     text = one_line(repr(found))
     return text if len(text) <= 80 else f"{text[:80]}…"
+
+
+@dataclass(frozen=True)
+class Prism:
+    """A vertical prism: corners `(x, y)` in order, from `bottom` to `top`, metres."""
+
+    corners: tuple[tuple[float, float], ...]
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True)
+class Pillar:
+    """A vertical cylinder, metres."""
+
+    x: float
+    y: float
+    radius: float
+    bottom: float
+    top: float
+
+
+@dataclass(frozen=True)
+class FloorPlan:
+    """A scene seen from above: `low` and `high` are the corners of the free volume, metres."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    prisms: tuple[Prism, ...]
+    pillars: tuple[Pillar, ...]
+    start: tuple[float, float, float]
+    goal: tuple[float, float, float]
+    title: str

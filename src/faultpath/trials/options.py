@@ -11,13 +11,14 @@ Options are text on their way to a factory, because worker processes and run fol
 import inspect
 import types
 import typing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
 
 from faultpath.errors import UserError
 
@@ -128,31 +129,31 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
 
 def _slots(factory: Factory) -> dict[str, _Slot]:
     model = _model(factory)
-    if model is not None:
-        return {
-            name: _slot(name, info.annotation, info.metadata, info.default, info.is_required())
-            for name, info in model.model_fields.items()
-        }
-    found: dict[str, _Slot] = {}
+    fields = _fields(factory) if model is None else model.model_fields
+    return {name: _slot(name, field) for name, field in fields.items()}
+
+
+def _fields(factory: Factory) -> dict[str, FieldInfo]:
+    """Return the keyword parameters of a factory as a model would hold them."""
+    found: dict[str, FieldInfo] = {}
     hints = _hints(factory)
     for name, parameter in _parameters(factory).items():
         if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
             written = parameter.annotation
             known = str if written is parameter.empty or isinstance(written, str) else written
-            kind, *notes = _split(hints.get(name, known))
-            required = parameter.default is parameter.empty
-            found[name] = _slot(name, kind, notes, parameter.default, required)
+            default = ... if parameter.default is parameter.empty else parameter.default
+            found[name] = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
     return found
 
 
-def _slot(name: str, kind: Any, notes: Iterable[Any], default: Any, required: bool) -> _Slot:
-    notes = tuple(notes)
-    said = " ".join(note for note in notes if isinstance(note, str))
-    offered = next((note for note in notes if isinstance(note, Offered)), None)
-    values = _values(kind) if offered is None else offered.choices
-    shown = None if required or default is None else _text(default)
+def _slot(name: str, field: FieldInfo) -> _Slot:
+    said = " ".join(note for note in field.metadata if isinstance(note, str))
+    offered = next((note for note in field.metadata if isinstance(note, Offered)), None)
+    values = _values(field.annotation) if offered is None else offered.choices
+    required = field.is_required()
+    shown = None if required or field.default is None else _text(field.default)
     option = Option(name, said, tuple(values), shown)
-    return _Slot(option, kind, values, required, offered is not None and offered.factories)
+    return _Slot(option, field.annotation, values, required, bool(offered and offered.factories))
 
 
 def _values(kind: Any) -> dict[str, Any]:
@@ -167,10 +168,6 @@ def _values(kind: Any) -> dict[str, Any]:
     if len(inner) == 1 and type(None) in get_args(kind):
         return _values(inner[0])
     return {}
-
-
-def _split(hint: Any) -> tuple[Any, ...]:
-    return get_args(hint) if get_origin(hint) is Annotated else (hint,)
 
 
 def _text(value: object) -> str:

@@ -9,8 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 from faultpath.errors import UserError
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface
-from faultpath.trials.declared import Variant
-from faultpath.trials.floorplan import FloorPlan
+from faultpath.trials.declared import FloorPlan, Variant
 from faultpath.trials.system import System
 
 

@@ -8,8 +8,7 @@ from types import MappingProxyType
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.taps import Taps
-from faultpath.trials.declared import Library, Variant
-from faultpath.trials.floorplan import FloorPlan
+from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.outcome import Outcome, Status
 
 

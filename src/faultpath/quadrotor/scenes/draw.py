@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from faultpath.quadrotor.scenes.prisms import prism
-from faultpath.trials.floorplan import FloorPlan, Pillar, Prism
+from faultpath.trials.declared import FloorPlan, Pillar, Prism
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.scenes.scene import Scene

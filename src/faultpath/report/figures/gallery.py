@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from faultpath.report.svg import Point, Svg
-from faultpath.trials.floorplan import FloorPlan, Pillar
+from faultpath.trials.declared import FloorPlan, Pillar
 
 _WIDTH, _HEIGHT, _MARGIN, _FOOT = 300.0, 206.0, 6.0, 20.0
 _YAW, _PITCH = math.radians(-18), math.radians(33)
