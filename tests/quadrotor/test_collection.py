@@ -29,7 +29,7 @@ def short():
         patch.setattr(flight, "EPISODE_STEPS", 10)
         patch.setattr(flight, "EPISODE_S", 0.5)
         patch.setattr(collection, "EPISODE_STEPS", 10)
-        patch.setattr(collection, "SHARD", 3)
+        patch.setattr(collection, "BATCH", 3)
         yield
 
 
@@ -81,7 +81,7 @@ def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(p
 
 
 def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
-    monkeypatch.setattr(collection, "SHARD", 4)
+    monkeypatch.setattr(collection, "BATCH", 4)
     again = collect(tmp_path, workers=0, episodes=SMALL)
     for name, path in pools.items():
         one, two = read_pool(path), read_pool(again[name])
@@ -102,8 +102,8 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
         collect(tmp_path, workers=0, episodes=SMALL, progress=interrupt)
     seen = []
     paths = collect(tmp_path, workers=0, episodes=SMALL, progress=lambda *told: seen.append(told))
-    assert seen[0] == (3 * 6.0, 12 * 6.0)
-    assert seen[-1] == (12 * 6.0, 12 * 6.0)
+    assert seen[0] == (3, 12)
+    assert seen[-1] == (12, 12)
     assert contents(paths) == contents(pools)
     assert not any(path.is_dir() for path in tmp_path.iterdir())
 
@@ -112,15 +112,15 @@ def test_a_killed_collection_of_two_workers_ends_as_one_of_this_process(tmp_path
     monkeypatch.setattr(flight, "EPISODE_S", 6.0)
     monkeypatch.setattr(flight, "EPISODE_STEPS", 120)  # other processes fly whole episodes
     monkeypatch.setattr(collection, "EPISODE_STEPS", 120)
-    monkeypatch.setattr(collection, "SHARD", 1)
+    monkeypatch.setattr(collection, "BATCH", 1)
     killed, whole = tmp_path / "killed", tmp_path / "whole"
     script = (
         "from pathlib import Path; from faultpath.quadrotor.training import collection;"
-        "collection.SHARD = 1;"
+        "collection.BATCH = 1;"
         f"collection.collect(Path({str(killed)!r}), ('wind',), 2, {{'wind': 3}})"
     )
     process = subprocess.Popen([sys.executable, "-c", script])
-    while process.poll() is None and not list(killed.glob(".*/*.rows.parquet")):
+    while process.poll() is None and not list(killed.glob(".*/*.rows")):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     assert process.wait() == -signal.SIGKILL
@@ -134,7 +134,7 @@ def test_a_pool_that_is_there_is_kept(pools, tmp_path):
     seen = []
     collect(tmp_path, ("nominal",), 0, SMALL, progress=lambda *told: seen.append(told))
     assert first.stat().st_mtime_ns == stamp
-    assert seen == [(0.0, 0.0)]
+    assert seen == [(0, 0)]
 
 
 def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):

@@ -11,14 +11,13 @@ from faultpath.quadrotor.platform import FIRST
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import clearance_data, closed_loop, flight
-from faultpath.quadrotor.training.pool import encode_episodes, encode_rows
-from faultpath.quadrotor.training.shards import Shard
+from faultpath.quadrotor.training.pool import encode_episodes, encode_rows, write_flights
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 
 
 def _pool(folder: Path) -> None:
-    Shard(str(folder), "wind", 0, 0, 1, FIRST).fly()
+    write_flights(folder / "batch", range(1), flight.fly("wind", range(1), 0, FIRST))
 
 
 def _closed_loop(folder: Path) -> None:
@@ -37,7 +36,7 @@ def _images(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("make", "roots"),
     [
-        (_pool, ["training.shards"]),
+        (_pool, ["training.flight", "training.pool"]),
         (_images, ["training.clearance_data"]),
         pytest.param(_closed_loop, ["system", "training.trajectories"], marks=pytest.mark.slow),
     ],

@@ -9,8 +9,11 @@ from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath.quadrotor.training.collection import collect, different, recipe
-from faultpath.quadrotor.training.pool import provenance_path
-from faultpath.quadrotor.training.provenance import code_sha256, read_provenance
+from faultpath.quadrotor.training.provenance import (
+    code_sha256,
+    provenance_path,
+    read_provenance,
+)
 
 
 def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:

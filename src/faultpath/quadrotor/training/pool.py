@@ -17,9 +17,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.training.provenance import Provenance, provenance_path, read_provenance
+from faultpath.quadrotor.training.provenance import Provenance, read_provenance
 from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, VehicleParameters
+from faultpath.quadrotor.vehicle import VehicleParameters
 from faultpath.store import atomic, read_table
 
 _AXES = ("x", "y", "z")
@@ -114,13 +114,6 @@ def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
     )
 
 
-def write_pool(path: Path, rows: bytes, episodes: bytes, provenance: Provenance) -> None:
-    """Write a finished pool, its provenance last; `OSError` when the disk will not."""
-    atomic.write(episodes_path(path), episodes)
-    atomic.write(path, rows)
-    atomic.write(provenance_path(path), provenance.encode())
-
-
 def read_pool(path: Path) -> Pool:
     """Read a pool; `UserError` when it is missing, unfinished or damaged."""
     provenance = read_provenance(path)
@@ -135,11 +128,6 @@ def read_pool(path: Path) -> Pool:
 def steps_of(episodes: bytes) -> np.ndarray:
     """Return the control steps of each episode in an encoded episode table, [E]."""
     return read_table(episodes).column("steps").to_numpy().astype(np.int64)
-
-
-def vehicle_seconds(steps: np.ndarray) -> float:
-    """Return the time flown in episodes of these lengths."""
-    return round(float(steps.sum()) * CONTROL_DT_S, 3)
 
 
 def _read(path: Path, sha256: str) -> bytes:

@@ -1,6 +1,6 @@
 """Fitting of the learned predictors (paper, Section IV-A)."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
+from faultpath.quadrotor.models import PREDICTORS
 from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
@@ -37,36 +38,19 @@ PARTS = ("position", "velocity", "rotation", "rate")
 
 @dataclass(frozen=True)
 class Recipe:
-    """What a predictor is and what it learns from."""
+    """What a predictor learns from, and for how long (paper, Section IV-A)."""
 
-    network: Callable[[], LatentNetwork]
-    predictor: Callable[[Any, Platform], Predictor]
     pools: tuple[str, ...]
     epochs: int
     description: str
 
 
-def _anchored(wind: bool) -> Callable[[LatentNetwork, Platform], Predictor]:
-    return lambda network, platform: AnchoredPredictor(network, wind, platform.drag_kgps)
-
-
-def _unanchored(network: UnanchoredNetwork, platform: Platform) -> Predictor:
-    del platform
-    return UnanchoredPredictor(network)
-
-
 _BOTH = ("nominal", "wind")
 RECIPES: Mapping[str, Recipe] = {
-    "wm-a": Recipe(
-        AnchoredPredictor.build_network, _anchored(False), ("nominal",), 10, "physics-anchored"
-    ),
-    "wm-u": Recipe(UnanchoredPredictor.build_network, _unanchored, ("nominal",), 30, "unanchored"),
-    "wm-a-wind": Recipe(
-        AnchoredPredictor.build_network, _anchored(True), _BOTH, 10, "wind-conditioned anchored"
-    ),
-    "wm-a-nowind": Recipe(
-        AnchoredPredictor.build_network, _anchored(False), _BOTH, 10, "wind-withheld anchored"
-    ),
+    "wm-a": Recipe(("nominal",), 10, "physics-anchored"),
+    "wm-u": Recipe(("nominal",), 30, "unanchored"),
+    "wm-a-wind": Recipe(_BOTH, 10, "wind-conditioned anchored"),
+    "wm-a-nowind": Recipe(_BOTH, 10, "wind-withheld anchored"),
 }
 
 
@@ -104,14 +88,10 @@ class PredictorTask(Task):
         training, self._validation = _equal_mix(pools)
         self._train = training
         self._scales = scales(training)
-        predictor = self._predictor(self._recipe.network())
-        self._consumers = predictor.consumers()
+        self._consumers = self._blank().consumers()
         faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
         self._corruption = Corruption(faults, self._consumers, training.ids, self.seed)
         self._delivered: DeliveredInputs = {}
-
-    def _predictor(self, network: nn.Module) -> Predictor:
-        return self._recipe.predictor(network, self._platform)
 
     @property
     def is_dcc(self) -> bool:
@@ -130,7 +110,7 @@ class PredictorTask(Task):
 
     @override
     def module(self) -> nn.Module:
-        network = self._recipe.network()
+        network = self._blank().network
         stream = generator("training/weights", self._base, self.seed)
         network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
         _measure(network, self._train)
@@ -174,6 +154,17 @@ class PredictorTask(Task):
             "validation_windows": len(self._validation),
             "scales": {name: float(value) for name, value in self._scales.items()},
         }
+
+    def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
+        made = PREDICTORS[self._base].build(self._platform)
+        assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
+        return made
+
+    def _predictor(self, network: nn.Module) -> Predictor:
+        """Return the predictor around the network that is fitted."""
+        made: Any = self._blank()
+        made.network = network
+        return made
 
 
 def known() -> str:

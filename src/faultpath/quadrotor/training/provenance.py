@@ -70,7 +70,7 @@ def code_of(*modules: str) -> str:
 
 def code_sha256() -> str:
     """Return a hash of the files that draw and fly episodes: another code, another pool."""
-    return code_of("training.shards")
+    return code_of("training.flight", "training.pool")
 
 
 def read_provenance(path: Path) -> Provenance | None:

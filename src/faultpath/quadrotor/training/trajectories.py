@@ -6,33 +6,20 @@ geometry's, so that the pool does not depend on the depth model.
 """
 
 import hashlib
-from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from itertools import product
 from pathlib import Path
 
-from faultpath.execution.provenance import packages
 from faultpath.quadrotor import native
 from faultpath.quadrotor.choices import PlatformName
 from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.quadrotor.system import Quadrotor
+from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.pool import (
-    encode_episodes,
-    encode_rows,
-    join,
-    steps_of,
-    vehicle_seconds,
-    write_pool,
-)
-from faultpath.quadrotor.training.provenance import Provenance, code_of
-from faultpath.store import atomic
+from faultpath.quadrotor.training.provenance import Recipe, code_of
+from faultpath.quadrotor.training.recorded import Flights
 from faultpath.store.lock import locked
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
-from faultpath.version import __version__
-from faultpath.work import local, run_all
 
 POOL = "trajectory"
 LIBRARY = "selection"
@@ -41,33 +28,6 @@ LEVELS = ("L1", "L2", "L3")
 VARIANT = "wm-a-wind/true-wind"
 SEED = 0
 BLOCK = 14
-
-Progress = Callable[[float, float], None]
-
-
-@dataclass(frozen=True)
-class Shard:
-    """Flights of one block of scenes, and its place in the pool."""
-
-    level: str
-    first: int
-    platform: PlatformName = PlatformName.FIRST
-
-    @property
-    def name(self) -> str:
-        """Name of its files, without their ending; sorted, they are in the pool's order."""
-        return f"{self.level}-{self.first:03d}"
-
-    @property
-    def episodes(self) -> range:
-        """Numbers of its flights in the pool."""
-        first = LEVELS.index(self.level) * SCENES + self.first
-        return range(first, first + BLOCK)
-
-
-def shards(platform: PlatformName = PlatformName.FIRST) -> list[Shard]:
-    """Return every shard of the pool, in its order."""
-    return [Shard(*parts, platform) for parts in product(LEVELS, range(0, SCENES, BLOCK))]
 
 
 def record(
@@ -82,49 +42,10 @@ def record(
     predictor's checkpoint is missing.
     """
     path = folder / f"{POOL}.parquet"
-    place = folder / f".{POOL}-{code_sha256(platform)[:16]}"
-    place.mkdir(parents=True, exist_ok=True)
-    with locked(folder, lambda text: None):
-        atomic.sweep(place)
-        todo = [shard for shard in shards(platform) if not (place / f"{shard.name}.rows").exists()]
-        done = len(shards()) - len(todo)
-        tell = progress or (lambda done, total: None)
-        tell(done * BLOCK, len(shards()) * BLOCK)
-        with local(workers) as executor:
-            for _ in run_all(executor, [partial(fly, shard, place) for shard in todo]):
-                done += 1
-                tell(done * BLOCK, len(shards()) * BLOCK)
-        _assemble(path, place, platform)
-    return path
-
-
-@native.using(native.PORTABLE)
-def fly(shard: Shard, place: Path) -> None:
-    """Fly a shard and write its two files, the rows last."""
-    system = Quadrotor.parse(platform=shard.platform, wind=shard.level, clearance="true")
-    scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
-    flights = record_flights(system, VARIANT, scenes[shard.first : shard.first + BLOCK], SEED)
-    atomic.write(place / f"{shard.name}.episodes", encode_episodes(shard.episodes, flights))
-    atomic.write(place / f"{shard.name}.rows", encode_rows(shard.episodes, flights))
-
-
-def code_sha256(platform: PlatformName = PlatformName.FIRST) -> str:
-    """Return a hash of what decides the pool: the system, its weights, and the settings here."""
-    spec = SystemSpec(name=Quadrotor.name, options={"platform": platform, "clearance": "true"})
-    state = system_code(Quadrotor.parse(**spec.options), spec).state
-    code = code_of("training.trajectories")
-    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORMS[platform].hash)
-    content = repr((state.contents, code, *settings))
-    return hashlib.sha256(content.encode()).hexdigest()
-
-
-def _assemble(path: Path, place: Path, platform: PlatformName) -> None:
-    rows = join((place / f"{shard.name}.rows").read_bytes() for shard in shards())
-    episodes = join((place / f"{shard.name}.episodes").read_bytes() for shard in shards())
-    steps = steps_of(episodes)
-    provenance = Provenance(
+    code = code_sha256(platform)
+    recipe = Recipe(
         pool=POOL,
-        episodes=len(steps),
+        episodes=len(LEVELS) * SCENES,
         seed=SEED,
         flight=None,
         vehicle=PLATFORMS[platform].ranges,
@@ -135,17 +56,37 @@ def _assemble(path: Path, place: Path, platform: PlatformName) -> None:
             "variant": VARIANT,
         },
         wind={},
-        code_sha256=code_sha256(platform),
-        faultpath_version=__version__,
-        packages=packages(),
-        rows=int(steps.sum()) + len(steps),
-        vehicle_seconds=vehicle_seconds(steps),
-        ended_early=0,
-        rows_sha256=hashlib.sha256(rows).hexdigest(),
-        episodes_sha256=hashlib.sha256(episodes).hexdigest(),
+        code_sha256=code,
     )
-    write_pool(path, rows, episodes, provenance)
-    for shard in shards():
-        for ending in ("rows", "episodes"):
-            (place / f"{shard.name}.{ending}").unlink()
-    place.rmdir()
+    place = folder / f".{POOL}-{code[:16]}"
+    batches = [
+        Batch(
+            place / f"{level}-{first:03d}",
+            range(count * SCENES + first, count * SCENES + first + BLOCK),
+            partial(fly, platform, level, first),
+        )
+        for count, level in enumerate(LEVELS)
+        for first in range(0, SCENES, BLOCK)
+    ]
+    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder, lambda text: None):
+        make_pools({path: (recipe, batches)}, workers, progress)
+    return path
+
+
+@native.using(native.PORTABLE)
+def fly(platform: PlatformName, level: str, first: int) -> Flights:
+    """Fly the scenes of a batch, which begins at scene `first`."""
+    system = Quadrotor.parse(platform=platform, wind=level, clearance="true")
+    scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
+    return record_flights(system, VARIANT, scenes[first : first + BLOCK], SEED)
+
+
+def code_sha256(platform: PlatformName = PlatformName.FIRST) -> str:
+    """Return a hash of what decides the pool: the system, its weights, and the settings here."""
+    spec = SystemSpec(name=Quadrotor.name, options={"platform": platform, "clearance": "true"})
+    state = system_code(Quadrotor.parse(**spec.options), spec).state
+    code = code_of("training.trajectories")
+    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORMS[platform].hash)
+    content = repr((state.contents, code, *settings))
+    return hashlib.sha256(content.encode()).hexdigest()
