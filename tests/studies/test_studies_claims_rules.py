@@ -17,18 +17,18 @@ from faultpath.studies.claims.paying import Crossing
 from faultpath.studies.claims.rules import (
     ABOVE,
     BELOW,
+    NO_DIFFERENCE,
     NO_GAIN,
     NO_LOSS,
     POINT_SCENES,
     REPORTED,
     Bound,
-    ByPoint,
-    NotDetected,
     Rule,
-    Within,
     at_least,
+    by_point,
     less_than,
     more_than,
+    within,
 )
 from faultpath.studies.claims.turning import Turned
 from faultpath.studies.quantities.quantity import decisive
@@ -88,9 +88,9 @@ def test_a_difference_is_detected_when_interval_and_test_agree(
         (NO_LOSS, found((-15.0, 1.0), 0.04), "refuted"),
         (NO_LOSS, found(UP, 0.01), "confirmed"),
         (NO_GAIN, found(UP, 0.01), "refuted"),
-        (NotDetected(), found(UP, 0.01), "refuted"),
-        (NotDetected(), found(DOWN, 0.01), "refuted"),
-        (NotDetected(), found(DOWN, 0.06), "confirmed"),
+        (NO_DIFFERENCE, found(UP, 0.01), "refuted"),
+        (NO_DIFFERENCE, found(DOWN, 0.01), "refuted"),
+        (NO_DIFFERENCE, found(DOWN, 0.06), "confirmed"),
         (NO_LOSS, found(OPEN, 0.3, mde=20.0), "confirmed"),
         (NO_LOSS, found(OPEN, 0.3, mde=20.1), "undecided"),
         (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
@@ -117,16 +117,16 @@ def test_not_detecting_counts_only_where_something_would_have_been_seen(
         (more_than(15.1), found(UP), "refuted"),
         (less_than(10), found(UP), "undecided"),
         (less_than(10.1), found(UP), "confirmed"),
-        (at_least(10, detected=True), found(UP, 0.01), "confirmed"),
-        (at_least(10, detected=True), found(UP, 0.2), "undecided"),
-        (at_least(3, detected=True), found(OPEN, 0.2), "undecided"),
-        (at_least(20, detected=True), found(UP, 0.01), "refuted"),
-        (Within(9, 11), found(UP), "confirmed"),
-        (Within(11, 12), found(UP), "undecided"),
-        (Within(16, 20), found(UP), "refuted"),
-        (Within(1, 2), found(UP), "refuted"),
+        (at_least(10, seen=True), found(UP, 0.01), "confirmed"),
+        (at_least(10, seen=True), found(UP, 0.2), "undecided"),
+        (at_least(3, seen=True), found(OPEN, 0.2), "undecided"),
+        (at_least(20, seen=True), found(UP, 0.01), "refuted"),
+        (within(9, 11), found(UP), "confirmed"),
+        (within(11, 12), found(UP), "undecided"),
+        (within(16, 20), found(UP), "refuted"),
+        (within(1, 2), found(UP), "refuted"),
         (at_least(-1), found(None), "undecided"),
-        (Within(-1, 1), found(None), "undecided"),
+        (within(-1, 1), found(None), "undecided"),
     ],
 )
 def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
@@ -138,12 +138,12 @@ def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
 @pytest.mark.parametrize(
     ("rule", "value", "answer"),
     [
-        (ByPoint(1), 0.1, "confirmed"),
-        (ByPoint(1), 0.0, "undecided"),
-        (ByPoint(1, strict=False), 0.0, "confirmed"),
-        (ByPoint(-1), 0.1, "refuted"),
-        (ByPoint(-1, -0.5, strict=False), -0.5, "confirmed"),
-        (ByPoint(-1, -0.5, strict=False), -0.4, "refuted"),
+        (by_point(1), 0.1, "confirmed"),
+        (by_point(1), 0.0, "undecided"),
+        (by_point(1, strict=False), 0.0, "confirmed"),
+        (by_point(-1), 0.1, "refuted"),
+        (by_point(-1, -0.5, strict=False), -0.5, "confirmed"),
+        (by_point(-1, -0.5, strict=False), -0.4, "refuted"),
         (REPORTED, -7.0, "confirmed"),
     ],
 )
@@ -152,7 +152,7 @@ def test_claims_about_points_are_decided_by_points(rule: Rule, value: float, ans
 
 
 @pytest.mark.parametrize("n_scenes", [1, 5, 10, POINT_SCENES - 1])
-@pytest.mark.parametrize("rule", [ByPoint(1), ByPoint(-1), ByPoint(1, 60), ByPoint(-1, 0.0)])
+@pytest.mark.parametrize("rule", [by_point(1), by_point(-1), by_point(1, 60), by_point(-1, 0.0)])
 def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int) -> None:
     for value in (-50.0, 0.0, 50.0):
         judged = rule.judge(shown(value, (value - 5, value + 5), n_scenes))
@@ -180,10 +180,10 @@ def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
         (at_least(8), 100, "confirmed"),
         (at_least(4), 10, "confirmed"),
         (at_least(16), 10, "refuted"),
-        (Within(8, 12), 10, "undecided"),
-        (Within(8, 12), 100, "confirmed"),
-        (Within(4, 16), 10, "confirmed"),
-        (Within(16, 20), 10, "refuted"),
+        (within(8, 12), 10, "undecided"),
+        (within(8, 12), 100, "confirmed"),
+        (within(4, 16), 10, "confirmed"),
+        (within(16, 20), 10, "refuted"),
     ],
 )
 def test_few_scenes_meet_a_threshold_by_their_whole_interval(
@@ -193,7 +193,7 @@ def test_few_scenes_meet_a_threshold_by_their_whole_interval(
 
 
 @pytest.mark.parametrize(
-    "rule", [at_least(30), at_least(-60), less_than(30), Within(1, 2), Within(49, 51)]
+    "rule", [at_least(30), at_least(-60), less_than(30), within(1, 2), within(49, 51)]
 )
 @pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
 def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
@@ -205,7 +205,7 @@ def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_a_tie_shows_neither_side_ahead(sign: int) -> None:
-    judged = ByPoint(sign).judge(shown(0.0, (0.0, 0.0)))
+    judged = by_point(sign).judge(shown(0.0, (0.0, 0.0)))
     assert (judged.answer, judged.reason) == ("undecided", "the estimate is a tie")
 
 
@@ -260,14 +260,14 @@ def crossing(
 @pytest.mark.parametrize(
     ("bound", "at", "answer"),
     [
-        (less_than(15), crossing(5, ahead=True), "confirmed"),
-        (less_than(15), crossing(20, ahead=True), "undecided"),
-        (less_than(15), crossing(40, ahead=True), "refuted"),
-        (less_than(15), crossing(0, ahead=True), "confirmed"),
-        (more_than(30), crossing(0, ahead=True), "refuted"),
-        (more_than(30), crossing(None, behind=True, never=True), "refuted"),
-        (more_than(30), crossing(None, never=True), "undecided"),
-        (less_than(15), crossing(None), "undecided"),
+        (Bound(15, -1, strict=True), crossing(5, ahead=True), "confirmed"),
+        (Bound(15, -1, strict=True), crossing(20, ahead=True), "undecided"),
+        (Bound(15, -1, strict=True), crossing(40, ahead=True), "refuted"),
+        (Bound(15, -1, strict=True), crossing(0, ahead=True), "confirmed"),
+        (Bound(30, 1, strict=True), crossing(0, ahead=True), "refuted"),
+        (Bound(30, 1, strict=True), crossing(None, behind=True, never=True), "refuted"),
+        (Bound(30, 1, strict=True), crossing(None, never=True), "undecided"),
+        (Bound(15, -1, strict=True), crossing(None), "undecided"),
         (None, crossing(None, never=True), "confirmed"),
         (None, crossing(None, never=True, behind=True), "confirmed"),
         (None, crossing(40), "undecided"),
@@ -281,9 +281,11 @@ def test_a_break_even_frequency_is_judged_by_what_is_decided(
     assert judged.answer == answer
 
 
-@pytest.mark.parametrize("rule", [ABOVE, NO_LOSS, NotDetected(), at_least(3), ByPoint(1), REPORTED])
+@pytest.mark.parametrize(
+    "rule", [ABOVE, NO_LOSS, NO_DIFFERENCE, at_least(3), by_point(1), REPORTED]
+)
 def test_a_statement_begins_with_its_subject(rule: Rule) -> None:
-    assert "success of A minus B" in rule.words("success of A minus B")
+    assert "success of A minus B" in rule.words.format("success of A minus B")
 
 
 def mean(values: list[float]) -> Contrast:

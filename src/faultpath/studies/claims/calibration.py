@@ -6,8 +6,8 @@ from faultpath.studies.claims.rules import (
     BELOW,
     NO_LOSS,
     REPORTED,
-    ByPoint,
     at_least,
+    by_point,
     more_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
@@ -60,7 +60,7 @@ CLAIMS: dict[str, Statements] = {
             Statement(
                 f"success of WM-A lost at e = {error:+g}",
                 success(*_lost(BASELINE, error)),
-                at_least(lost_pp, detected=True),
+                at_least(lost_pp, seen=True),
             ),
         )
         for claim, error, lost_pp in (("C05", 0.1, 30), ("C06", -0.1, 20))
@@ -81,7 +81,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "success of WM-U lost at e = -0.1, minus a third of that lost at e = +0.1,",
             combined((1, _lost(WM_U[1], -0.1)), (-1 / 3, _lost(WM_U[1], 0.1))),
-            ByPoint(-1),
+            by_point(-1),
         ),
     ),
     "C09": tuple(_repaired(WM_A, error) for error in FAULTS),
@@ -110,19 +110,19 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "worst success of WM-U+DCC over the sweep, minus that of WM-A+DCC,",
             worst_difference("wm-u+dcc", "wm-a+dcc"),
-            ByPoint(1),
+            by_point(1),
         ),
         Statement(
             f"success of WM-A+DCC at e = {figure_3.ERRORS[0]:g}, minus its worst,",
             above_worst("wm-a+dcc", figure_3.ERRORS[0]),
-            ByPoint(-1, strict=False),
+            by_point(-1, strict=False),
         ),
         *(
             Statement(
                 f"number of errors around 0 with success of 90 and more, {_name(repair)} minus "
                 f"{_name(baseline)},",
                 range_gained(repair, baseline),
-                ByPoint(1),
+                by_point(1),
             )
             for repair, baseline in table_2.PAIRS
         ),

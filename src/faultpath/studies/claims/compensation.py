@@ -3,11 +3,11 @@
 from faultpath.studies.claims.rules import (
     BELOW,
     NO_LOSS,
-    ByPoint,
     Rule,
-    Within,
     at_least,
+    by_point,
     less_than,
+    within,
 )
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import table_4, table_6, text_mechanism
@@ -19,7 +19,7 @@ from faultpath.studies.quantities.windows import (
 
 NOMINAL, ISOLATED, PREDICTOR, SHARED = table_6.INTERFACES
 GRU, DCC, DOB = table_4.METHODS
-WITHIN_15_PERCENT = Within(0.85, 1.15)
+WITHIN_15_PERCENT = within(0.85, 1.15)
 
 
 def _acceleration(method: str, interface: str) -> Subject:
@@ -86,7 +86,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             f"rank correlation of success with {error} over {len(text_mechanism.NINE)} cells",
             quantity,
-            ByPoint(-1, -0.5, strict=False),
+            by_point(-1, -0.5, strict=False),
         )
         for error, quantity in zip(
             ("acceleration error", "20-step position error"), text_mechanism.RANKED, strict=True

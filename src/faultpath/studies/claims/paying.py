@@ -13,9 +13,7 @@ from faultpath.studies.claims.rules import (
     Bound,
     Ends,
     Judged,
-    by_point,
-    less_than,
-    more_than,
+    points_decide,
     telling,
 )
 from faultpath.studies.claims.statement import Statements
@@ -44,7 +42,7 @@ class Crossing:
         if self.n_scenes < MIN_SCENES:
             return FEW_SCENES
         if self.value is not None:
-            return bound.met(self.value, self.interval, self.n_scenes)
+            return bound.judge(self.value, self.interval, self.n_scenes)
         return REFUTED if self.behind else Judged("undecided", "pays from no frequency on")
 
     def pays_never(self) -> Judged:
@@ -57,7 +55,7 @@ class Crossing:
         if self.ahead:
             return REFUTED
         if self.never:
-            return CONFIRMED if by_point(self.n_scenes) else FEW_FOR_POINTS
+            return CONFIRMED if points_decide(self.n_scenes) else FEW_FOR_POINTS
         if self.value is not None and telling(self.interval, self.n_scenes) is None:
             return FEW_FOR_POINTS
         return Judged("undecided")
@@ -78,7 +76,7 @@ class Pays:
         subject = f"break-even frequency of {self.name},"
         if self.bound is None:
             return f"{subject} does not exist: the repair pays at none"
-        return self.bound.words(f"{subject.removesuffix(',')}, in percent,")
+        return self.bound.words.format(f"{subject} in percent,")
 
     def part(self, results: Results) -> Part:
         """Answer it from a run."""
@@ -125,9 +123,9 @@ def _from(even: BreakEven) -> Ends:
 
 CLAIMS: dict[str, Statements] = {
     "C33": (
-        Pays("WM-A+DCC", "WM-A", less_than(15)),
-        Pays("WM-U+DCC", "WM-U", less_than(15)),
-        Pays("GRU+DCC, reconstruction-only", "GRU/reconstruction-only", more_than(30)),
+        Pays("WM-A+DCC", "WM-A", Bound(15, -1, strict=True)),
+        Pays("WM-U+DCC", "WM-U", Bound(15, -1, strict=True)),
+        Pays("GRU+DCC, reconstruction-only", "GRU/reconstruction-only", Bound(30, 1, strict=True)),
         Pays("GRU+DCC, shared", "GRU/shared"),
     ),
 }

@@ -3,7 +3,7 @@
 from itertools import combinations
 
 from faultpath.studies.cells import Cell, of_seed
-from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, NotDetected, at_least
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import table_1
 from faultpath.studies.quantities.differences import crashes, success, time, timeouts
@@ -53,7 +53,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             f"success of {NAMES[first]} minus {NAMES[second]}",
             success(of_seed(first), of_seed(second)),
-            NotDetected(),
+            NO_DIFFERENCE,
         )
         for first, second in combinations(table_1.PREDICTORS, 2)
     ),

@@ -3,8 +3,9 @@
 `docs/design/claims.md` gives the reasons. No rule knows the figure that the paper reports.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from faultpath.record import Answer
 from faultpath.statistics import Contrast
@@ -14,6 +15,8 @@ POINT_SCENES = 50
 """From so many scenes on an estimate decides where the paper's own does: half of the paper's
 hundred. A rate of success then has a standard error of at most 7 pp."""
 
+Ends = tuple[float, float]
+
 
 class Judged(NamedTuple):
     """An answer, and why where the numbers do not say it."""
@@ -22,30 +25,25 @@ class Judged(NamedTuple):
     reason: str = ""
 
 
-CONFIRMED, REFUTED = Judged("confirmed"), Judged("refuted")
+CONFIRMED, REFUTED, OPEN = Judged("confirmed"), Judged("refuted"), Judged("undecided")
 FEW_SCENES = Judged("undecided", "too few scenes")
 FEW_FOR_POINTS = Judged("undecided", f"an estimate alone decides from {POINT_SCENES} scenes on")
 TIED = Judged("undecided", "the estimate is a tie")
 
 
-class Rule(Protocol):
+@dataclass(frozen=True)
+class Rule:
     """One way of deciding."""
 
-    def words(self, subject: str) -> str:
-        """Return the statement about `subject`."""
-        ...
-
-    def judge(self, found: Contrast) -> Judged:
-        """Answer it."""
-        ...
+    words: str
+    """The statement, with `{}` for its subject."""
+    judge: Callable[[Contrast], Judged]
+    """Answers it."""
 
 
-def by_point(n_scenes: int) -> bool:
+def points_decide(n_scenes: int) -> bool:
     """Return whether there are scenes enough for an estimate to decide without its interval."""
     return n_scenes >= POINT_SCENES
-
-
-Ends = tuple[float, float]
 
 
 def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
@@ -54,194 +52,163 @@ def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
     Scenes that are all alike give an interval without width, which of few scenes is a point
     estimate by another name.
     """
-    if interval is None or by_point(n_scenes):
+    if interval is None or points_decide(n_scenes):
         return interval
     return interval if interval[1] - interval[0] > ROUNDING else None
 
 
-@dataclass(frozen=True)
-class Detected:
-    """The difference lies on one side of 0: interval and test agree."""
+def detected(sign: int) -> Rule:
+    """The difference lies on one side of 0: interval and test agree; refuted on the other one."""
 
-    sign: int
-
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        return f"{subject} is {_side(self.sign)} 0"
-
-    def judge(self, found: Contrast) -> Judged:
-        """Confirm on this side, refute on the other one."""
+    def judge(found: Contrast) -> Judged:
         if found.detected:
-            return CONFIRMED if found.detected == self.sign else REFUTED
+            return CONFIRMED if found.detected == sign else REFUTED
         if found.interval is None:
             return FEW_SCENES
         if found.side:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
-        return Judged("undecided")
+        return OPEN
+
+    return Rule(f"{{}} is {_SIDES[sign]} 0", judge)
 
 
-@dataclass(frozen=True)
-class NotDetected:
-    """No difference is detected, on one side of 0 or on either."""
+def not_detected(sign: int | None = None) -> Rule:
+    """No difference is detected, on one side of 0 or on either.
 
-    sign: int | None = None
+    Refuted by a rejection there; its absence confirms where it would have been seen.
+    """
 
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        where = "to differ from" if self.sign is None else _side(self.sign)
-        return f"{subject} is not detected {where} 0"
-
-    def judge(self, found: Contrast) -> Judged:
-        """Refute a rejection there; confirm its absence where it would have been seen."""
+    def judge(found: Contrast) -> Judged:
         if found.interval is None:
             return FEW_SCENES
         if found.rejected:
-            return REFUTED if self.sign in (None, found.rejected) else CONFIRMED
+            return REFUTED if sign in (None, found.rejected) else CONFIRMED
         if found.least is None:
             return Judged("undecided", "no difference, however large, is sure to be detected")
         if found.notable is not None and found.least > found.notable:
             return Judged("undecided", "a difference of notable size could have been missed")
         return CONFIRMED
 
+    where = "to differ from" if sign is None else _SIDES[sign]
+    return Rule(f"{{}} is not detected {where} 0", judge)
+
 
 @dataclass(frozen=True)
 class Bound:
-    """The value reaches a threshold from above or from below."""
+    """A threshold, reached from above or from below."""
 
     limit: float
     sign: int
     """1: at least; -1: at most."""
     strict: bool = False
-    detected: bool = False
-    """Whether it has to be detected on the side of the limit too."""
+    """Whether it is not reached by equality."""
 
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        loose = {1: "at least", -1: "at most"}[self.sign]
-        text = {1: "above", -1: "below"}[self.sign] if self.strict else loose
-        return f"{subject} is {text} {self.limit:g}{' and detected' if self.detected else ''}"
+    @property
+    def words(self) -> str:
+        """What lies there, with `{}` for it."""
+        return f"{{}} is {(_SIDES if self.strict else _LIMITS)[self.sign]} {self.limit:g}"
 
-    def judge(self, found: Contrast) -> Judged:
+    def ahead(self, value: float) -> float:
+        """Return by how much a value is beyond it."""
+        return self.sign * (value - self.limit)
+
+    def meets(self, value: float) -> bool:
+        """Return whether a value does."""
+        return self.ahead(value) > 0 if self.strict else self.ahead(value) >= 0
+
+    def judge(self, value: float, interval: Ends | None, n_scenes: int) -> Judged:
         """Refute when the whole interval misses; confirm when it meets, or the estimate may do so.
 
         The estimate may in a run that is large enough, unless the limit is 0: on which side of 0 a
         difference lies only an interval that leaves 0 out can say.
         """
-        met = self.met(found.value, found.interval, found.n_scenes)
-        if met is CONFIRMED and self.detected and found.detected != self.sign:
-            return Judged("undecided", "met, but not detected")
-        return met
-
-    def met(self, value: float, interval: Ends | None, n_scenes: int) -> Judged:
-        """Answer by a value and its interval alone."""
         interval = telling(interval, n_scenes)
         if interval is None:
             return FEW_SCENES
         near, far = interval if self.sign > 0 else interval[::-1]
-        if self._ahead(far) < 0:
+        if self.ahead(far) < 0:
             return REFUTED
-        if not self._meets(value):
-            return Judged("undecided")
-        if self._ahead(near) <= 0:
+        if not self.meets(value):
+            return OPEN
+        if self.ahead(near) <= 0:
             if self.limit == 0:
                 return Judged("undecided", "met by the estimate, but the interval reaches 0")
-            if not by_point(n_scenes):
+            if not points_decide(n_scenes):
                 return FEW_FOR_POINTS
         return CONFIRMED
 
-    def _meets(self, value: float) -> bool:
-        ahead = self._ahead(value)
-        return ahead > 0 if self.strict else ahead >= 0
 
-    def _ahead(self, value: float) -> float:
-        return self.sign * (value - self.limit)
+def bounded(bound: Bound, *, seen: bool = False) -> Rule:
+    """The value reaches a threshold; `seen`: and is detected on the side of it too."""
+
+    def judge(found: Contrast) -> Judged:
+        met = bound.judge(found.value, found.interval, found.n_scenes)
+        if met == CONFIRMED and seen and found.detected != bound.sign:
+            return Judged("undecided", "met, but not detected")
+        return met
+
+    return Rule(f"{bound.words}{' and detected' if seen else ''}", judge)
 
 
-@dataclass(frozen=True)
-class Within:
-    """The value lies between two limits, or on them."""
+def at_least(limit: float, *, seen: bool = False) -> Rule:
+    """The value reaches a lower limit; `seen` as in `bounded`."""
+    return bounded(Bound(limit, 1), seen=seen)
 
-    low: float
-    high: float
 
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        return f"{subject} lies between {self.low:g} and {self.high:g}"
+def more_than(limit: float) -> Rule:
+    """The value is above a limit."""
+    return bounded(Bound(limit, 1, strict=True))
 
-    def judge(self, found: Contrast) -> Judged:
-        """Refute when the whole interval misses; confirm when all of it lies inside.
 
-        In a run that is large enough the estimate may lie there alone.
-        """
+def less_than(limit: float) -> Rule:
+    """The value is below a limit."""
+    return bounded(Bound(limit, -1, strict=True))
+
+
+def within(least: float, most: float) -> Rule:
+    """The value lies between two limits, or on them.
+
+    Refuted when the whole interval misses; confirmed when all of it lies inside, or in a run that
+    is large enough the estimate alone.
+    """
+
+    def judge(found: Contrast) -> Judged:
         interval = telling(found.interval, found.n_scenes)
         if interval is None:
             return FEW_SCENES
         low, high = interval
-        if high < self.low or low > self.high:
+        if high < least or low > most:
             return REFUTED
-        if not self.low <= found.value <= self.high:
-            return Judged("undecided")
-        inside = self.low < low and high < self.high
-        return CONFIRMED if inside or by_point(found.n_scenes) else FEW_FOR_POINTS
+        if not least <= found.value <= most:
+            return OPEN
+        inside = least < low and high < most
+        return CONFIRMED if inside or points_decide(found.n_scenes) else FEW_FOR_POINTS
+
+    return Rule(f"{{}} lies between {least:g} and {most:g}", judge)
 
 
-@dataclass(frozen=True)
-class ByPoint:
-    """A claim about point estimates: the value lies on one side of a limit."""
+def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
+    """The point estimate lies on one side of a limit, in a run that is large enough.
 
-    sign: int
-    limit: float = 0.0
-    strict: bool = True
+    A tie confirms no advantage.
+    """
+    bound = Bound(limit, sign, strict)
 
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        text = _side(self.sign) if self.strict else {1: "at least", -1: "at most"}[self.sign]
-        return f"{subject} is {text} {self.limit:g}, by the point estimate"
-
-    def judge(self, found: Contrast) -> Judged:
-        """Decide by the value alone, in a run that is large enough; a tie confirms no advantage."""
+    def judge(found: Contrast) -> Judged:
         if not found.enough:
             return FEW_SCENES
-        if not by_point(found.n_scenes):
+        if not points_decide(found.n_scenes):
             return FEW_FOR_POINTS
-        ahead = self.sign * (found.value - self.limit)
-        if ahead == 0:
-            return TIED if self.strict else CONFIRMED
-        return CONFIRMED if ahead > 0 else REFUTED
+        if bound.meets(found.value):
+            return CONFIRMED
+        return REFUTED if bound.ahead(found.value) else TIED
+
+    return Rule(f"{bound.words}, by the point estimate", judge)
 
 
-@dataclass(frozen=True)
-class Reported:
-    """A quantity that the claim wants stated, whatever it is."""
-
-    def words(self, subject: str) -> str:
-        """Return the statement."""
-        return f"reported: {subject}"
-
-    def judge(self, found: Contrast) -> Judged:
-        """Confirm that it is there: what is not raises `NotRun` before."""
-        return CONFIRMED
-
-
-ABOVE, BELOW = Detected(1), Detected(-1)
-NO_GAIN, NO_LOSS = NotDetected(1), NotDetected(-1)
-REPORTED = Reported()
-
-
-def at_least(limit: float, *, detected: bool = False) -> Bound:
-    """Return the rule of a lower limit."""
-    return Bound(limit, 1, detected=detected)
-
-
-def more_than(limit: float) -> Bound:
-    """Return the rule of a lower limit that is not reached by equality."""
-    return Bound(limit, 1, strict=True)
-
-
-def less_than(limit: float) -> Bound:
-    """Return the rule of an upper limit that is not reached by equality."""
-    return Bound(limit, -1, strict=True)
-
-
-def _side(sign: int) -> str:
-    return "above" if sign > 0 else "below"
+_SIDES = {1: "above", -1: "below"}
+_LIMITS = {1: "at least", -1: "at most"}
+ABOVE, BELOW = detected(1), detected(-1)
+NO_GAIN, NO_LOSS, NO_DIFFERENCE = not_detected(1), not_detected(-1), not_detected()
+REPORTED = Rule("reported: {}", lambda found: CONFIRMED)
+"""A quantity that the claim wants stated, whatever it is; what is not there raises `NotRun`."""

@@ -1,7 +1,7 @@
 """C23 to C29 and C32: errors at the reconstruction alone, and shared (paper, Tables IV and VI)."""
 
 from faultpath.studies.cells import Cell
-from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, ByPoint, Rule
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, Rule, by_point
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.turning import ALL_SEEDS, TurnsDown, seeds_that_turn
 from faultpath.studies.pages.table_4 import cell, change
@@ -52,7 +52,7 @@ CLAIMS: dict[str, Statements] = {
             "number of seeds in which success of GRU+DCC minus GRU is above 0 under "
             "reconstruction-only and below 0 under shared",
             seeds_that_turn(_repair(ISOLATED), _repair(SHARED)),
-            ByPoint(1, ALL_SEEDS, strict=False),
+            by_point(1, ALL_SEEDS, strict=False),
         ),
     ),
     "C27": (
@@ -77,6 +77,6 @@ CLAIMS: dict[str, Statements] = {
             success(negative(DCC, path), negative(GRU, path)),
             rule,
         )
-        for path, rule in ((ISOLATED, ByPoint(1, strict=False)), (SHARED, ByPoint(-1)))
+        for path, rule in ((ISOLATED, by_point(1, strict=False)), (SHARED, by_point(-1)))
     ),
 }

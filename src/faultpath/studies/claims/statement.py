@@ -40,7 +40,7 @@ class Statement:
     @property
     def words(self) -> str:
         """The statement."""
-        return self.rule.words(self.subject)
+        return self.rule.words.format(self.subject)
 
     def part(self, results: Results) -> Part:
         """Answer it from a run."""

@@ -1,7 +1,7 @@
 """C16 to C22: wind that no sensor measures (paper, Table III and text)."""
 
 from faultpath.studies.cells import of_seed
-from faultpath.studies.claims.rules import ABOVE, BELOW, NO_GAIN, NotDetected
+from faultpath.studies.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import in_text
 from faultpath.studies.pages.table_3 import (
@@ -58,7 +58,7 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "success of GRU minus ground-truth wind at L3",
             success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
-            NotDetected(),
+            NO_DIFFERENCE,
         ),
         Statement(
             "success of GRU minus zero wind at L3",
