@@ -9,6 +9,8 @@ from faultpath.statistics.estimate import FrozenResult
 
 Value: TypeAlias = int | float | str
 Setting: TypeAlias = Mapping[str, Value]
+Cell: TypeAlias = dict[str, Value]
+"""A setting with what was measured in it: rate, then runs."""
 
 
 class Section(FrozenResult):
@@ -21,7 +23,7 @@ class Section(FrozenResult):
     columns: tuple[str, ...]
     rows: tuple[tuple[Value, ...], ...]
 
-    def cells(self) -> list[dict[str, Value]]:
+    def cells(self) -> list[Cell]:
         """Return each row as a mapping from its columns."""
         return [dict(zip(self.columns, row, strict=True)) for row in self.rows]
 

@@ -7,9 +7,7 @@ from math import sqrt
 from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
-from faultpath.selfcheck.model import Report, Value
-
-Cell = dict[str, Value]
+from faultpath.selfcheck.model import Cell, Report
 
 
 @dataclass(frozen=True)
@@ -73,11 +71,7 @@ def failures(report: Report) -> list[str]:
     for promise in PROMISES:
         for cell in report.section(promise.section).cells():
             if promise.concerns(cell) and promise.broken(cell):
-                setting = ", ".join(
-                    f"{name} {value}"
-                    for name, value in cell.items()
-                    if name not in ("measured", "runs")
-                )
+                setting = ", ".join(f"{name} {value}" for name, value in list(cell.items())[:-2])
                 limits = f"{promise.least:g} to {promise.most:g}"
                 said.append(
                     f"{promise.what} in {cell['measured']} of cases, not in {limits}: {setting}."
