@@ -2,6 +2,6 @@
 
 # pyright: reportUnusedImport=false
 from faultpath.execution.attempt import WrongOutcomes
-from faultpath.execution.ledger import Progress, ProgressCallback
 from faultpath.execution.provenance import Stopwatch, run_provenance
 from faultpath.execution.runner import Failure, Interrupted, RunResult, run_study
+from faultpath.execution.standing import Progress, ProgressCallback

@@ -12,10 +12,10 @@ from faultpath.code import Code, named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
-from faultpath.execution.ledger import Ledger, Progress, ProgressCallback
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.rechecks import Rechecks
 from faultpath.execution.schedule import Schedule, Task, Unit, plan
+from faultpath.execution.standing import Progress, ProgressCallback, Standing
 from faultpath.execution.worker import Brief, fly, fly_here
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
@@ -127,39 +127,39 @@ def run_study(
         study=study,
     )
     run = RunFolder(Path(folder))
-    ledger = Ledger(units, run, workers, limit)
+    standing = Standing(units, run, workers, limit)
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
-            schedule = _keep_finished(ledger, run, notice)
-            report(ledger.progress())
+            schedule = _keep_finished(standing, run, notice)
+            report(standing.progress())
             again = Rechecks(units, run)
             brief = Brief(study.system, study.library, code.state, library.content_hash)
             with hands as held:
                 there, here = partial(fly, brief), partial(fly_here, system, code.unread())
                 call = here if held.in_process else there
                 flying = Flying(held, call, limit, study.system.name)
-                _run(flying, schedule, ledger, report)
+                _run(flying, schedule, standing, report)
                 if recheck:
-                    _recheck(flying, again, ledger)
+                    _recheck(flying, again, standing)
             if flying.undeclared:
                 notice(_unnamed(sorted(flying.undeclared)))
-            table = assemble(study, library, ledger.outcomes)
-            deliveries = Deliveries.of(study, ledger.taps, table, again.findings())
+            table = assemble(study, library, standing.outcomes)
+            deliveries = Deliveries.of(study, standing.taps, table, again.findings())
             for finding in deliveries.findings:
                 notice(finding)
             digest = run.save_tables(table, deliveries)
     except KeyboardInterrupt:
-        # What is on disk counts: the ledger may have been stopped between storing and noting.
+        # What is on disk counts: the run may have been stopped between storing and noting.
         done = sum(run.holds_shard(unit.key) for unit in units)
         raise Interrupted(done, len(units)) from None
     return RunResult(
         outcomes=table,
         deliveries=deliveries,
         traces=traces_of(table),
-        blocks_computed=ledger.computed,
-        blocks_kept=ledger.kept,
-        failures=_failures(ledger, run),
+        blocks_computed=standing.computed,
+        blocks_kept=standing.kept,
+        failures=_failures(standing, run),
         outcomes_sha256=digest,
         system_fingerprint=fingerprint,
         code=(code,),
@@ -168,7 +168,7 @@ def run_study(
     )
 
 
-def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]) -> Schedule:
+def _keep_finished(standing: Standing, run: RunFolder, notice: Callable[[str], None]) -> Schedule:
     """Take over what is stored, say how much and from when, and return what is left to do.
 
     Trials that failed are left to do: what was wrong may have been the machine.
@@ -176,48 +176,48 @@ def _keep_finished(ledger: Ledger, run: RunFolder, notice: Callable[[str], None]
     missing: list[Unit] = []
     again: list[Task] = []
     kept: list[str] = []
-    for unit in ledger.units:
+    for unit in standing.units:
         shard = run.load_shard(unit.key, unit.scenes, notice)
         if shard is None:
             missing.append(unit)
         else:
             kept.append(unit.key)
-            again += ledger.keep(unit, shard)
+            again += standing.keep(unit, shard)
     if kept:
         notice(
-            _kept_trials(ledger.progress(), sum(len(t.scenes) for t in again), run.written(kept))
+            _kept_trials(standing.progress(), sum(len(t.scenes) for t in again), run.written(kept))
         )
     schedule = Schedule(missing)
     schedule.put(again)
     return schedule
 
 
-def _run(flying: Flying, schedule: Schedule, ledger: Ledger, report: ProgressCallback) -> None:
+def _run(flying: Flying, schedule: Schedule, standing: Standing, report: ProgressCallback) -> None:
     def take(worker: int) -> Task | None:
         if task := schedule.take(worker):
-            ledger.start(task)
+            standing.start(task)
         return task
 
     def settle(task: Task, reply: Reply) -> None:
-        schedule.put(ledger.settle(task, reply))
+        schedule.put(standing.settle(task, reply))
 
-    flying.run(take, settle, lambda: report(ledger.progress()))
+    flying.run(take, settle, lambda: report(standing.progress()))
 
 
-def _recheck(flying: Flying, again: Rechecks, ledger: Ledger) -> None:
+def _recheck(flying: Flying, again: Rechecks, standing: Standing) -> None:
     def settle(task: Task, reply: Reply) -> None:
-        again.settle(task, reply, ledger.outcomes)
+        again.settle(task, reply, standing.outcomes)
 
-    while tasks := list(again.tasks(ledger.outcomes)):
+    while tasks := list(again.tasks(standing.outcomes)):
         flying.run(lambda _: tasks.pop(0) if tasks else None, settle, lambda: None)
 
 
-def _failures(ledger: Ledger, run: RunFolder) -> tuple[Failure, ...]:
+def _failures(standing: Standing, run: RunFolder) -> tuple[Failure, ...]:
     failures: list[Failure] = []
-    for unit in ledger.units:
+    for unit in standing.units:
         details = run.failures / f"{unit.key}.txt"
         for scene in unit.scenes:
-            outcome = ledger.outcomes[unit.arm.key(), scene]
+            outcome = standing.outcomes[unit.arm.key(), scene]
             if outcome.failed:
                 where = details if details.exists() else None
                 failures.append(Failure(unit.arm, scene, outcome.error or "", where))

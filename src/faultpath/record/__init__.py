@@ -1,10 +1,8 @@
 """The decision: effects, break-even frequency, verdict."""
 
-from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
 from faultpath.record.decide import decide, primary_path
-from faultpath.record.family import CORRECT, SHARED, Family, decide_paths
+from faultpath.record.family import CORRECT, SHARED, decide_paths
 from faultpath.record.model import (
-    Cell,
     Change,
     DecisionRecord,
     Effect,
@@ -13,23 +11,30 @@ from faultpath.record.model import (
     PathBreakEven,
     Question,
     StruckTap,
-    Verdict,
 )
 from faultpath.record.provenance import RunProvenance
-from faultpath.record.reproduction import Configuration, Reproduction, SceneShown
-from faultpath.record.sweep import Point, Series, Sweep
+from faultpath.record.reproduction import (
+    Answer,
+    ClaimVerdict,
+    Configuration,
+    Ledger,
+    Part,
+    Point,
+    Reproduction,
+    SceneShown,
+    Series,
+    Sweep,
+)
 
 __all__ = [
     "CORRECT",
     "SHARED",
     "Answer",
-    "Cell",
     "Change",
     "ClaimVerdict",
     "Configuration",
     "DecisionRecord",
     "Effect",
-    "Family",
     "Generalise",
     "Ledger",
     "Part",
@@ -43,7 +48,6 @@ __all__ = [
     "Series",
     "StruckTap",
     "Sweep",
-    "Verdict",
     "decide",
     "decide_paths",
     "primary_path",

@@ -1,14 +1,101 @@
-"""Everything that a reproduction concludes: pages are made from this alone."""
+"""Everything that a reproduction concludes, claims and tables and figures: pages are made of it."""
+
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.record.claim import Ledger
-from faultpath.record.sweep import Sweep
 from faultpath.tables import Table
+
+Answer = Literal["confirmed", "refuted", "undecided"]
 
 
 class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+class Part(_Frozen):
+    """One of the statements that a claim is made of."""
+
+    words: str
+    """The statement, such as `WM-A+DCC minus WM-A at e = +0.1 is above 0`."""
+    answer: Answer
+    estimate: float | None = None
+    interval: tuple[float, float] | None = None
+    unit: str = ""
+    p_value: float | None = None
+    test: str = ""
+    mde: float | None = None
+    """Least effect that could have been detected, in `unit`."""
+    counts: str = ""
+    """Discordant scenes, first:second, seed by seed."""
+    reason: str = ""
+    """Why it is undecided, where the numbers do not say it."""
+    not_run: bool = False
+    """Whether that is because the run lacks what it is about."""
+
+
+class ClaimVerdict(_Frozen):
+    """A claim and what the run says of it; confirmed when every part is."""
+
+    id: str
+    kind: Literal["platform", "finding"]
+    verdict: Answer
+    estimate: float | None
+    """That of the part that decides: the first that fails to hold, or else the first."""
+    interval: tuple[float, float] | None
+    mde: float | None
+    unit: str
+    paper: str
+    """What the paper reports."""
+    claim: str
+    parts: tuple[Part, ...]
+
+
+class Ledger(_Frozen):
+    """Claims over one run."""
+
+    library: str
+    library_hash: str
+    scenes: int
+    seeds: tuple[int, ...]
+    claims: tuple[ClaimVerdict, ...]
+    left_out: int = 0
+    """Claims that the run is not about."""
+    note: str = ""
+    """What was flown elsewhere than on `library`, where that takes the place of another."""
+
+    def count(self, answer: Answer) -> int:
+        """Return how many claims got this answer."""
+        return sum(claim.verdict == answer for claim in self.claims)
+
+
+class Point(_Frozen):
+    """One point of a series, with its interval."""
+
+    x: float
+    y: float
+    low: float | None = None
+    high: float | None = None
+
+
+class Series(_Frozen):
+    """One line of a figure."""
+
+    label: str
+    points: tuple[Point, ...]
+
+
+class Sweep(_Frozen):
+    """A figure of lines."""
+
+    name: str
+    title: str
+    x_title: str
+    y_title: str
+    series: tuple[Series, ...]
+    published: str
+    """What the paper says of its figure."""
+    notes: tuple[str, ...] = ()
 
 
 class SceneShown(_Frozen):

@@ -86,25 +86,25 @@ def run_jobs(
     executor = local(workers)
     check_pools(jobs, places.data)
     make_folder(places.out)
-    ledger = _Ledger(jobs, places, progress, notice, shipped)
+    fits = _Fits(jobs, places, progress, notice, shipped)
     try:
         with locked(places.out, notice):
             sweep(places.out)
             for job in jobs if force else ():
                 forget(job.entry.name, job.seed, places.out)
             with executor:
-                _run(ledger, executor)
+                _run(fits, executor)
     except KeyboardInterrupt:
         again = "without --force " if force else ""
         raise Stopped(
-            f"interrupted with {len(ledger.cards)} of {len(jobs)} models finished; they and the "
+            f"interrupted with {len(fits.cards)} of {len(jobs)} models finished; they and the "
             f"finished epochs of the others are kept in {places.out}; run the same command "
             f"{again}again to resume."
         ) from None
-    return ledger.report()
+    return fits.report()
 
 
-class _Ledger:
+class _Fits:
     """Which jobs wait, run and are settled."""
 
     def __init__(
@@ -180,19 +180,19 @@ class _Ledger:
         )
 
 
-def _run(ledger: _Ledger, executor: Executor) -> None:
+def _run(fits: _Fits, executor: Executor) -> None:
     running: dict[int, Job] = {}
     while True:
         for worker in executor.free():
-            if job := ledger.take():
+            if job := fits.take():
                 running[worker] = job
-                call = partial(fit_job, job, ledger.places)
-                executor.submit(worker, call, partial(ledger.tell, job))
+                call = partial(fit_job, job, fits.places)
+                executor.submit(worker, call, partial(fits.tell, job))
         if not running:
             return
         for worker, end in executor.completions(_TICK_S):
-            ledger.settle(running.pop(worker), end)
-        ledger.show()
+            fits.settle(running.pop(worker), end)
+        fits.show()
 
 
 @native.using(native.PORTABLE)

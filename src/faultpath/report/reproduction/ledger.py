@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from faultpath.record.claim import ClaimVerdict, Ledger, Part
+from faultpath.record.reproduction import ClaimVerdict, Ledger, Part
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.intervals import interval_plot, plot_axis, scale_plot
 

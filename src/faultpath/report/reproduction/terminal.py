@@ -3,7 +3,7 @@
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from faultpath.record.claim import Answer, ClaimVerdict, Ledger
+from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger
 from faultpath.report import wording
 from faultpath.report.reproduction import words
 from faultpath.tables import MISSING, Entry, Table, line

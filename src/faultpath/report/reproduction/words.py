@@ -1,6 +1,6 @@
 """How the figures of claims are written, on the page and in the terminal."""
 
-from faultpath.record.claim import Answer, ClaimVerdict, Ledger, Part
+from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part
 from faultpath.report import wording
 
 SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}

@@ -32,7 +32,7 @@ class Progress:
 ProgressCallback = Callable[[Progress], None]
 
 
-class Ledger:
+class Standing:
     """The state of a run: stores each unit as soon as all its scenes have an outcome."""
 
     def __init__(
