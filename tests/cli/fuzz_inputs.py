@@ -82,6 +82,14 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
         {"--svg": ("a.svg", "folder"), "--yaml": ("a.yaml", "text.txt/a"), "--set": ("a=1",)},
     ),
     "report": (["folder"], {}),
+    "log": (
+        ["text.csv"],
+        {
+            "--columns": ("px4", "map.yaml", "folder"),
+            "--mass": ("1.5", "-1", "nan"),
+            "--errors": ("0.1", "x", "1,1"),
+        },
+    ),
     "probe": ([TOY], {"--variants": ("a,b",), "--seeds": ("0",), "--out": ("probe",)}),
     "claims": ([], {"--run": ("folder", "text.txt"), "--profile": ("x",), "--device": ("cuda",)}),
     "reproduce": (["table-99"], {"--profile": ("x", "quick"), "--out": ("r",), "--device": ("x",)}),

@@ -13,6 +13,7 @@ from faultpath.cli import (
     audit,
     claims,
     interface,
+    log,
     probe,
     report,
     reproduce,
@@ -47,7 +48,12 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
 
 
 _OF_SYSTEMS = {"audit": audit.command, "interface": interface.command, "probe": probe.command}
-_OTHERS = {"claims": claims.command, "report": report.command, "reproduce": reproduce.command}
+_OTHERS = {
+    "claims": claims.command,
+    "log": log.command,
+    "report": report.command,
+    "reproduce": reproduce.command,
+}
 _GROUPS = {"scenes": scenes.app, "selfcheck": selfcheck.app, "train": train.app}
 
 

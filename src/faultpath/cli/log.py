@@ -1,0 +1,69 @@
+"""`faultpath log`: what a shared calibration error does to a recorded flight."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import path
+from faultpath.errors import UserError
+
+
+def command(
+    log: Annotated[Path, typer.Argument(parser=path, help="A .csv, .parquet or .ulg file.")],
+    columns: Annotated[
+        str, typer.Option(help="YAML file that says which columns hold what, or px4.")
+    ],
+    mass: Annotated[
+        float | None, typer.Option(help="Mass of the vehicle, kg, in place of the map's.")
+    ] = None,
+    errors: Annotated[
+        str, typer.Option(help="Calibration errors: mass (1 + e), thrust (1 - e).")
+    ] = "0.1,-0.1",
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="Folder for report.html and compensation.json.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+) -> None:
+    """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
+    from faultpath.flightlog import compensation, read_columns, read_flight
+
+    said = read_columns(columns)
+    if mass is not None:
+        if not 0 < mass < float("inf"):
+            raise UserError(f"--mass {mass:g} is not a mass: give kilograms above 0.")
+        said = said.model_copy(update={"mass_kg": mass})
+    found = compensation(read_flight(log, said), _sizes(errors))
+
+    from faultpath.report.compensation import CAVEAT, page, sentences, table
+    from faultpath.store import write_text
+    from faultpath.store.atomic import make_folder
+
+    text = found.model_dump_json(indent=2) + "\n"
+    if out is not None:
+        make_folder(out)
+        write_text(out / "compensation.json", text, out)
+        write_text(out / "report.html", page(found, log.name), out)
+    if as_json:
+        typer.echo(text, nl=False)
+        return
+    from faultpath.door.display import SafeConsole
+    from faultpath.tables.terminal import drawn
+
+    console = SafeConsole()
+    for sentence in (*sentences(found), CAVEAT):
+        console.print(sentence, style="bold" if sentence != CAVEAT else "")
+    made = table(found)
+    console.print("", drawn(made, one_line=True), *made.notes, sep="\n")
+
+
+def _sizes(text: str) -> tuple[float, ...]:
+    try:
+        sizes = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UserError(
+            f"--errors {text!r} is not a list of numbers, for example 0.1,-0.1."
+        ) from None
+    if len(set(sizes)) < len(sizes):
+        raise UserError(f"--errors {text!r} names a size twice: give it once.")
+    return sizes

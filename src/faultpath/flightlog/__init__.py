@@ -1,0 +1,15 @@
+"""Recorded flights of real vehicles: what a shared calibration error does to them."""
+
+from faultpath.flightlog.columns import ColumnMap, read_columns
+from faultpath.flightlog.compensation import Combination, Compensation, compensation
+from faultpath.flightlog.flight import Flight, read_flight
+
+__all__ = [
+    "ColumnMap",
+    "Combination",
+    "Compensation",
+    "Flight",
+    "compensation",
+    "read_columns",
+    "read_flight",
+]

@@ -1,0 +1,176 @@
+"""Which acceleration error a shared calibration error leaves on a flight (paper, Eq. 2)."""
+
+from dataclasses import dataclass
+from itertools import product
+from typing import Literal, TypeAlias
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from faultpath.errors import UserError
+from faultpath.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
+from faultpath.flightlog.reading import Floats
+from faultpath.statistics import Contrast, Estimate, WindowQuantiles
+
+LOW_PASS = 0.5  # paper, appendix
+WARM_UP_S = 1.0
+"""After the beginning of a stretch, where the observer starts at zero."""
+BLOCK_S = 2.0
+"""Intervals nearer than this are not taken for independent: blocks of it are resampled."""
+MIN_BLOCKS = 15
+
+Decided: TypeAlias = Literal["more", "less", "not decided"]
+
+
+class _Frozen(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Combination(_Frozen):
+    """What remains with one calibration error in the observer and one in the predictor."""
+
+    observer: float
+    predictor: float
+    error_mps2: Estimate
+    """Median over intervals of the distance between combined and observed acceleration."""
+    log_ratio: Estimate | None = None
+    """Logarithm of that error over the one with correct calibration; `None` for the latter."""
+    decided: Decided | None = None
+    """Whether the error is greater or smaller than with correct calibration."""
+
+
+class SharedAgainstIsolated(_Frozen):
+    """The same error in both modules beside the error in the observer alone."""
+
+    error: float
+    log_ratio: Estimate
+    decided: Decided
+
+
+class Compensation(_Frozen):
+    """What a recorded flight shows of an observer and a predictor that share a calibration."""
+
+    flown_s: float
+    intervals: int
+    blocks: int
+    gaps: int
+    mass_kg: float
+    newton_per_unit: float
+    drag_kgps: tuple[float, float, float] | None
+    combinations: tuple[Combination, ...]
+    shared: tuple[SharedAgainstIsolated, ...]
+
+
+@dataclass(frozen=True)
+class _Errors:
+    flight: Flight
+    settled: np.ndarray
+    """Whether an interval counts, `[N]`."""
+
+    def of(self, observer: float, predictor: float) -> Floats:
+        """Return the error of the combined acceleration at each interval that counts, m/s^2."""
+        flight = self.flight
+        wind = _held(flight, _disturbance(flight, observer))
+        combined = nominal(flight, predictor) + through_air(flight, wind) / (
+            flight.mass_kg * (1 + predictor)
+        )
+        return np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[self.settled]
+
+
+def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Compensation:
+    """Return the error of a_0 + B w for correct, isolated and shared calibration errors.
+
+    A disturbance observer reconstructs the wind w (without drag: the force) from each interval's
+    residual, low-pass filtered; the predictor reuses it one interval later. Intervals resample
+    blocks of the flight.
+
+    Args:
+        flight: What was recorded.
+        sizes: Calibration errors e: mass (1 + e), thrust (1 - e).
+
+    Raises:
+        UserError: A size leaves no positive mass or thrust, or the flight is too short to decide
+            anything.
+    """
+    for size in sizes:
+        if not -1 < size < 1 or size == 0:
+            raise UserError(f"the calibration error {size:g} is not between -1 and 1, or is 0")
+    settled = _settled(flight)
+    blocks = _blocks(flight)[settled]
+    count = len(np.unique(blocks))
+    if count < MIN_BLOCKS:
+        raise UserError(
+            f"the log has {count} blocks of {BLOCK_S:g} s to count, and {MIN_BLOCKS} are the least "
+            "that decide anything: give a longer flight"
+        )
+    errors = _Errors(flight, settled)
+    windows = WindowQuantiles([str(block) for block in blocks])
+    correct = errors.of(0.0, 0.0)
+    pairs = [(0.0, 0.0)]
+    for size in sizes:
+        pairs += [(r, p) for r, p in product((0.0, size), repeat=2) if (r, p) != (0.0, 0.0)]
+    return Compensation(
+        flown_s=len(settled) * INTERVAL_S,
+        intervals=int(settled.sum()),
+        blocks=count,
+        gaps=flight.gaps,
+        mass_kg=flight.mass_kg,
+        newton_per_unit=flight.newton_per_unit,
+        drag_kgps=flight.drag_kgps,
+        combinations=tuple(
+            _combination(windows, pair, errors.of(*pair), correct) for pair in pairs
+        ),
+        shared=tuple(_shared(windows, errors, size) for size in sizes),
+    )
+
+
+def _combination(
+    windows: WindowQuantiles, pair: tuple[float, float], own: Floats, correct: Floats
+) -> Combination:
+    found = windows.value(own, 0.5, "m/s^2").estimate()
+    if pair == (0.0, 0.0):
+        return Combination(observer=0.0, predictor=0.0, error_mps2=found)
+    ratio = windows.log_ratio(own, correct, 0.5)
+    return Combination(
+        observer=pair[0],
+        predictor=pair[1],
+        error_mps2=found,
+        log_ratio=ratio.estimate(),
+        decided=_decided(ratio),
+    )
+
+
+def _shared(windows: WindowQuantiles, errors: _Errors, size: float) -> SharedAgainstIsolated:
+    ratio = windows.log_ratio(errors.of(size, size), errors.of(size, 0.0), 0.5)
+    return SharedAgainstIsolated(error=size, log_ratio=ratio.estimate(), decided=_decided(ratio))
+
+
+def _decided(ratio: Contrast) -> Decided:
+    return "more" if ratio.side > 0 else "less" if ratio.side < 0 else "not decided"
+
+
+def _disturbance(flight: Flight, error: float) -> Floats:
+    """Return the unfiltered wind, or force, that explains each interval's residual, `[N, 3]`."""
+    residual = flight.acceleration_mps2 - nominal(flight, error)
+    return through_air(flight, residual * flight.mass_kg * (1 + error), inverse=True)
+
+
+def _held(flight: Flight, raw: Floats) -> Floats:
+    """Return the filtered estimate that each interval finds, of the intervals before it."""
+    held = np.zeros_like(raw)
+    for index in range(1, len(raw)):
+        if flight.stretch[index] == flight.stretch[index - 1]:
+            held[index] = held[index - 1] + LOW_PASS * (raw[index - 1] - held[index - 1])
+    return held
+
+
+def _settled(flight: Flight) -> np.ndarray:
+    first = {number: flight.time_s[flight.stretch == number][0] for number in set(flight.stretch)}
+    begun = np.array([first[number] for number in flight.stretch])
+    return flight.time_s - begun >= WARM_UP_S - 1e-9
+
+
+def _blocks(flight: Flight) -> np.ndarray:
+    """Return the number of each interval's block, `[N]`; blocks end with their stretch."""
+    since = np.floor((flight.time_s - flight.time_s[0]) / BLOCK_S).astype(np.int64)
+    return since * (1 + int(flight.stretch.max())) + flight.stretch.astype(np.int64)
