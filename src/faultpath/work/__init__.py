@@ -10,6 +10,7 @@ from faultpath.work.executor import (
     Returned,
     WorkerLost,
     run_all,
+    run_each,
     tell,
 )
 from faultpath.work.processes import Processes, local

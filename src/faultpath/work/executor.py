@@ -4,6 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Self, TypeVar
 
 from faultpath.errors import UserError
@@ -90,26 +91,38 @@ class Executor(ABC):
         self.close()
 
 
-def run_all(executor: Executor, calls: Sequence[Callable[[], T]]) -> Iterator[tuple[int, T]]:
-    """Run calls and yield the place of each in `calls` with what it returned, as they end.
+def run_each(
+    executor: Executor,
+    calls: Sequence[Call],
+    told: Callable[[int, Any], None] = lambda place, message: None,
+) -> Iterator[tuple[int, End]]:
+    """Run calls and yield the place of each in `calls` with its end, as they end.
 
-    Raises the error of the first call that fails, and `WorkerLost` where a worker ends.
+    `told` is called with the place of a call and what it tells on its way.
     """
     waiting = iter(enumerate(calls))
     running: dict[int, int] = {}
     while True:
         for worker, (place, call) in zip(executor.free(), waiting, strict=False):
             running[worker] = place
-            executor.submit(worker, call)
+            executor.submit(worker, call, partial(told, place))
         if not running:
             return
         for worker, end in executor.completions(_TICK_S):
-            place = running.pop(worker)
-            if isinstance(end, Failed):
-                raise end.error
-            if isinstance(end, Lost):
-                raise WorkerLost(f"{end.how}; run the same again: what was finished is kept")
-            yield place, end.value
+            yield running.pop(worker), end
+
+
+def run_all(executor: Executor, calls: Sequence[Callable[[], T]]) -> Iterator[tuple[int, T]]:
+    """Run calls and yield the place of each in `calls` with what it returned, as they end.
+
+    Raises the error of the first call that fails, and `WorkerLost` where a worker ends.
+    """
+    for place, end in run_each(executor, calls):
+        if isinstance(end, Failed):
+            raise end.error
+        if isinstance(end, Lost):
+            raise WorkerLost(f"{end.how}; run the same again: what was finished is kept")
+        yield place, end.value
 
 
 _told: ContextVar[Told] = ContextVar("told", default=ignore)

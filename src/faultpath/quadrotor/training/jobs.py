@@ -21,9 +21,8 @@ from faultpath.quadrotor.training.job_pools import check_pools
 from faultpath.store import make_folder
 from faultpath.store.atomic import sweep
 from faultpath.store.lock import locked
-from faultpath.work import End, Executor, Lost, Returned, local, tell
+from faultpath.work import End, Lost, Returned, local, run_each, tell
 
-_TICK_S = 0.5
 _TELL_EVERY_S = 0.2
 
 
@@ -86,118 +85,71 @@ def run_jobs(
     executor = local(workers)
     check_pools(jobs, places.data)
     make_folder(places.out)
-    fits = _Fits(jobs, places, progress, notice, shipped)
+    order = sorted(jobs, key=lambda job: -job.entry.cost)
+    running: dict[str, Moment | None] = {}
+    results: dict[str, ModelCard | Failure] = {}
+
+    def show() -> None:
+        parts = {stem: moment.fraction for stem, moment in running.items() if moment}
+        parts |= dict.fromkeys(results, 1.0)
+        done = sum(job.entry.cost * parts.get(job.stem, 0.0) for job in order)
+        whole = sum(job.entry.cost for job in order)
+        progress(Overview(len(results), len(order), done / whole, dict(running)))
+
+    def told(place: int, message: Moment | str | None) -> None:
+        if isinstance(message, str):
+            notice(message)
+        else:
+            running[order[place].stem] = message
+        show()
+
     try:
         with locked(places.out, notice):
             sweep(places.out)
             for job in jobs if force else ():
                 forget(job.entry.name, job.seed, places.out)
             with executor:
-                _run(fits, executor)
+                calls = [partial(fit_job, job, places) for job in order]
+                for place, end in run_each(executor, calls, told):
+                    job = order[place]
+                    running.pop(job.stem, None)
+                    results[job.stem] = _result(job, end, places.out)
+                    if shipped and isinstance(end, Returned):
+                        ship(end.value, job.platform)
+                    show()
     except KeyboardInterrupt:
         again = "without --force " if force else ""
+        done = sum(isinstance(found, ModelCard) for found in results.values())
         raise Stopped(
-            f"interrupted with {len(fits.cards)} of {len(jobs)} models finished; they and the "
-            f"finished epochs of the others are kept in {places.out}; run the same command "
-            f"{again}again to resume."
+            f"interrupted with {done} of {len(jobs)} models finished; they and the finished "
+            f"epochs of the others are kept in {places.out}; run the same command {again}again to "
+            "resume."
         ) from None
-    return fits.report()
+    found = [results[job.stem] for job in jobs]
+    return Report(
+        tuple(each for each in found if isinstance(each, ModelCard)),
+        tuple(each for each in found if isinstance(each, Failure)),
+    )
 
 
-class _Fits:
-    """Which jobs wait, run and are settled."""
-
-    def __init__(
-        self,
-        jobs: Sequence[Job],
-        places: Places,
-        progress: Callable[[Overview], None],
-        notice: Callable[[str], None],
-        shipped: bool,
-    ) -> None:
-        self._jobs = tuple(jobs)
-        self._waiting = sorted(jobs, key=lambda job: -job.entry.cost)
-        self.places = places
-        self._progress = progress
-        self._notice = notice
-        self._shipped = shipped
-        self._failures: dict[str, Failure] = {}
-        self._running: dict[str, Moment | None] = {}
-        self._ended: set[str] = set()
-        self.cards: dict[str, ModelCard] = {}
-
-    def take(self) -> Job | None:
-        """Return the longest job that waits, or None when none is left."""
-        if not self._waiting:
-            return None
-        job = self._waiting.pop(0)
-        self._running[job.stem] = None
-        return job
-
-    def tell(self, job: Job, message: Moment | str) -> None:
-        """Take in what a fit says: how far it is, or a sentence for the user."""
-        if isinstance(message, str):
-            self._notice(message)
-        else:
-            self._running[job.stem] = message
-        self.show()
-
-    def settle(self, job: Job, end: End) -> None:
-        """Note how a job ended."""
-        del self._running[job.stem]
-        self._ended.add(job.stem)
-        details = self.places.out / f"{job.stem}.error.txt"
-        if isinstance(end, Returned):
-            details.unlink(missing_ok=True)
-            self.cards[job.stem] = read_card(end.value)
-            if self._shipped:
-                ship(end.value, job.platform)
-        elif isinstance(end, Lost):
-            self._failures[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
-        elif isinstance(end.error, UserError):
-            self._failures[job.stem] = Failure(job, str(end.error))
-        else:
-            said = f"{type(end.error).__name__}: {end.error}"
-            details.write_text("".join(traceback.format_exception(end.error)), encoding="utf-8")
-            self._failures[job.stem] = Failure(job, said, details)
-        self.show()
-
-    def show(self) -> None:
-        """Say how far everything is."""
-        parts = dict.fromkeys(self._ended, 1.0)
-        parts |= {stem: moment.fraction for stem, moment in self._running.items() if moment}
-        done = sum(job.entry.cost * parts.get(job.stem, 0.0) for job in self._jobs)
-        whole = sum(job.entry.cost for job in self._jobs)
-        running = dict(self._running)
-        self._progress(Overview(len(self._ended), len(self._jobs), done / whole, running))
-
-    def report(self) -> Report:
-        """Return what came of the jobs."""
-        stems = [job.stem for job in self._jobs]
-        return Report(
-            tuple(self.cards[stem] for stem in stems if stem in self.cards),
-            tuple(self._failures[stem] for stem in stems if stem in self._failures),
-        )
-
-
-def _run(fits: _Fits, executor: Executor) -> None:
-    running: dict[int, Job] = {}
-    while True:
-        for worker in executor.free():
-            if job := fits.take():
-                running[worker] = job
-                call = partial(fit_job, job, fits.places)
-                executor.submit(worker, call, partial(fits.tell, job))
-        if not running:
-            return
-        for worker, end in executor.completions(_TICK_S):
-            fits.settle(running.pop(worker), end)
-        fits.show()
+def _result(job: Job, end: End, folder: Path) -> ModelCard | Failure:
+    """Return the card of a fit that ended well, or why it did not."""
+    details = folder / f"{job.stem}.error.txt"
+    if isinstance(end, Returned):
+        details.unlink(missing_ok=True)
+        return read_card(end.value)
+    if isinstance(end, Lost):
+        return Failure(job, f"{end.how}; its epochs are kept")
+    if isinstance(end.error, UserError):
+        return Failure(job, str(end.error))
+    details.write_text("".join(traceback.format_exception(end.error)), encoding="utf-8")
+    return Failure(job, f"{type(end.error).__name__}: {end.error}", details)
 
 
 @native.using(native.PORTABLE)
 def fit_job(job: Job, places: Places) -> Path:
     """Fit a model and return its file; a few times a second it tells how far it is."""
+    tell(None)  # it has begun: its data may take a while
     told = 0.0
 
     def advance(moment: Moment) -> None:
