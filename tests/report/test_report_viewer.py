@@ -31,9 +31,7 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
     pairs = read_pairs(source.outcomes, source.record)
     for shown, told in zip(
         choose(source.record, source.traces, pairs),
-        viewer_data(
-            source.record, source.traces, source.plans, choose(source.record, source.traces, pairs)
-        )["scenes"],
+        viewer_data(source.record, source.traces, source.plans, pairs)["scenes"],
         strict=True,
     ):
         shared = shown.pairs["shared"].sign
@@ -83,8 +81,7 @@ def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
 
 def test_tracks_are_kept_to_the_centimetre(one_seed: ReportInput) -> None:
     pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    chosen = choose(one_seed.record, one_seed.traces, pairs, count=1)
-    shown = viewer_data(one_seed.record, one_seed.traces, one_seed.plans, chosen)["scenes"][0]
+    shown = viewer_data(one_seed.record, one_seed.traces, one_seed.plans, pairs)["scenes"][0]
     pair = shown["pairs"][0]
     flown = one_seed.traces.positions["gru", pair["path"], shown["seed"], shown["scene"]]
     kept = np.array(pair["baseline"]["track_cm"]).reshape(-1, 3) / 100

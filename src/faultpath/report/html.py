@@ -18,7 +18,7 @@ from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
 from faultpath.report.svg import template
 from faultpath.report.tables import SHOWN, by_path, latex_table, markdown_table
-from faultpath.report.viewer import choose, viewer_data
+from faultpath.report.viewer import viewer_data
 from faultpath.store import make_folder, write_text
 from faultpath.tables.html import html
 
@@ -29,7 +29,6 @@ _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     pairs = read_pairs(source.outcomes, source.record)
-    chosen = choose(source.record, source.traces, pairs)
     return render(
         "report.html.j2",
         _STYLES,
@@ -46,7 +45,7 @@ def report_page(source: ReportInput) -> str:
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         effects=Markup(html(by_path(source.record, SHOWN, "Effects on success, path by path"))),
-        viewer=chosen and viewer_data(source.record, source.traces, source.plans, chosen),
+        viewer=viewer_data(source.record, source.traces, source.plans, pairs),
         w=wording,
     )
 

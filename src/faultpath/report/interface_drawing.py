@@ -80,28 +80,30 @@ def _told(interface: Interface, struck: Sequence[StruckPath], wiring: Wiring) ->
 
 
 def _source(svg: Svg, source: Source, y: float) -> None:
-    top = y - SOURCE_HEIGHT / 2
     detail = [source.provenance.value, *([source.unit] if source.unit != "1" else [])]
     if source.latency_s:
         detail.append(f"{1000 * source.latency_s:g} ms late")
-    tip = f"{source.name}: {source.description}" if source.description else source.name
-    with svg.group(tip=tip):
-        svg.rect(_SOURCE_X, top, _SOURCE_W, SOURCE_HEIGHT, f"node {source.provenance.value}", 4)
+    with svg.group(tip=_tip(source)):
+        top, look = y - SOURCE_HEIGHT / 2, f"node {source.provenance.value}"
+        svg.rect(_SOURCE_X, top, _SOURCE_W, SOURCE_HEIGHT, look, 4)
         draw_provenance(svg, source.provenance, _SOURCE_X + 17, y)
-        svg.text(_SOURCE_X + 34, y - 3, shortened(source.name, _SOURCE_W - 40, 12), "bold")
-        detail_text = shortened(" · ".join(detail), _SOURCE_W - 40, 11)
-        svg.text(_SOURCE_X + 34, y + 12, detail_text, "small soft")
+        x, room = _SOURCE_X + 34, _SOURCE_W - 40
+        svg.text(x, y - 3, shortened(source.name, room, 12), "bold")
+        svg.text(x, y + 12, shortened(" · ".join(detail), room, 11), "small soft")
 
 
 def _channel(svg: Svg, channel: Channel, y: float) -> None:
-    top = y - CHANNEL_HEIGHT / 2
-    tip = f"{channel.name}: {channel.description}" if channel.description else channel.name
-    with svg.group(tip=tip):
-        svg.rect(_CHANNEL_X, top, _CHANNEL_W, CHANNEL_HEIGHT, "node", CHANNEL_HEIGHT / 2)
+    gap = "no gap" if channel.gap is Gap.NONE else f"{channel.gap.value} gap"
+    with svg.group(tip=_tip(channel)):
+        top, round_ends = y - CHANNEL_HEIGHT / 2, CHANNEL_HEIGHT / 2
+        svg.rect(_CHANNEL_X, top, _CHANNEL_W, CHANNEL_HEIGHT, "node", round_ends)
         draw_gap(svg, channel.gap, _CHANNEL_X + 19, y)
         svg.text(_CHANNEL_X + 36, y - 2, shortened(channel.name, _CHANNEL_W - 50, 12), "bold")
-        gap = "no gap" if channel.gap is Gap.NONE else f"{channel.gap.value} gap"
         svg.text(_CHANNEL_X + 36, y + 12, gap, "small soft")
+
+
+def _tip(named: Source | Channel) -> str:
+    return f"{named.name}: {named.description}" if named.description else named.name
 
 
 def _source_wires(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring) -> None:

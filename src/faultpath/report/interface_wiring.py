@@ -26,12 +26,8 @@ class Who(Enum):
     @property
     def words(self) -> str:
         """Say it behind a name: nothing where it is true of both."""
-        return {
-            Who.BOTH: "",
-            Who.BASELINE: " (baseline alone)",
-            Who.REPAIR: " (repair alone)",
-            Who.NEITHER: " (neither variant)",
-        }[self]
+        alone = {Who.BASELINE: "baseline alone", Who.REPAIR: "repair alone"}
+        return "" if self is Who.BOTH else f" ({alone.get(self, 'neither variant')})"
 
 
 def who(baseline: bool, repair: bool) -> Who:

@@ -46,6 +46,11 @@ class _Of:
         count = self.effect.void_pairs
         return Entry(text=str(count), tone="bad" if count else "")
 
+    def power(self) -> Entry:
+        """Return the difference that is found with 80 % power."""
+        least = self.effect.minimum_detectable_pp
+        return Entry(text=MISSING if least is None else wording.plain(least))
+
     def break_even(self) -> Entry:
         """Return the fault frequencies at which neither arm is decided to be ahead."""
         found = {b.path: wording.break_even(b.result) for b in self.record.break_even}
@@ -59,20 +64,21 @@ ALL = (
     *(*_ARMS, *DIFFERENCE, "p", "holm", "decided"),
     *("power", "scenes", "void", "break-even"),
 )
-_QUANTITIES: Mapping[str, Callable[[_Of], Entry | str]] = {
-    "baseline": lambda of: of.rate(of.record.question.baseline),
-    "repair": lambda of: of.rate(of.record.question.repair),
-    "difference": _Of.difference,
-    "interval": lambda of: wording.interval(of.effect.success) or MISSING,
-    "won": lambda of: wording.wins_losses(of.effect.wins, of.effect.losses),
-    "p": lambda of: wording.p_value(of.effect.p_value),
-    "holm": lambda of: wording.adjusted(of.effect),
-    "decided": _Of.decided,
-    "power": lambda of: _or_dash(of.effect.minimum_detectable_pp),
-    "scenes": lambda of: str(of.effect.scenes),
-    "void": _Of.void,
-    "break-even": _Of.break_even,
+_QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
+    "baseline": ("", lambda of: of.rate(of.record.question.baseline)),
+    "repair": ("", lambda of: of.rate(of.record.question.repair)),
+    "difference": ("Difference, pp", _Of.difference),
+    "interval": ("", lambda of: wording.interval(of.effect.success) or MISSING),
+    "won": ("Won:lost", lambda of: wording.wins_losses(of.effect.wins, of.effect.losses)),
+    "p": ("p, alone", lambda of: wording.p_value(of.effect.p_value)),
+    "holm": ("p, Holm", lambda of: wording.adjusted(of.effect)),
+    "decided": ("Decided for", _Of.decided),
+    "power": ("80 % power, pp", _Of.power),
+    "scenes": ("Scenes", lambda of: str(of.effect.scenes)),
+    "void": ("Void pairs", _Of.void),
+    "break-even": ("Break-even, %", _Of.break_even),
 }
+"""Label and entry of all that a record says of a path; labels left empty are the record's own."""
 _SECONDARY: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
     ("time on joint successes (s)", lambda effect: effect.time_s),
     ("terminal distance (m)", lambda effect: effect.terminal_distance_m),
@@ -82,16 +88,15 @@ _SECONDARY: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
 
 def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
     """Return a table with a row for each path and a column for each of the quantities `names`."""
-    labels, asked = _labels(record), record.question
     lines = [
         line(
             _title(record, effect),
-            *(_QUANTITIES[name](_Of(record, effect)) for name in names),
-            aside="primary" if effect.path == asked.primary else "",
+            *(_QUANTITIES[name][1](_Of(record, effect)) for name in names),
+            aside="primary" if effect.path == record.question.primary else "",
         )
         for effect in record.effects
     ]
-    columns = tuple(f"{labels[n]}, %" if n in _ARMS else labels[n] for n in names)
+    columns = tuple(_label(record, name) + (", %" if name in _ARMS else "") for name in names)
     return Table(title=title, corner="Path", columns=columns, lines=tuple(lines))
 
 
@@ -99,11 +104,10 @@ def by_quantity(
     record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
 ) -> Table:
     """Return a table with a column for each path and a row for each of the quantities `names`."""
-    labels = _labels(record)
     lines = [
         line(
-            labels[name],
-            *(_QUANTITIES[name](_Of(record, effect)) for effect in record.effects),
+            _label(record, name),
+            *(_QUANTITIES[name][1](_Of(record, effect)) for effect in record.effects),
             aside=name if name in _ARMS else "",
         )
         for name in names
@@ -148,22 +152,12 @@ def latex_table(record: DecisionRecord) -> str:
     return "% Needs \\usepackage{booktabs}\n" + booktabs(whole_table(record))
 
 
-def _labels(record: DecisionRecord) -> Mapping[str, str]:
+def _label(record: DecisionRecord, name: str) -> str:
+    asked = record.question
     levels = {f"{100 * effect.success.level:g} % interval" for effect in record.effects}
-    return {
-        "baseline": record.question.baseline,
-        "repair": record.question.repair,
-        "difference": "Difference, pp",
-        "interval": levels.pop() if len(levels) == 1 else "Interval",
-        "won": "Won:lost",
-        "p": "p, alone",
-        "holm": "p, Holm",
-        "decided": "Decided for",
-        "power": "80 % power, pp",
-        "scenes": "Scenes",
-        "void": "Void pairs",
-        "break-even": "Break-even, %",
-    }
+    interval = levels.pop() if len(levels) == 1 else "Interval"
+    said = {"baseline": asked.baseline, "repair": asked.repair, "interval": interval}
+    return said.get(name, _QUANTITIES[name][0])
 
 
 def _title(record: DecisionRecord, effect: Effect) -> str:
@@ -178,14 +172,9 @@ def _secondary(record: DecisionRecord) -> list[Line]:
             title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
             values = ("" if e is None else wording.signed(e.value, 2) for e in estimates)
             ranges = ("" if e is None else wording.interval(e, 2) for e in estimates)
-            interval = _labels(record)["interval"]
             lines += [
                 line(title),
                 line("Difference", *(value or MISSING for value in values)),
-                line(interval, *(ends or MISSING for ends in ranges)),
+                line(_label(record, "interval"), *(ends or MISSING for ends in ranges)),
             ]
     return lines
-
-
-def _or_dash(value: float | None) -> str:
-    return MISSING if value is None else wording.plain(value)

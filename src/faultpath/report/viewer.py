@@ -28,6 +28,7 @@ Track: TypeAlias = NDArray[np.float32]
 """Positions at control steps, `[T, 3]`, metres."""
 
 PARTING_M = 0.5
+_MOST = 6
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
 
@@ -51,10 +52,8 @@ class Showing:
         return tuple(pair.sign for pair in self.pairs.values())
 
 
-def choose(
-    record: DecisionRecord, traces: Traces, pairs: Sequence[Pair], count: int = 6
-) -> tuple[Showing, ...]:
-    """Return up to `count` showings by the rule at the top of this file."""
+def choose(record: DecisionRecord, traces: Traces, pairs: Sequence[Pair]) -> tuple[Showing, ...]:
+    """Return up to six showings by the rule at the top of this file."""
     ranked = sorted(_showings(record.question, traces, pairs), key=_order)
     chosen: list[Showing] = []
     patterns: set[tuple[int, ...]] = set()
@@ -63,7 +62,7 @@ def choose(
         for showing in ranked:
             scene = showing.any_pair.scene
             seen = showing.pattern in patterns and only_new_patterns
-            if len(chosen) == count or scene in scenes or seen:
+            if len(chosen) == _MOST or scene in scenes or seen:
                 continue
             chosen.append(showing)
             patterns.add(showing.pattern)
@@ -75,10 +74,12 @@ def viewer_data(
     record: DecisionRecord,
     traces: Traces,
     plans: Mapping[str, FloorPlan],
-    chosen: Sequence[Showing],
-) -> dict[str, Any]:
-    """Return the chosen showings as plain data for the page's scripts."""
-    asked = record.question
+    pairs: Sequence[Pair],
+) -> dict[str, Any] | None:
+    """Return what `choose` does as plain data for the page's scripts; `None` for nothing."""
+    asked, chosen = record.question, choose(record, traces, pairs)
+    if not chosen:
+        return None
     return {
         "dt_s": traces.dt_s,
         "parting_m": PARTING_M,

@@ -87,10 +87,22 @@ def plan_legs(
     by_setting: dict[Setting, list[Cell]] = {}
     for cell in profile.cells(cells):
         by_setting.setdefault(cell.setting, []).append(cell)
-    return tuple(
-        _leg(setting, members, profile, libraries, options)
-        for setting, members in by_setting.items()
-    )
+    legs: list[Leg] = []
+    for setting, members in by_setting.items():
+        spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
+        system = load_system(spec)
+        name = libraries.get(setting.library, setting.library)
+        library = system.library(name)
+        study = Study(
+            name=str(setting),
+            system=spec,
+            library=name,
+            scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
+            rows=tuple(_row(system, cell, seed) for cell in members for seed in cell.seeds),
+        )
+        title = str(replace(setting, library=shown(library.name)))
+        legs.append(Leg(setting, system, study, title))
+    return tuple(legs)
 
 
 def fly(
@@ -170,27 +182,6 @@ def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str] | None:
         return None
     first, last = min(moments), max(moments)
     return first.isoformat(timespec="seconds"), last.isoformat(timespec="seconds")
-
-
-def _leg(
-    setting: Setting,
-    cells: Sequence[Cell],
-    profile: Profile,
-    libraries: Mapping[str, str],
-    options: Mapping[str, str],
-) -> Leg:
-    spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
-    system = load_system(spec)
-    name = libraries.get(setting.library, setting.library)
-    library = system.library(name)
-    study = Study(
-        name=str(setting),
-        system=spec,
-        library=name,
-        scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
-        rows=tuple(_row(system, cell, seed) for cell in cells for seed in cell.seeds),
-    )
-    return Leg(setting, system, study, str(replace(setting, library=shown(library.name))))
 
 
 def _row(system: System, cell: Cell, seed: int) -> Row:

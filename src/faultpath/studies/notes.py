@@ -29,23 +29,21 @@ WINDOWS = "Errors: median over all windows, 20 control steps ahead."
 
 def flown(results: Results, cells: Iterable[Cell]) -> str:
     """Return scenes and seeds that a run holds of cells, library by library."""
-    scenes: dict[str, set[str]] = {}
-    seeds: dict[str, set[int]] = {}
+    held: dict[str, tuple[set[str], set[int]]] = {}
     for cell in cells:
-        library = results.library(cell.setting.library)
-        try:
+        with suppress(NotRun):
             run = results.seeds(cell)
-        except NotRun:
-            continue
-        seeds.setdefault(library, set()).update(run)
-        rows = results.outcomes.arm(cell.variant, cell.path, run[0])
-        scenes.setdefault(library, set()).update(row.outcome.scene for row in rows)
-    if not scenes:
+            library = results.library(cell.setting.library)
+            scenes, seeds = held.setdefault(library, (set(), set()))
+            seeds.update(run)
+            rows = results.outcomes.arm(cell.variant, cell.path, run[0])
+            scenes.update(row.outcome.scene for row in rows)
+    if not held:
         return "No trial of this table was run."
     parts = (
-        f"{wording.counted(len(scenes[library]), 'scene')} of the {library} library, "
-        f"{wording.seeds(tuple(sorted(seeds[library])))}"
-        for library in scenes
+        f"{wording.counted(len(scenes), 'scene')} of the {library} library, "
+        f"{wording.seeds(tuple(sorted(seeds)))}"
+        for library, (scenes, seeds) in held.items()
     )
     return wording.sentence("; ".join(parts))
 

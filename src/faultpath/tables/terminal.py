@@ -3,7 +3,7 @@
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from faultpath.tables.model import Entry, Line, Table
+from faultpath.tables.model import Entry, Line, Table, Tone
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -11,9 +11,8 @@ if TYPE_CHECKING:
     from rich.table import Table as Drawn
     from rich.text import Text
 
-_TONES = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
-
-
+STYLES: dict[Tone, str] = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
+"""How tones look."""
 _ROOMY = 6
 """Columns that leave room on a terminal of 80 characters to stand two blanks apart."""
 
@@ -70,7 +69,7 @@ def _label(line: Line, *, below: bool) -> "Text":
 def _text(entry: Entry) -> "Text":
     from rich.text import Text
 
-    text = Text(entry.text, "bold" if entry.detected else _TONES[entry.tone])
+    text = Text(entry.text, "bold" if entry.detected else STYLES[entry.tone])
     if entry.aside:
         text.append(f" ({entry.aside})", "not bold dim")
     return text.append(f"\n({entry.published})", "dim") if entry.published else text

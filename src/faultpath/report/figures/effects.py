@@ -34,6 +34,7 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
     titles = {path.name: path.title for path in record.paths}
     rate = {(cell.variant, cell.path): cell.success_percent for cell in record.cells}
     asked = record.question
+    primary = {effect.path: "" for effect in record.effects} | {asked.primary: "primary"}
     return tuple(
         EffectRow(
             label=titles.get(effect.path, effect.path),
@@ -42,15 +43,7 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
             effect=effect.success,
             wins_losses=wording.wins_losses(effect.wins, effect.losses),
             sign=effect.sign,
-            note=", ".join(
-                filter(
-                    None,
-                    (
-                        "primary" if effect.path == asked.primary else "",
-                        wording.reservation(effect),
-                    ),
-                )
-            ),
+            note=", ".join(filter(None, (primary[effect.path], wording.reservation(effect)))),
             band_pp=None if effect.detected else effect.minimum_detectable_pp,
         )
         for effect in record.effects

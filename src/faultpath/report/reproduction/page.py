@@ -15,7 +15,7 @@ from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.ledger import ledger_plots
-from faultpath.report.viewer import choose, viewer_data
+from faultpath.report.viewer import viewer_data
 from faultpath.tables.html import html
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css", "reproduction.css")
@@ -84,5 +84,5 @@ def _flights(source: ReproductionInput) -> Mapping[str, object] | None:
     record = source.decision
     if record is None:
         return None
-    chosen = choose(record, source.traces, read_pairs(source.outcomes, record))
-    return viewer_data(record, source.traces, source.plans, chosen) if chosen else None
+    pairs = read_pairs(source.outcomes, record)
+    return viewer_data(record, source.traces, source.plans, pairs)

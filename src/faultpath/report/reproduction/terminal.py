@@ -10,24 +10,23 @@ from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.escapes import markdown
 from faultpath.tables.markdown import grid
 from faultpath.tables.model import Tone
-from faultpath.tables.terminal import drawn
+from faultpath.tables.terminal import STYLES, drawn
 
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
-_STYLES: dict[Answer, str] = {"confirmed": "green", "refuted": "bold red", "undecided": "dim"}
 _COLUMNS = ("Verdict", "Estimate", "Detectable", "What is claimed")
 _PRINTED = ("Kind", *_COLUMNS[:3], "The paper", "What is claimed")
 
 
-def ledger_counts(ledger: Ledger) -> Text:
+def _counts(ledger: Ledger) -> Text:
     """Return `24 confirmed, 6 refuted, 9 undecided`, each in its colour."""
     parts = (
-        Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", _STYLES[answer])
+        Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", STYLES[_TONES[answer]])
         for answer in words.ANSWERS
     )
     return Text(", ").join(parts)
 
 
-def ledger_table(ledger: Ledger, columns: tuple[str, ...] = _COLUMNS) -> Table:
+def _table(ledger: Ledger, columns: tuple[str, ...] = _COLUMNS) -> Table:
     """Return one line a claim: what was claimed, what came of it, and by what estimate."""
     lines = (
         line(claim.id, *(entries[column] for column in columns))
@@ -42,15 +41,15 @@ def ledger_view(ledger: Ledger) -> RenderableType:
     """Return headline, counts by kind and the claims."""
     title = Text(f"{words.headline(ledger)}.", style="bold")
     note = (Text(ledger.note, "dim"),) if ledger.note else ()
-    table = drawn(ledger_table(ledger), one_line=True)
+    table = drawn(_table(ledger), one_line=True)
     blank = Text("")
-    return Group(title, Text(_about(ledger)), *note, blank, table, blank, ledger_counts(ledger))
+    return Group(title, Text(_about(ledger)), *note, blank, table, blank, _counts(ledger))
 
 
 def ledger_markdown(ledger: Ledger) -> str:
     """Return the ledger as a Markdown table, the counts above it."""
     about = f"{_about(ledger)}. {ledger.note}".rstrip()
-    table = grid(ledger_table(ledger, _PRINTED))
+    table = grid(_table(ledger, _PRINTED))
     return "\n".join([f"{words.headline(ledger)}.", "", markdown(about), "", table, ""])
 
 
