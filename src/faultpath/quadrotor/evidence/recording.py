@@ -98,11 +98,13 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
         recording.seed,
         code_of("training.closed_loop", "training.pool"),
     )
-    chosen = scenes[:count]
-    return tuple(
-        Block(recording, first, part, _hash((*decisive, first, part)))
-        for first, part in _parts(chosen)
-    )
+    found: list[Block] = []
+    for first in range(0, len(scenes[:count]), BLOCK):
+        part = scenes[:count][first : first + BLOCK]
+        content = repr((*decisive, first, part))
+        stem = hashlib.sha256(content.encode()).hexdigest()[:24]
+        found.append(Block(recording, first, part, stem))
+    return tuple(found)
 
 
 def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
@@ -126,11 +128,3 @@ def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
         tuple(scenes[episode] for episode in place[:, 0].tolist()),
         place[:, 2] + HISTORY,
     )
-
-
-def _parts(scenes: tuple[str, ...]) -> list[tuple[int, tuple[str, ...]]]:
-    return [(first, scenes[first : first + BLOCK]) for first in range(0, len(scenes), BLOCK)]
-
-
-def _hash(content: object) -> str:
-    return hashlib.sha256(repr(content).encode()).hexdigest()[:24]

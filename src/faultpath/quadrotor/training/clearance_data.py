@@ -168,13 +168,6 @@ def provenance_path(folder: Path) -> Path:
     return folder / "clearance.json"
 
 
-def digest(recipe: Recipe | None = None) -> str:
-    """Return a hash of what decides the data set's numbers."""
-    recipe = recipe or Recipe()
-    content = json.dumps(_provenance(recipe, load_library(recipe.library)), sort_keys=True)
-    return hashlib.sha256(content.encode()).hexdigest()
-
-
 @native.using(native.PORTABLE)
 def draw(recipe: Recipe, scene: Scene) -> Samples:
     """Return the images and labelled points of one scene."""
@@ -226,13 +219,15 @@ def _points(recipe: Recipe, image: Tensor, random: np.random.Generator) -> Tenso
 
 
 def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene, Path]]:
-    place = provenance_path(folder).with_suffix("") / digest(recipe)[:16]
+    content = json.dumps(_provenance(recipe, library), sort_keys=True)
+    digest = hashlib.sha256(content.encode()).hexdigest()
+    place = provenance_path(folder).with_suffix("") / digest[:16]
     return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
 
 
 def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
-    parts = vars(draw(recipe, scene)).copy()
-    parts.pop("scene")
+    made = draw(recipe, scene)
+    parts = {"depth": made.depth, "points": made.points, "clearance": made.clearance}
     atomic.write(shard, save(parts))
 
 

@@ -24,7 +24,7 @@ from faultpath.quadrotor.predictors import (
 from faultpath.quadrotor.predictors.network import features
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
-from faultpath.quadrotor.training.pool import read_provenance
+from faultpath.quadrotor.training.provenance import rows_sha256
 from faultpath.quadrotor.training.replay import DeliveredInputs, correct, predict
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
@@ -143,11 +143,7 @@ class PredictorTask(Task):
         return {
             "description": f"{self._recipe.description} predictor"
             + (", fitted with calibration noise" if self.is_dcc else ""),
-            "data_sha256": {
-                provenance.pool: provenance.rows_sha256
-                for name in self._recipe.pools
-                if (provenance := read_provenance(self._data / f"{name}.parquet"))
-            },
+            "data_sha256": rows_sha256(self._data, self._recipe.pools),
             "history": HISTORY,
             "horizon": HORIZON,
             "calibration_half_range": self._half_range if self.is_dcc else 0.0,

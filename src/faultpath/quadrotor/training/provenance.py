@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
@@ -71,6 +72,12 @@ def code_of(*modules: str) -> str:
 def code_sha256() -> str:
     """Return a hash of the files that draw and fly episodes: another code, another pool."""
     return code_of("training.flight", "training.pool")
+
+
+def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
+    """Return the digest of the rows of each pool in a folder, as far as it is finished."""
+    found = (read_provenance(data / f"{name}.parquet") for name in pools)
+    return {each.pool: each.rows_sha256 for each in found if each is not None}
 
 
 def read_provenance(path: Path) -> Provenance | None:

@@ -18,7 +18,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
-from faultpath.quadrotor.training.pool import read_provenance
+from faultpath.quadrotor.training.provenance import rows_sha256
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
 from faultpath.streams import generator
@@ -101,13 +101,13 @@ class ReconstructionTask(Task):
         self.platform = platform.weights_hash(name)
         self.schedule = Schedule(epochs=40, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
-        self._path = data_folder / f"{self._model.pool}.parquet"
+        self._data = data_folder
         self._base = name.removesuffix("+dcc")
         self._scaled = WindNetwork(self._model.calibrated)
 
     @override
     def load(self) -> None:
-        self.use(*windows_of(self._path).split())
+        self.use(*windows_of(self._data / f"{self._model.pool}.parquet").split())
 
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs and target from the training ones."""
@@ -182,10 +182,9 @@ class ReconstructionTask(Task):
 
     @override
     def describe(self) -> Mapping[str, Any]:
-        provenance = read_provenance(self._path)
         return {
             "description": self._model.description,
-            "data_sha256": {} if provenance is None else {provenance.pool: provenance.rows_sha256},
+            "data_sha256": rows_sha256(self._data, [self._model.pool]),
             "calibration_inputs": self._model.calibrated,
             "calibration_noise_half_range": self._model.half_range,
             "short_histories": SHORT_HISTORIES,
