@@ -1,11 +1,13 @@
-"""Closed-loop flights under correct inputs, recorded at every control instant."""
+"""Closed-loop flights, recorded at every control instant."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import torch
 
+from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Instant
+from faultpath.quadrotor.contact import Progress
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.modules.vehicle import Flying
 from faultpath.quadrotor.system import Quadrotor
@@ -15,16 +17,28 @@ from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Taps
 
 
-@torch.inference_mode()
 def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed: int) -> Flights:
-    """Fly a block of scenes and return what it left behind, scene by scene in their order.
+    """Fly a block of scenes under correct inputs and return what it left behind."""
+    return fly_recorded(system, variant, scenes, seed)[0]
 
-    `seed` is that of the planner's noise and of the variant's training. A scene's flight is the
-    same in any company, bit for bit.
+
+@torch.inference_mode()
+def fly_recorded(
+    system: Quadrotor,
+    variant: str,
+    scenes: Sequence[str],
+    seed: int,
+    faults: Sequence[AnyFault] = (),
+) -> tuple[Flights, Progress]:
+    """Fly a block of scenes and return what it left behind, and how the trials ended.
+
+    Scene by scene in their order. `seed` is that of the planner's noise and of the variant's
+    training. A scene's flight is the same in any company, bit for bit.
     """
     wired = system.variants[variant]
     taps = Taps(
         system.interface,
+        faults,
         scenes=tuple(scenes),
         dt_s=system.control_dt_s,
         seed=seed,
@@ -35,10 +49,12 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     batch = Batch(tuple(scenes), seed, system.control_dt_s)
     instants = system.loop(variant, seed).execute(batch, taps)
     values, world = record(((now, _world(now)) for now in instants), len(scenes), CONTROL_STEPS)
-    time_s = world.progress.to(CPU).time_s.numpy()[: len(scenes)]
+    ended = world.progress.to(CPU)
+    time_s = ended.time_s.numpy()[: len(scenes)]
     # A flight ends with the last instant before its trial did.
     steps = np.floor(time_s * CONTROL_RATE_HZ + 1e-6).astype(np.int64)
-    return Flights(values, steps, tuple(system.scene(scene).vehicle for scene in scenes))
+    vehicles = tuple(system.scene(scene).vehicle for scene in scenes)
+    return Flights(values, steps, vehicles), ended
 
 
 def _world(now: Instant) -> World:
