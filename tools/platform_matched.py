@@ -6,7 +6,7 @@ error of both sides, and a tolerance, because another simulator cannot agree to 
 
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -221,23 +221,25 @@ class Flyer:
         ]
 
 
-def judged(blocks: Callable[[str], Sequence[dict[str, Any]]]) -> dict[str, Any]:
+def judged(flown: Mapping[str, Sequence[dict[str, Any]]]) -> dict[str, Any]:
     """Return every quantity with its standard error and departure, and the distance.
 
-    `blocks` gives what was flown of a cell. The distance is the mean over groups of the mean
-    squared departure in each. A departure is the difference over the root of three squares: the
-    standard error here, that of the paper, and the tolerance; at most `CAP`. Errors and times
-    differ by their logarithm. What cannot be told, as a time without success, departs by `CAP`.
+    `flown` has the blocks of each cell; quantities of cells that were not flown are left out. The
+    distance is the mean over groups of the mean squared departure in each. A departure is the
+    difference over the root of three squares: the standard error here, that of the paper, and the
+    tolerance; at most `CAP`. Errors and times differ by their logarithm. What cannot be told, as a
+    time without success, departs by `CAP`.
     """
-    rows = [_judge(quantity, blocks(quantity.cell)) for quantity in QUANTITIES]
+    asked = [quantity for quantity in QUANTITIES if quantity.cell in flown]
+    rows = [_judge(quantity, flown[quantity.cell]) for quantity in asked]
     groups: dict[str, list[float]] = {}
-    for quantity, row in zip(QUANTITIES, rows, strict=True):
+    for quantity, row in zip(asked, rows, strict=True):
         groups.setdefault(quantity.group, []).append(row["departure"] ** 2)
     parts = {name: round(float(np.mean(squares)), 4) for name, squares in groups.items()}
     return {
         "distance": round(float(np.mean(list(parts.values()))), 4),
         "groups": parts,
-        "quantities": {q.name: row for q, row in zip(QUANTITIES, rows, strict=True)},
+        "quantities": {q.name: row for q, row in zip(asked, rows, strict=True)},
     }
 
 
