@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from faultpath.arrays import Array, copy, namespace, pick, place
-from faultpath.faults.base import Intervention, Memory, Moment, number
+from faultpath.faults.base import Intervention, Memory, Moment
 
 
 class _Late(Intervention):
@@ -55,6 +55,7 @@ class Jitter(_Late):
     """
 
     kind: Literal["jitter"] = "jitter"
+    said = "delayed by 0 to {steps} steps, drawn at each step"
     value_field: ClassVar[str | None] = "steps"
     random: ClassVar[bool] = True
     steps: int = Field(ge=0)
@@ -70,15 +71,12 @@ class Jitter(_Late):
     def _longest(self, at: Moment) -> int | None:
         return self.steps
 
-    def words(self) -> str:
-        """Return `delayed by 0 to STEPS steps, drawn at each step`."""
-        return f"delayed by 0 to {self.steps} steps, drawn at each step"
-
 
 class Skew(_Late):
     """Deliver readings by a clock that runs slow since the onset, so that they age steadily."""
 
     kind: Literal["skew"] = "skew"
+    said = "by a clock that loses {rate} s in a second"
     value_field: ClassVar[str | None] = "rate"
     rate: float = Field(ge=0, le=1)
     """Seconds of age gained in a second."""
@@ -92,7 +90,3 @@ class Skew(_Late):
 
     def _longest(self, at: Moment) -> int | None:
         return None
-
-    def words(self) -> str:
-        """Return `by a clock RATE slow`."""
-        return f"by a clock that loses {number(self.rate)} s in a second"

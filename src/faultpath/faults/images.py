@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from faultpath.arrays import Array, HostArray, copy, kept, namespace, place
-from faultpath.faults.base import Intervention, Memory, Moment, number
+from faultpath.faults.base import Intervention, Memory, Moment
 
 
 def _no_image(shape: tuple[int, ...]) -> str | None:
@@ -34,6 +34,7 @@ class Occlusion(_Image):
     """Cover a rectangle of the image's own proportions, placed once a scene."""
 
     kind: Literal["occlusion"] = "occlusion"
+    said = "covered over {share} of the image"
     value_field: ClassVar[str | None] = "share"
     random: ClassVar[bool] = True
     share: float = Field(ge=0, le=1)
@@ -59,15 +60,12 @@ class Occlusion(_Image):
         xp = namespace(reading)
         return xp.where(memory, xp.full_like(reading, self.shows), reading), memory
 
-    def words(self) -> str:
-        """Return `covered over SHARE of the image`."""
-        return f"covered over {number(self.share)} of the image"
-
 
 class SaltAndPepper(_Image):
     """Set each pixel with a probability to the least or the greatest value, drawn at every step."""
 
     kind: Literal["salt_and_pepper"] = "salt_and_pepper"
+    said = "salt and pepper on {probability} of the pixels"
     value_field: ClassVar[str | None] = "probability"
     random: ClassVar[bool] = True
     probability: float = Field(ge=0, le=1)
@@ -85,15 +83,12 @@ class SaltAndPepper(_Image):
         low = xp.full_like(reading, self.low)
         return xp.where(drawn < self.probability / 2, low, value), None
 
-    def words(self) -> str:
-        """Return `salt and pepper on PROBABILITY of the pixels`."""
-        return f"salt and pepper on {number(self.probability)} of the pixels"
-
 
 class Blur(_Image):
     """Average each pixel with its neighbours up to `radius` away; edges repeat outwards."""
 
     kind: Literal["blur"] = "blur"
+    said = "blurred over {radius} pixels"
     value_field: ClassVar[str | None] = "radius"
     radius: int = Field(ge=0)
 
@@ -111,15 +106,12 @@ class Blur(_Image):
             total = total + xp.take(image, place(from_, image), axis=image.ndim + axis)
         return total / (2 * self.radius + 1)
 
-    def words(self) -> str:
-        """Return `blurred over RADIUS pixels`."""
-        return f"blurred over {self.radius} pixels"
-
 
 class Exposure(_Image):
     """Multiply by a factor and clip to what the camera can show."""
 
     kind: Literal["exposure"] = "exposure"
+    said = "exposed {factor} times, clipped to {low} … {high}"
     value_field: ClassVar[str | None] = "factor"
     factor: float = Field(ge=0)
     low: float = 0.0
@@ -136,16 +128,12 @@ class Exposure(_Image):
         """Return `clip(reading * factor, low, high)`."""
         return namespace(reading).clip(reading * self.factor, self.low, self.high), None
 
-    def words(self) -> str:
-        """Return `exposed FACTOR times, clipped to LOW … HIGH`."""
-        span = f"{number(self.low)} … {number(self.high)}"
-        return f"exposed {number(self.factor)} times, clipped to {span}"
-
 
 class StuckRows(_Image):
     """Hold some rows, drawn once a scene, at what they showed at the onset."""
 
     kind: Literal["stuck_rows"] = "stuck_rows"
+    said = "with {share} of its rows stuck"
     value_field: ClassVar[str | None] = "share"
     share: float = Field(ge=0, le=1)
     """Share of the rows."""
@@ -161,7 +149,3 @@ class StuckRows(_Image):
         rows, held = memory
         held = kept(at.elapsed <= 0, reading, held)
         return namespace(reading).where(rows, held, reading), (rows, held)
-
-    def words(self) -> str:
-        """Return `with SHARE of its rows stuck`."""
-        return f"with {number(self.share)} of its rows stuck"
