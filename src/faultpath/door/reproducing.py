@@ -5,7 +5,6 @@ from pathlib import Path
 
 from faultpath.door.display import Display, Now
 from faultpath.door.reproduced import ReproductionRun
-from faultpath.door.saved import DELIVERIES
 from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
 from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
@@ -15,6 +14,7 @@ from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import traces_of, write_text
+from faultpath.store.folder import DELIVERIES
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Leg, Pace, fly

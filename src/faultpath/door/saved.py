@@ -13,18 +13,13 @@ from faultpath.planning import struck_taps
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.store import read_table
+from faultpath.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.store.parquet import Unreadable
 from faultpath.store.sealed import AGAIN, read_regular, unseal
 from faultpath.store.tables import decode_outcomes, decode_traces
 from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
-RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES = (
-    "record.json",
-    "system.json",
-    "outcomes.parquet",
-    "traces.parquet",
-    "deliveries.json",
-)
+RECORD, SYSTEM = "record.json", "system.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of a run folder that its pages are made from, and checked against."""
 

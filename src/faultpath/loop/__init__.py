@@ -1,7 +1,7 @@
 """The closed loop, executed: modules declare ports, and who reads what is what runs."""
 
 from faultpath.loop.graph import graph, interface_of
-from faultpath.loop.loop import Clock, Instant, Loop
+from faultpath.loop.loop import Instant, Loop
 from faultpath.loop.module import (
     Batch,
     Graph,
@@ -15,11 +15,10 @@ from faultpath.loop.module import (
     consumers,
 )
 from faultpath.loop.ports import Inputs, Port
-from faultpath.loop.trace import Read, Trace
+from faultpath.loop.trace import Trace
 
 __all__ = [
     "Batch",
-    "Clock",
     "Graph",
     "Inputs",
     "Instant",
@@ -31,7 +30,6 @@ __all__ = [
     "Plant",
     "Port",
     "Progress",
-    "Read",
     "State",
     "Trace",
     "consumers",

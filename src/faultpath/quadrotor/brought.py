@@ -44,7 +44,7 @@ class Brought:
     @property
     def reads(self) -> frozenset[Any]:
         """Where a predictor or a reconstruction reads; a planner reads through the loop."""
-        return frozenset() if isinstance(self.blank, Planner) else frozenset(self.blank.reads)
+        return _reads(self.blank)
 
     @property
     def description(self) -> str:
@@ -133,8 +133,8 @@ def _explaining(act: Callable[[], Any]) -> Any:
         raise located(mistake) from error
 
 
-def _reads(part: Part) -> frozenset[Any] | None:
-    return None if isinstance(part, Planner) else frozenset(part.reads)
+def _reads(part: Part) -> frozenset[Any]:
+    return frozenset() if isinstance(part, Planner) else frozenset(part.reads)
 
 
 def _trained(part: Part) -> bool:

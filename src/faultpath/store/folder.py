@@ -22,6 +22,9 @@ from faultpath.store.tables import (
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.table import OutcomeTable
 
+OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
+"""What is assembled at the end of a run."""
+
 
 class RunFolder:
     """The folder of one run.
@@ -37,9 +40,9 @@ class RunFolder:
         self.shards = path / "shards"
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
-        self.outcomes = path / "outcomes.parquet"
-        self.traces = path / "traces.parquet"
-        self.deliveries = path / "deliveries.json"
+        self.outcomes = path / OUTCOMES
+        self.traces = path / TRACES
+        self.deliveries = path / DELIVERIES
         self.rechecks = path / "rechecks.json"
 
     @contextmanager

@@ -18,6 +18,7 @@ from faultpath.store import (
     write_evidence,
     write_text,
 )
+from faultpath.store.folder import OUTCOMES
 from faultpath.store.manifest import keyed
 from faultpath.store.sealed import read_regular, unseal
 from faultpath.studies import reversal, stand_in
@@ -41,7 +42,6 @@ from faultpath.trials.state import system_code
 
 EVIDENCE = "evidence.parquet"
 CONCLUSIONS = "reproduction.json"
-OUTCOMES = "outcomes.parquet"
 RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
 """The files that `read_results` reads."""
 

@@ -12,9 +12,7 @@ from faultpath.taps.errors import (
 )
 from faultpath.taps.reading import Query, Reading
 from faultpath.taps.receipts import (
-    Receipt,
     Receipts,
-    StrikeReceipt,
     TapCount,
     added,
     check_delivered,
@@ -29,9 +27,7 @@ __all__ = [
     "NotFinite",
     "Query",
     "Reading",
-    "Receipt",
     "Receipts",
-    "StrikeReceipt",
     "StruckElsewhere",
     "TapCount",
     "TapError",

@@ -7,7 +7,7 @@ from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.looped import LoopSystem, Wiring
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
-from faultpath.trials.pairing import Mismatch, PairingRefused, Pairs, Side, mismatch_words, pair
+from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
 from faultpath.trials.registry import load_measurer, load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
 from faultpath.trials.system import System
@@ -19,7 +19,6 @@ __all__ = [
     "FloorPlan",
     "Library",
     "LoopSystem",
-    "Mismatch",
     "Offered",
     "Option",
     "Outcome",
@@ -44,7 +43,6 @@ __all__ = [
     "library_of",
     "load_measurer",
     "load_system",
-    "mismatch_words",
     "pair",
     "system_options",
     "system_shown",
