@@ -9,7 +9,7 @@ from pathlib import Path
 
 from faultpath.errors import UserError
 from faultpath.store import atomic
-from faultpath.store.lock import Notice, locked
+from faultpath.store.lock import Say, locked
 from faultpath.store.manifest import Manifest, check_same, read_manifest
 from faultpath.store.parquet import Unreadable
 from faultpath.store.tables import (
@@ -47,7 +47,7 @@ class RunFolder:
 
     @contextmanager
     def open(
-        self, manifest: Manifest, notice: Notice, shared: bool = False
+        self, manifest: Manifest, notice: Say, shared: bool = False
     ) -> Generator[None, None, None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
@@ -88,7 +88,7 @@ class RunFolder:
         times = [path.stat().st_mtime for key in keys for path in self._of(key)]
         return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
 
-    def load_shard(self, key: str, scenes: Sequence[str], notice: Notice) -> Shard | None:
+    def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Shard | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
         found: list[Shard] = []
         for path in self._of(key):

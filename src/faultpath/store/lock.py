@@ -8,11 +8,11 @@ from pathlib import Path
 
 from faultpath.errors import UserError
 
-Notice = Callable[[str], None]
+Say = Callable[[str], None]
 
 
 @contextmanager
-def locked(folder: Path, notice: Notice) -> Generator[None, None, None]:
+def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
     """Hold the lock of `folder`, waiting for another process that does.
 
     The kernel holds the lock for this process and lets it go when the process dies, however it
@@ -34,7 +34,7 @@ def locked(folder: Path, notice: Notice) -> Generator[None, None, None]:
         os.close(descriptor)
 
 
-def _acquire(descriptor: int, folder: Path, notice: Notice) -> None:
+def _acquire(descriptor: int, folder: Path, notice: Say) -> None:
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

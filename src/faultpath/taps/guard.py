@@ -5,7 +5,7 @@ from typing import Any
 from faultpath.arrays import Array, copy, differs, namespace, to_numpy
 
 
-class Watch:
+class Guard:
     """Hands out copies of a tap's values and sees whether somebody wrote into them.
 
     NumPy arrays are read-only views and need none of this. A tensor tells by its version counter;

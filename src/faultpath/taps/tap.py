@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from faultpath.arrays import Array
 from faultpath.errors import UserError
 from faultpath.interface import Interface, Provenance
-from faultpath.taps.guard import Watch
+from faultpath.taps.guard import Guard
 from faultpath.taps.receipts import Receipt, StrikeReceipt
 from faultpath.taps.strike import Strike
 from faultpath.taps.tally import Tally
@@ -36,7 +36,7 @@ class Tap:
     """What the consumer got of it."""
     finite: Array = None
     """Where the first reading was finite, until that has been looked at."""
-    watch: Watch | None = None
+    guard: Guard | None = None
     struck: Tally = field(default_factory=Tally)
     altered: Tally = field(default_factory=Tally)
 

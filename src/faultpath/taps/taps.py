@@ -21,7 +21,7 @@ from faultpath.taps.errors import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.taps.guard import Watch
+from faultpath.taps.guard import Guard
 from faultpath.taps.reading import Query, Reading
 from faultpath.taps.receipts import Receipts, check_delivered
 from faultpath.taps.strike import Strike
@@ -79,7 +79,7 @@ class Taps:
         self._closed: Array = None
         self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
         for tap in self._taps.values() if guard else ():
-            tap.watch = Watch()
+            tap.guard = Guard()
         first = {channel.name: channel.sources[0] for channel in interface.channels}
         self._bindings = MappingProxyType(first | dict(bindings or {}))
         self._strike(tuple(faults), dt_s, seed)
@@ -160,7 +160,7 @@ class Taps:
             if value is not self._open:  # consumers of one array share the view of it
                 self._open, self._closed = value, read_only(value)
             return self._closed
-        return value if tap.watch is None else tap.watch.hand_out(value)
+        return value if tap.guard is None else tap.guard.hand_out(value)
 
     def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
         """Return what the tap makes of one answer of a query."""
@@ -172,15 +172,15 @@ class Taps:
         answer = read_only(query.answer(request))
         ask, first = tap.asked, not tap.asks
         tap.asked, tap.asks = ask + 1, tap.asks + 1
-        if not (first or tap.strikes or tap.watch):
+        if not (first or tap.strikes or tap.guard):
             return answer
         given = value = query.value(answer)
         if first:
             check_first(tap, value, self._scenes)
         if tap.strikes:
             value = self._struck_value(tap, value, step, ask)
-        if tap.watch is not None:
-            value = tap.watch.hand_out(value)
+        if tap.guard is not None:
+            value = tap.guard.hand_out(value)
         return answer if value is given else query.changed(answer, value)
 
     def _struck_value(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
@@ -233,7 +233,7 @@ class Taps:
         """
         for tap in self._taps.values():
             check_finite(tap, self._scenes)
-            if tap.watch is not None and tap.watch.written():
+            if tap.guard is not None and tap.guard.written():
                 raise WrittenTo(
                     f"tap {tap}: the consumer wrote into the reading, which others may read too; "
                     "copy it before writing"
