@@ -4,4 +4,4 @@
 from faultpath.execution.attempt import WrongOutcomes
 from faultpath.execution.provenance import Stopwatch, run_provenance
 from faultpath.execution.runner import Failure, Interrupted, RunResult, run_study
-from faultpath.execution.standing import Progress, ProgressCallback
+from faultpath.execution.standing import Progress
