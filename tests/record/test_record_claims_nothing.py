@@ -7,7 +7,8 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, Change, DecisionRecord, Effect, decide
+from faultpath.record import CORRECT, SHARED, DecisionRecord, decide
+from faultpath.record.model import Change, Effect
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 

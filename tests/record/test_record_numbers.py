@@ -21,7 +21,8 @@ from outcome_tables import (
 )
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, decide, decide_paths
+from faultpath.record import CORRECT, SHARED, decide
+from faultpath.record.family import decide_paths
 from faultpath.statistics import Resamples
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status

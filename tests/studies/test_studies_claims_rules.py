@@ -31,7 +31,7 @@ from faultpath.studies.claims.rules import (
     within,
 )
 from faultpath.studies.claims.turning import Turned
-from faultpath.studies.quantities.quantity import decisive
+from faultpath.studies.results import decisive
 
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 

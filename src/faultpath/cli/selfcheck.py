@@ -36,7 +36,7 @@ def statistics(
 
     from faultpath.door.display import Display, Now, SafeConsole
     from faultpath.selfcheck import check_statistics, failures
-    from faultpath.selfcheck.terminal import show
+    from faultpath.selfcheck.words import show
     from faultpath.store import check_writable, write_text
 
     if out is not None:

@@ -1,17 +1,8 @@
 """The decision: effects, break-even frequency, verdict."""
 
 from faultpath.record.decide import decide, primary_path
-from faultpath.record.family import CORRECT, SHARED, decide_paths
-from faultpath.record.model import (
-    Change,
-    DecisionRecord,
-    Effect,
-    Generalise,
-    Path,
-    PathBreakEven,
-    Question,
-    StruckTap,
-)
+from faultpath.record.family import CORRECT, SHARED
+from faultpath.record.model import DecisionRecord, Generalise, Path, Question, StruckTap
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.reproduction import (
     Answer,
@@ -30,16 +21,13 @@ __all__ = [
     "CORRECT",
     "SHARED",
     "Answer",
-    "Change",
     "ClaimVerdict",
     "Configuration",
     "DecisionRecord",
-    "Effect",
     "Generalise",
     "Ledger",
     "Part",
     "Path",
-    "PathBreakEven",
     "Point",
     "Question",
     "Reproduction",
@@ -49,6 +37,5 @@ __all__ = [
     "StruckTap",
     "Sweep",
     "decide",
-    "decide_paths",
     "primary_path",
 ]

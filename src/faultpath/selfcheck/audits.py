@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -105,25 +106,21 @@ class Trainings:
 
 def equal_grid(runs: int) -> Iterator[EqualArms]:
     """Yield audits of equal arms."""
-    for n, seeds in ((3, 1), (25, 1), (100, 1), (25, 3), (100, 3)):
-        for rate in (0.05, 0.3):
-            for together in (0.0, 0.7):
-                yield EqualArms(n, Population(rate, 0.0, seeds, 0.5), together, runs)
+    sizes = ((3, 1), (25, 1), (100, 1), (25, 3), (100, 3))
+    for (n, seeds), rate, together in product(sizes, (0.05, 0.3), (0.0, 0.7)):
+        yield EqualArms(n, Population(rate, 0.0, seeds, 0.5), together, runs)
 
 
 def reversal_grid(runs: int) -> Iterator[NoReversal]:
     """Yield audits without a reversal, and with one for comparison."""
-    for n in (25, 100):
-        for seeds in (1, 3):
-            for isolated in (0.0, 0.2):
-                yield NoReversal(n, seeds, isolated, runs)
+    for n, seeds, isolated in product((25, 100), (1, 3), (0.0, 0.2)):
+        yield NoReversal(n, seeds, isolated, runs)
 
 
 def training_grid(runs: int) -> Iterator[Trainings]:
     """Yield audits of equal methods."""
-    for generalise in ("models", "scenes"):
-        for seeds in (2, 3, 5):
-            yield Trainings(100, seeds, generalise, runs)
+    for generalise, seeds in product(("models", "scenes"), (2, 3, 5)):
+        yield Trainings(100, seeds, generalise, runs)
 
 
 def _audit(

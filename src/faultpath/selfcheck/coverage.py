@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class IntervalCoverage:
             drawn = stream.multinomial(self.scenes, truth.chances(), size=self.runs)
             counts, times = np.unique(drawn.astype(np.float64), axis=0, return_counts=True)
             weight, runs = times / self.runs, self.runs
-        far = reach(np.broadcast_to(sizes, counts.shape), counts, 1.0)
+        far = reach(sizes, counts, 1.0)
         covered = ~rejects(sizes, counts, truth.mean, far, Z)
         setting = {
             "scenes": self.scenes,
@@ -73,8 +74,8 @@ class BreakEvenCoverage:
         ).astype(np.float64)
         counts, times = np.unique(drawn, axis=0, return_counts=True)
         square = counts.reshape(-1, kinds, kinds)
-        far_0 = _reach(first, square.sum(axis=2))
-        far_f = _reach(second, square.sum(axis=1))
+        far_0 = reach(first.sizes, square.sum(axis=2), 1.0)
+        far_f = reach(second.sizes, square.sum(axis=1), 1.0)
         mixed = (1.0 - p) * first.sizes[:, np.newaxis] + p * second.sizes
         far = (1.0 - p) * far_0 + p * far_f
         covered = ~rejects(mixed.ravel().round(9), counts, 0.0, far, Z)
@@ -125,45 +126,28 @@ class ModelsCoverage:
 
 def interval_grid(scenes: tuple[int, ...], runs: int) -> Iterator[IntervalCoverage]:
     """Yield the grid of the effect's interval."""
-    for n in scenes:
-        for seeds, alike, effects in _structures((0.0, 0.5, 1.0)):
-            for rate in RATES:
-                for lean in LEANS:
-                    yield IntervalCoverage(n, Population(rate, lean, seeds, alike, effects), runs)
+    for n, kind, rate, lean in product(scenes, _structures((0.0, 0.5, 1.0)), RATES, LEANS):
+        yield IntervalCoverage(n, Population(rate, lean, *kind), runs)
 
 
 def break_even_grid(scenes: tuple[int, ...], runs: int) -> Iterator[BreakEvenCoverage]:
     """Yield the grid of the break-even frequency: costs of all sizes, gains of 5 and 30 %."""
-    for n in scenes:
-        for seeds, alike, effects in _structures((0.0, 0.5)):
-            for rate in RATES:
-                for lean in LEANS:
-                    for gain in (0.05, 0.3):
-                        correct = Population(rate, -lean, seeds, alike, effects)
-                        faulty = Population(gain, 1.0, seeds, alike, effects)
-                        if correct.mean <= 0.0:
-                            yield BreakEvenCoverage(n, correct, faulty, runs)
+    kinds = _structures((0.0, 0.5))
+    for n, kind, rate, lean, gain in product(scenes, kinds, RATES, LEANS, (0.05, 0.3)):
+        correct = Population(rate, -lean, *kind)
+        if correct.mean <= 0.0:
+            yield BreakEvenCoverage(n, correct, Population(gain, 1.0, *kind), runs)
 
 
 def models_grid(runs: int) -> Iterator[ModelsCoverage]:
     """Yield the grid of the interval for newly trained models."""
-    for own in (False, True):
-        for n in (25, 100):
-            for seeds in (3, 5):
-                for rate in RATES[::2]:
-                    yield ModelsCoverage(n, seeds, rate, own, runs)
+    for own, n, seeds, rate in product((False, True), (25, 100), (3, 5), RATES[::2]):
+        yield ModelsCoverage(n, seeds, rate, own, runs)
 
 
-def _structures(alike: tuple[float, ...]) -> Iterator[tuple[int, float, bool]]:
-    yield 1, 0.0, False
-    for seeds in (3, 5):
-        for share in alike:
-            for effects in (False, True):
-                yield seeds, share, effects
-
-
-def _reach(population: Population, counts: Floats) -> Floats:
-    return reach(np.broadcast_to(population.sizes, counts.shape), counts, 1.0)
+def _structures(alike: tuple[float, ...]) -> list[tuple[int, float, bool]]:
+    """Return seeds, the share of scenes that treats them alike, and whether they differ."""
+    return [(1, 0.0, False), *product((3, 5), alike, (False, True))]
 
 
 def tables(n: int) -> Floats:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -70,7 +71,7 @@ class DetectionAtTheReported:
                 true = self._at(least)
                 drawn = stream.multinomial(self.scenes, true.chances(), size=_AGAIN)
                 counts = drawn.astype(np.float64)
-                far = reach(np.broadcast_to(true.sizes, counts.shape), counts, 1.0)
+                far = reach(true.sizes, counts, 1.0)
                 shares.append(float(detected(true.sizes, counts, far, self.alpha).mean()))
         mean = float(np.mean(shares))
         variance = float(np.var(shares)) / len(shares)
@@ -89,9 +90,9 @@ class DetectionAtTheReported:
 
 def detection_grid(runs: int) -> Iterator[DetectionAtTheReported]:
     """Yield the grid: alone, and at the strictest level of a family of seven."""
-    for n in (25, 50, 100, 300):
-        for seeds, alike in ((1, 0.0), (3, 0.0), (3, 0.5)):
-            for rate in (0.02, 0.1, 0.3):
-                for alpha in (0.05, 0.05 / 7):
-                    truth = Population(rate, 0.0, seeds, alike)
-                    yield DetectionAtTheReported(n, truth, alpha, runs)
+    kinds = ((1, 0.0), (3, 0.0), (3, 0.5))
+    levels = (0.05, 0.05 / 7)
+    for n, (seeds, alike), rate, alpha in product(
+        (25, 50, 100, 300), kinds, (0.02, 0.1, 0.3), levels
+    ):
+        yield DetectionAtTheReported(n, Population(rate, 0.0, seeds, alike), alpha, runs)

@@ -5,12 +5,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from rich.console import Console
+
 from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
 from faultpath.tables import Table, line
 from faultpath.tables.markdown import grid
+from faultpath.tables.terminal import drawn
 
 _FEW = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 1e9)
 Texts: TypeAlias = tuple[str, ...]
@@ -244,6 +247,14 @@ def page(report: Report, broken: Sequence[str]) -> str:
     for table in tables(report):
         lines += [f"## {table.title}", "", *table.notes, "", grid(table), ""]
     return "\n".join(lines).rstrip() + "\n"
+
+
+def show(report: Report, console: Console) -> None:
+    """Print every table with its note."""
+    for table in tables(report):
+        console.print()
+        console.print(drawn(table))
+        console.print(*table.notes, markup=False)
 
 
 def _error(report: Report, name: str) -> str:

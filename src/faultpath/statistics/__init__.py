@@ -1,13 +1,12 @@
 """Outcome arrays in, estimates and intervals out; no plots and no files."""
 
-from faultpath.statistics.bootstrap import mean_effect, success_effect, success_rate
 from faultpath.statistics.breakeven import break_even, mixture_curve
 from faultpath.statistics.clustered import WindowQuantiles
 from faultpath.statistics.contrast import Contrast, change, percentile_interval, weighted_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
 from faultpath.statistics.detectable import detectable
+from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.statistics.estimate import BreakEven, Estimate, Region, SeedCounts, Sign
-from faultpath.statistics.medians import median_effect
 from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
 

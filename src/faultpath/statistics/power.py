@@ -66,7 +66,7 @@ def simulated_power(n_scenes: int, values: Floats, chances: Floats, alpha: float
     """
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    far = reach(np.broadcast_to(values, counts.shape), counts, 1.0)
+    far = reach(values, counts, 1.0)
     return float(detected(values, counts, far, alpha).mean())
 
 

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from faultpath.evidence import Measurement
 from faultpath.report import wording
 from faultpath.studies.cells import Cell, of_seed
-from faultpath.studies.quantities.quantity import Quantity, Undecidable
 from faultpath.studies.quantities.windows import mean_of_medians
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.results import NotRun, Quantity, Results, Undecidable
 from faultpath.tables import MISSING, Entry
 from faultpath.trials import Status
 

@@ -1,19 +1,23 @@
 """What the studies' runs left, as tables, figures and claims ask for it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
-from faultpath.statistics import Estimate, Resamples, success_rate
+from faultpath.statistics import Contrast, Estimate, Resamples, success_rate
 from faultpath.studies.cells import Cell
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
 
 
 class NotRun(Exception):
     """The run holds no trial of a cell, or no value of a measurement, that was asked for."""
+
+
+class Undecidable(Exception):
+    """The run holds everything that was asked for, and yet nothing that decides."""
 
 
 @dataclass(frozen=True)
@@ -112,3 +116,17 @@ class Results:
 def _drawn(library_hash: str, n_scenes: int) -> Resamples:
     """Draw once: hundreds of contrasts are of as many scenes."""
     return Resamples.draw(library_hash, n_scenes)
+
+
+Quantity = Callable[[Results], Contrast]
+"""Works a number out of a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+
+
+def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
+    """Return a contrast without its interval where too few scenes give it.
+
+    `notable` as in `Contrast`.
+    """
+    if contrast.enough:
+        return replace(contrast, notable=notable)
+    return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)

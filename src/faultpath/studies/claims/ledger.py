@@ -1,7 +1,6 @@
 """Every claim of the paper, answered from the tables of one run."""
 
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 
 from faultpath.record import ClaimVerdict, Ledger
 from faultpath.studies.claims import (
@@ -19,9 +18,9 @@ from faultpath.studies.results import Results
 
 SUBJECTS = (predictors, calibration, wind, shared, compensation, paying, others)
 
-STATEMENTS: Mapping[str, Statements] = MappingProxyType(
-    {claim: statements for subject in SUBJECTS for claim, statements in subject.CLAIMS.items()}
-)
+STATEMENTS: Mapping[str, Statements] = {
+    claim: statements for subject in SUBJECTS for claim, statements in subject.CLAIMS.items()
+}
 """What each claim consists of, by its id."""
 
 

@@ -8,8 +8,7 @@ from faultpath.record import Answer, ClaimVerdict, Part
 from faultpath.statistics import Contrast
 from faultpath.studies.claims.rules import Judged, Rule
 from faultpath.studies.published import PublishedClaim
-from faultpath.studies.quantities.quantity import Quantity, Undecidable
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.results import NotRun, Quantity, Results, Undecidable
 
 
 class Stated(Protocol):

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 from faultpath.statistics import Contrast, success_rate
 from faultpath.studies.pages import figure_3
 from faultpath.studies.quantities.differences import joint
-from faultpath.studies.quantities.quantity import Quantity, decisive
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.results import NotRun, Quantity, Results, decisive
 
 Floats = NDArray[np.float64]
 

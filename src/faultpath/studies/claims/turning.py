@@ -8,8 +8,7 @@ from faultpath.statistics import Contrast, change, decide_family, turn, with_tes
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath.studies.claims.statement import shown
 from faultpath.studies.quantities.differences import Pair, together
-from faultpath.studies.quantities.quantity import Quantity, Undecidable, decisive
-from faultpath.studies.results import Results
+from faultpath.studies.results import Quantity, Results, Undecidable, decisive
 
 ALL_SEEDS = 3
 """Trainings that the paper speaks of."""

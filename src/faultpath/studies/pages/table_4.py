@@ -11,7 +11,7 @@ from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS
 from faultpath.studies.page import Columns, Page, Row, Rows, TableSpec, rates
 from faultpath.studies.published import published
 from faultpath.studies.quantities.differences import Effect, combined, succeeded, terminal_distance
-from faultpath.studies.quantities.quantity import Quantity
+from faultpath.studies.results import Quantity
 
 WINDY = Setting(wind="L3")
 NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC", "dob": "DOB"}

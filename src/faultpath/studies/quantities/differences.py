@@ -17,8 +17,7 @@ from faultpath.statistics import (
     with_test,
 )
 from faultpath.studies.cells import Cell
-from faultpath.studies.quantities.quantity import Quantity, decisive
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.results import NotRun, Quantity, Results, decisive
 from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
 

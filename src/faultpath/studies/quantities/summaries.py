@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 from faultpath.statistics import Contrast, success_rate
 from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.quantities.differences import contrast, joint
-from faultpath.studies.quantities.quantity import Quantity, Undecidable, decisive
 from faultpath.studies.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
-from faultpath.studies.results import Results
+from faultpath.studies.results import Quantity, Results, Undecidable, decisive
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]

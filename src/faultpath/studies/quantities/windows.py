@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from faultpath.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
-from faultpath.studies.quantities.quantity import Quantity, Undecidable, decisive
-from faultpath.studies.results import NotRun, Results
+from faultpath.studies.results import NotRun, Quantity, Results, Undecidable, decisive
 
 Subject: TypeAlias = tuple[Measurement, ...]
 """A measurement of each seed: the quantile is taken seed by seed, and then the mean."""
