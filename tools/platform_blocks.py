@@ -3,6 +3,7 @@
 import json
 from operator import itemgetter
 
+import platform_tables
 from blocks import ROOT, Wrong, tabled
 
 from faultpath.quadrotor.platform import PLATFORMS
@@ -11,12 +12,14 @@ from faultpath.tables import MISSING
 RECORDS = ROOT / "docs" / "design" / "platform-search"
 
 
-def fill(name: str) -> str:
-    """Return one record as a table."""
+def fill(name: str, part: str = "") -> str:
+    """Return one record, or a part of it, as a table."""
     path = RECORDS / f"{name}.json"
     if not path.is_file():
         raise Wrong(f"there is no record {path.relative_to(ROOT)}")
     record = json.loads(path.read_text("utf-8"))
+    if part:
+        return platform_tables.PARTS[part](record)
     return frozen(record) if "hash" in record else searched(record)
 
 

@@ -15,6 +15,8 @@ from faultpath.quadrotor.wind import Winds
 SPACE: dict[str, dict[str, Any]] = {
     "goal_running": {"low": 0.1, "high": 0.8, "step": 0.05},
     "thrust_effort": {"low": 2.0, "high": 40.0, "log": True},
+    "goal": {"low": 4.0, "high": 20.0, "log": True},
+    "risk": {"low": 5.0, "high": 80.0, "log": True},
     "margin_m": {"low": 0.2, "high": 0.5, "step": 0.05},
     "drag_across_kgps": {"low": 0.3, "high": 0.8, "step": 0.1},
     "drag_along_kgps": {"low": 0.6, "high": 1.6, "step": 0.2},
@@ -22,6 +24,7 @@ SPACE: dict[str, dict[str, Any]] = {
     "drag_drawn": {"choices": [True, False]},
     "calibration_drawn": {"choices": [True, False]},
     "rest_drawn": {"choices": [True, False]},
+    "unseen_m": {"low": 0.2, "high": 0.6, "step": 0.05},
     "altitude_limits": {"choices": [True, False]},
     "remembered": {"choices": [0, 2]},
     "strength": {"low": 0.0, "high": 1.0, "step": 0.25},
@@ -34,6 +37,8 @@ STARTS: list[dict[str, Any]] = [
     {
         "goal_running": 0.35,
         "thrust_effort": 5.0,
+        "goal": 10.0,
+        "risk": 40.0,
         "margin_m": 0.35,
         "drag_across_kgps": 0.5,
         "drag_along_kgps": 1.2,
@@ -41,6 +46,7 @@ STARTS: list[dict[str, Any]] = [
         "drag_drawn": False,
         "calibration_drawn": True,
         "rest_drawn": True,
+        "unseen_m": 0.25,
         "altitude_limits": limited,
         "remembered": 0,
         "strength": strength,
@@ -67,14 +73,15 @@ def platform_of(point: dict[str, Any]) -> Platform:
     means = tuple(round(strongest * share, 3) for share in _SHARES)
     # Winds of the pool keep their accelerations too.
     pool = (0.0, round(FIRST.winds.pool_mean_mps[1] * FIRST.drag_kgps[0] / across, 1))
+    weights = CostWeights(
+        **{name: point[name] for name in ("thrust_effort", "goal", "risk", "margin_m")}
+    )
     return FIRST.with_drag((across, across, along)).model_copy(
         update={
             "planner": PlannerSettings(
                 goal_running=point["goal_running"],
-                weights=CostWeights(
-                    thrust_effort=point["thrust_effort"], margin_m=point["margin_m"]
-                ),
-                running=CostWeights(thrust_effort=5.0, margin_m=point["margin_m"]),
+                weights=weights,
+                running=weights.model_copy(update={"thrust_effort": 5.0}),
             ),
             "winds": Winds(means_mps=means, pool_mean_mps=pool),
             "scene_vehicles": SceneVehicles(
@@ -83,7 +90,7 @@ def platform_of(point: dict[str, Any]) -> Platform:
                 rest_drawn=point["rest_drawn"],
             ),
             "perception": PerceptionSettings(
-                altitude_limits=point["altitude_limits"], remembered=point["remembered"]
+                **{name: point[name] for name in ("unseen_m", "altitude_limits", "remembered")}
             ),
             "follows_motors": True,
             "collection": collection_of(point["strength"]),
