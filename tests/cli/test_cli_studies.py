@@ -53,8 +53,8 @@ def test_making_scenes_shows_how_many_there_are(
     monkeypatch.chdir(tmp_path)
     made = faultpath("scenes", "generate", "mine.json", "--seed", "7", "--count", "2")
     assert (made.status, made.out) == (0, "Written: mine.json\n"), made.err
-    assert "2/2" in made.err
-    assert "left" in made.err
+    assert "2 of 2" in made.err
+    assert "so far" in made.err
 
 
 def test_the_shipped_claims_are_json() -> None:
