@@ -11,7 +11,7 @@ from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath.quadrotor.planner import Scored, shift
-from faultpath.quadrotor.rollout import rolling
+from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.planner import Planner, Scored, Temperature
 from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
-from faultpath.quadrotor.rollout import rolling
+from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 

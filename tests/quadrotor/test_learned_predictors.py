@@ -15,7 +15,7 @@ from faultpath.quadrotor.predictors import (
     UnanchoredPredictor,
 )
 from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
-from faultpath.quadrotor.rollout import rollout
+from faultpath.quadrotor.predictors.rollout import rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 

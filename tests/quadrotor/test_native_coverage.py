@@ -32,7 +32,7 @@ from faultpath.quadrotor.predictors import (
 from faultpath.quadrotor.predictors.compiled import horizon_loop, uncovered
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.predictors.network import GatedCell
-from faultpath.quadrotor.rollout import Rollout, rolling, rollout
+from faultpath.quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
 
 SHIFT_M = 100.0

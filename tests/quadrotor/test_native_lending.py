@@ -18,7 +18,7 @@ from faultpath.quadrotor.native.lending import lend
 from faultpath.quadrotor.native.recurrent import recur
 from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step
 from faultpath.quadrotor.predictors.network import GatedCell
-from faultpath.quadrotor.rollout import Rollout, rolling
+from faultpath.quadrotor.predictors.rollout import Rollout, rolling
 
 pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was compiled")
 

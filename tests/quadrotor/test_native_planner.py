@@ -23,7 +23,7 @@ from faultpath.quadrotor.planner import (
     TerminalGoal,
     weighted_mean,
 )
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.state import State
 
 SCENES = ("a", "b", "c")

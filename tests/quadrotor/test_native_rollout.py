@@ -13,7 +13,7 @@ from faultpath.quadrotor.predictors import (
     PredictorInputs,
     UnanchoredPredictor,
 )
-from faultpath.quadrotor.rollout import Roll, Rollout, rolling, rollout
+from faultpath.quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
 
 TOLERANCE = 1e-5

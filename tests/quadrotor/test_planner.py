@@ -19,7 +19,7 @@ from faultpath.quadrotor.planner import (
 )
 from faultpath.quadrotor.planner.sampler import standard_normals
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
 from faultpath.streams import generator

@@ -12,7 +12,7 @@ from faultpath.quadrotor.planner import (
     Scored,
     TerminalGoal,
 )
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.state import State
 
 SCENES = ("a", "b")

@@ -15,7 +15,7 @@ from faultpath.quadrotor.predictors import (
     TrueParameter,
 )
 from faultpath.quadrotor.predictors.drag import LinearDrag
-from faultpath.quadrotor.rollout import rollout
+from faultpath.quadrotor.predictors.rollout import rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
     GRAVITY_MPS2,

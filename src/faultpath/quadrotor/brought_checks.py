@@ -11,8 +11,8 @@ from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.planner import Planner, SamplerSettings, Scored
 from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor
 from faultpath.quadrotor.predictors.places import PLACES, history, predictor_inputs
+from faultpath.quadrotor.predictors.rollout import rollout
 from faultpath.quadrotor.reconstruction import Reconstruction
-from faultpath.quadrotor.rollout import rollout
 from faultpath.quadrotor.state import LANE_MULTIPLE, State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.text import listed

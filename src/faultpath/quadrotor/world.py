@@ -8,9 +8,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.contact import Contact, Progress
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.plant import Plant, TorchPlant
+from faultpath.quadrotor.plant.contact import Contact, Progress
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes

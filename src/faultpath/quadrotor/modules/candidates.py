@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from torch import Tensor
 
 from faultpath.quadrotor.chunks import Chunk
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.predictors.rollout import Rollout
 
 
 @dataclass(frozen=True)

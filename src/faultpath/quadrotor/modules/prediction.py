@@ -10,8 +10,8 @@ from faultpath.quadrotor.modules.lanes import lanes_of, scenes_first, taking
 from faultpath.quadrotor.modules.wind import WindReconstruction
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.predictors.places import ports, predictor_inputs
+from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.reconstruction import Reconstruction
-from faultpath.quadrotor.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import Query
 

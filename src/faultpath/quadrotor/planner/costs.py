@@ -11,7 +11,7 @@ from typing_extensions import override
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native import costs
 from faultpath.quadrotor.native.lending import covered
-from faultpath.quadrotor.rollout import Rollout
+from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
 

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from torch import Tensor
 
-from faultpath.quadrotor.contact import Contact, Progress
+from faultpath.quadrotor.plant.contact import Contact, Progress
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle_batch import Vehicle
 

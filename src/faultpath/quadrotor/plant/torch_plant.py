@@ -8,10 +8,10 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.contact import Contact, Progress
 from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.native.plant import CompiledPlant, watch
 from faultpath.quadrotor.plant import aerodynamics, motors, rigid_body
+from faultpath.quadrotor.plant.contact import Contact, Progress
 from faultpath.quadrotor.plant.protocol import Plant, PlantState
 from faultpath.quadrotor.plant.rate_loop import RateLoop
 from faultpath.quadrotor.state import State

@@ -12,7 +12,7 @@ from torch import Tensor
 
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.predictors.places import Take, history, predictor_inputs
-from faultpath.quadrotor.rollout import unroll
+from faultpath.quadrotor.predictors.rollout import unroll
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.windows import HISTORY, Windows
 
