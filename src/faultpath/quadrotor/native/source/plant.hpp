@@ -1,4 +1,4 @@
-// One step of the quadrotor plant for a vector of vehicles; `plant/plant.py` is its reference.
+// One step of the quadrotor plant for a vector of vehicles; `plant/torch_plant.py` is its reference.
 #pragma once
 
 #include "rotation.hpp"

@@ -1,7 +1,7 @@
 // The distance to a scene's prisms, and what it does to a trial; a scene a lane.
 //
-// `scenes/geometry.py` and `world.py` are the reference. Operations are the same in the same order,
-// none fused.
+// `scenes/geometry.py` and `plant/contact.py` are the reference. Operations are the same in the
+// same order, none fused.
 #pragma once
 
 #include "simd64.hpp"

@@ -19,24 +19,27 @@
 
 namespace {
 
+// How an instruction of the set is called: x86 has one name a width, in single and in double precision.
 #if defined(__AVX512F__)
 constexpr int LANES = 16;
+#define SINGLE(name) _mm512_##name##_ps
+#define DOUBLE(name) _mm512_##name##_pd
 #elif defined(__AVX2__) && defined(__FMA__)
 constexpr int LANES = 8;
+#define SINGLE(name) _mm256_##name##_ps
+#define DOUBLE(name) _mm256_##name##_pd
 #else
 constexpr int LANES = 4;
+#define SINGLE(name) _mm_##name##_ps
+#define DOUBLE(name) _mm_##name##_pd
 #endif
 
 typedef float Vector __attribute__((vector_size(4 * LANES)));
 typedef int32_t Integers __attribute__((vector_size(4 * LANES)));
 
 INLINE Vector splat(float value) {
-#if defined(__AVX512F__)
-  return _mm512_set1_ps(value);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_set1_ps(value);
-#elif defined(__x86_64__)
-  return _mm_set1_ps(value);
+#if defined(__x86_64__)
+  return SINGLE(set1)(value);
 #else
   return Vector{value, value, value, value};
 #endif
@@ -51,10 +54,8 @@ INLINE Vector load(const float* from) {
 INLINE void store(float* to, Vector value) { std::memcpy(to, &value, sizeof value); }
 
 INLINE Vector fma(Vector a, Vector b, Vector c) {
-#if defined(__AVX512F__)
-  return _mm512_fmadd_ps(a, b, c);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_fmadd_ps(a, b, c);
+#if defined(__AVX512F__) || (defined(__AVX2__) && defined(__FMA__))
+  return SINGLE(fmadd)(a, b, c);
 #elif defined(__aarch64__)
   return vfmaq_f32(c, a, b);
 #else
@@ -63,12 +64,8 @@ INLINE Vector fma(Vector a, Vector b, Vector c) {
 }
 
 INLINE Vector sqrt(Vector x) {
-#if defined(__AVX512F__)
-  return _mm512_sqrt_ps(x);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_sqrt_ps(x);
-#elif defined(__x86_64__)
-  return _mm_sqrt_ps(x);
+#if defined(__x86_64__)
+  return SINGLE(sqrt)(x);
 #elif defined(__aarch64__)
   return vsqrtq_f32(x);
 #else
@@ -81,24 +78,16 @@ INLINE Vector select(Integers mask, Vector yes, Vector no) { return mask ? yes :
 
 // What is not a number stays that, as in torch: of two operands the processor returns the second.
 INLINE Vector at_most(Vector x, Vector bound) {
-#if defined(__AVX512F__)
-  return _mm512_min_ps(bound, x);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_min_ps(bound, x);
-#elif defined(__x86_64__)
-  return _mm_min_ps(bound, x);
+#if defined(__x86_64__)
+  return SINGLE(min)(bound, x);
 #else
   return bound < x ? bound : x;
 #endif
 }
 
 INLINE Vector at_least(Vector x, Vector bound) {
-#if defined(__AVX512F__)
-  return _mm512_max_ps(bound, x);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_max_ps(bound, x);
-#elif defined(__x86_64__)
-  return _mm_max_ps(bound, x);
+#if defined(__x86_64__)
+  return SINGLE(max)(bound, x);
 #else
   return bound > x ? bound : x;
 #endif

@@ -13,22 +13,16 @@ typedef double Doubles __attribute__((vector_size(8 * DOUBLES)));
 typedef int64_t Longs __attribute__((vector_size(8 * DOUBLES)));
 
 INLINE Doubles splat(double value) {
-#if defined(__AVX512F__)
-  return _mm512_set1_pd(value);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_set1_pd(value);
-#elif defined(__x86_64__)
-  return _mm_set1_pd(value);
+#if defined(__x86_64__)
+  return DOUBLE(set1)(value);
 #else
   return Doubles{value, value};
 #endif
 }
 
 INLINE Doubles fma(Doubles a, Doubles b, Doubles c) {
-#if defined(__AVX512F__)
-  return _mm512_fmadd_pd(a, b, c);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_fmadd_pd(a, b, c);
+#if defined(__AVX512F__) || (defined(__AVX2__) && defined(__FMA__))
+  return DOUBLE(fmadd)(a, b, c);
 #elif defined(__aarch64__)
   return vfmaq_f64(c, a, b);
 #else
@@ -37,12 +31,8 @@ INLINE Doubles fma(Doubles a, Doubles b, Doubles c) {
 }
 
 INLINE Doubles sqrt(Doubles x) {
-#if defined(__AVX512F__)
-  return _mm512_sqrt_pd(x);
-#elif defined(__AVX2__) && defined(__FMA__)
-  return _mm256_sqrt_pd(x);
-#elif defined(__x86_64__)
-  return _mm_sqrt_pd(x);
+#if defined(__x86_64__)
+  return DOUBLE(sqrt)(x);
 #elif defined(__aarch64__)
   return vsqrtq_f64(x);
 #else
