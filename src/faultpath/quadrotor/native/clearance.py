@@ -2,13 +2,13 @@
 
 import ctypes
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.encoder import CODE
-from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.lending import Block, fields, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
 
@@ -21,8 +21,7 @@ _NUMBERS = (FEATURES + 1 + HIDDEN + 1 + 1) * (HIDDEN + 1)
 """Numbers of a query network (`Query` in `clearance.cpp`)."""
 
 
-@dataclass(frozen=True)
-class Bounds:
+class Bounds(NamedTuple):
     """Between what the answer lies, and where the image covers what is asked."""
 
     lowest_m: float
@@ -36,12 +35,10 @@ class Bounds:
     up: float
 
 
-class _Bounds(ctypes.Structure):
+class _Bounds(Block):
     """`Bounds` of `clearance.cpp`."""
 
-    _fields_ = tuple(
-        (name, ctypes.c_float) for name in ("lowest", "highest", "unseen", "near", "left", "up")
-    )
+    _fields_ = fields(ctypes.c_float, "lowest highest unseen near left up")
 
 
 class CompiledClearance:
@@ -55,13 +52,9 @@ class CompiledClearance:
             makers: For each layer of `SHAPES`, `[outputs * inputs, 64 + 1]`: a column for each
                 number of the code, and what is there without any.
             bounds: What the answer keeps to.
-
-        Raises:
-            ValueError: A tensor is not what the kernel takes; see `lend`.
         """
         self._kernels = kernels
-        low, high, unseen, near, left, up = astuple(bounds)
-        self._bounds = _Bounds(low, high, unseen, near**2, left, up)
+        self._bounds = _Bounds(*bounds._replace(near_m=bounds.near_m**2))
         rows: list[Tensor] = []
         for made, (outputs, inputs) in zip(makers, SHAPES, strict=True):
             lend("makers", made.detach().contiguous(), outputs * inputs, CODE + 1)
@@ -83,15 +76,12 @@ class CompiledClearance:
             eye: Where the images were taken from, `[S, 3]`, m.
             axes: And the camera's attitudes, `[S, 3, 3]`.
             points: World frame, `[3, S, N]`, m.
-
-        Raises:
-            ValueError: A tensor is not what the kernel takes; see `lend`.
         """
         _, scenes, count = points.shape
         clearance = points.new_empty(scenes, count)
         self._kernels.call(
             "faultpath_clearance",
-            *(ctypes.byref(self._bounds), self._makers, self._base),
+            *(self._bounds, self._makers, self._base),
             lend("codes", codes.contiguous(), CODE, scenes),
             lend("position", eye.contiguous(), scenes, 3),
             lend("rotation", axes.contiguous(), scenes, 3, 3),

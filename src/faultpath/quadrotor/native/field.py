@@ -5,20 +5,17 @@ import ctypes
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.lending import Block, fields, lend
 from faultpath.quadrotor.native.library import Kernels
 
 
-class _Field(ctypes.Structure):
+class _Field(Block):
     """`Field` of `field.cpp`."""
 
     _fields_ = (
         ("table", ctypes.c_void_p),
-        ("along_x", ctypes.c_int64),
-        ("along_y", ctypes.c_int64),
-        ("origin", ctypes.c_void_p),
-        ("last", ctypes.c_void_p),
-        ("first", ctypes.c_void_p),
+        *fields(ctypes.c_int64, "along_x along_y"),
+        *fields(ctypes.c_void_p, "origin last first"),
         ("per_metre", ctypes.c_float),
     )
 
@@ -26,8 +23,7 @@ class _Field(ctypes.Structure):
 class CompiledField:
     """Interpolates the table of some scenes; the arguments are attributes of `DistanceField`.
 
-    Raises `ValueError` where a scene's cells lie outside the table, or a tensor is not what the
-    kernel takes; see `lend`.
+    Raises `ValueError` where a scene's cells lie outside the table.
     """
 
     def __init__(
@@ -41,17 +37,16 @@ class CompiledField:
         per_metre: float,
     ) -> None:
         self._kernels = kernels
-        scenes = len(first)
-        self._kept = (
+        self._scenes = len(first)
+        self._field = _Field(
             lend("table", table, table.numel()),
-            lend("origin", origin.contiguous(), 3, scenes, 1),
-            lend("last", last.contiguous(), 3, scenes, 1),
-            lend("first", first.contiguous(), scenes, 1, dtype=torch.int32),
+            *pitch[:2],
+            lend("origin", origin.contiguous(), 3, self._scenes, 1),
+            lend("last", last.contiguous(), 3, self._scenes, 1),
+            lend("first", first.contiguous(), self._scenes, 1, dtype=torch.int32),
+            per_metre,
         )
         _check_places(len(table), pitch, last, first)
-        places = [part.address for part in self._kept]
-        self._scenes = scenes
-        self._field = _Field(places[0], pitch[0], pitch[1], *places[1:], per_metre)
 
     def query(self, points: Tensor) -> Tensor:
         """Return the distance `[B, N]` at `points` `[3, B, N]`, float32, m."""
@@ -61,7 +56,7 @@ class CompiledField:
         distances = torch.empty(points.shape[1:])
         self._kernels.call(
             "faultpath_field",
-            ctypes.byref(self._field),
+            self._field,
             lend("points", points.float().contiguous(), 3, self._scenes, count),
             *(self._scenes, count),
             lend("distances", distances, self._scenes, count),

@@ -1,7 +1,8 @@
 """Memory lent to a compiled kernel: what it takes for granted is checked here, in code.
 
 A kernel is told an address and believes the rest. A tensor of another size, precision, device or
-layout than it believes would be read as garbage, or past its end.
+layout than it believes would be read as garbage, or past its end. So every function and object of
+this package raises `ValueError` for a tensor that its kernel does not take.
 """
 
 import ctypes
@@ -70,6 +71,25 @@ def lend(name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.floa
             f"compiled kernel: '{name}' {wrong}; FAULTPATH_KERNELS=portable runs without kernels"
         )
     return Lent(tensor)
+
+
+class Block(ctypes.Structure):
+    """A structure that a kernel reads; it holds on to what its addresses point to."""
+
+    def __init__(self, *values: object, **named: object) -> None:
+        self._held = (values, named)
+        super().__init__(
+            *map(_written, values), **{name: _written(value) for name, value in named.items()}
+        )
+
+
+def _written(value: object) -> object:
+    return value.address if isinstance(value, Lent) else value
+
+
+def fields(kind: type, names: str) -> tuple[tuple[str, type], ...]:
+    """Return fields of one type for a `Block`, from their names in a row."""
+    return tuple((name, kind) for name in names.split())
 
 
 def is_exactly(value: object, kind: type[T]) -> TypeGuard[T]:

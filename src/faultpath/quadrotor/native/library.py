@@ -15,7 +15,7 @@ from torch import Tensor
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.device import host_readable
-from faultpath.quadrotor.native.lending import Lent
+from faultpath.quadrotor.native.lending import Block, Lent
 
 VARIABLE = "FAULTPATH_KERNELS"
 PORTABLE = "portable"
@@ -37,7 +37,7 @@ class Kernels:
     library: ctypes.CDLL
 
     def call(self, name: str, *arguments: object) -> None:
-        """Call a kernel: with what was lent to it, integers, and references to structures.
+        """Call a kernel: with what was lent to it, integers and blocks.
 
         Raises `TypeError` for a tensor that was not lent: nobody has checked it.
         """
@@ -52,6 +52,8 @@ class Kernels:
 def _argument(value: object) -> object:
     if isinstance(value, Lent):
         return value.address
+    if isinstance(value, Block):
+        return ctypes.byref(value)
     if isinstance(value, Tensor):
         raise TypeError("a kernel takes no tensor that was not lent: see `native/lending.py`")
     return ctypes.c_int64(value) if isinstance(value, int) else value

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.lending import Lent, lend
+from faultpath.quadrotor.native.lending import Block, Lent, fields, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -23,39 +23,36 @@ _BODY = {"position": (3,), "velocity": (3,), "rotation": (3, 3), "rate": (3,), "
 _ROWS = tuple(math.prod(shape) for shape in _BODY.values())
 
 
-class _Law(ctypes.Structure):
+class _Law(Block):
     """`Law` of `plant.hpp`."""
 
     _fields_ = (
-        ("dt", ctypes.c_double),
-        ("gravity_kick", ctypes.c_double),
-        ("gain", ctypes.c_double * 3),
-        ("rate_limit", ctypes.c_double * 3),
-        ("collective_limit", ctypes.c_double),
-        ("motor_limit", ctypes.c_double),
+        *fields(ctypes.c_double, "dt gravity_kick"),
+        *fields(ctypes.c_double * 3, "gain rate_limit"),
+        *fields(ctypes.c_double, "collective_limit motor_limit"),
     )
 
 
-class _Before(ctypes.Structure):
+class _Before(Block):
     """`Before` of `plant.cpp`."""
 
     _fields_ = tuple((name, ctypes.c_void_p) for name in _BODY)
 
 
-_STANDING = (
-    ("running", torch.bool),
-    ("crashed", torch.bool),
-    ("time_s", torch.float64),
-    ("goal_distance", torch.float64),
-    ("min_clearance", torch.float64),
-)
+_STANDING = {
+    "running": torch.bool,
+    "crashed": torch.bool,
+    "time_s": torch.float64,
+    "goal_distance": torch.float64,
+    "min_clearance": torch.float64,
+}
 _AIRFRAME = 15
 """Rows of `Airframe` in `plant.hpp`."""
 _SOLID = 10
 """Rows of a prism in `plant_contact.hpp`."""
 
 
-class _Trial(ctypes.Structure):
+class _Trial(Block):
     """`Trial` of `plant_contact.hpp`."""
 
     _fields_ = (
@@ -63,13 +60,9 @@ class _Trial(ctypes.Structure):
         ("count", ctypes.c_int64),
         ("goal", ctypes.c_void_p),
         ("radius", ctypes.c_double),
-        ("every", ctypes.c_int64),
-        ("made", ctypes.c_int64),
+        *fields(ctypes.c_int64, "every made"),
         ("per_second", ctypes.c_double),
-        *(
-            (name, ctypes.c_void_p)
-            for name in ("running", "crashed", "time_s", "goal_distance", "min_clearance")
-        ),
+        *((name, ctypes.c_void_p) for name in _STANDING),
     )
 
 
@@ -78,8 +71,6 @@ class Watched:
     """What `CompiledPlant.fly` brings up to date, and what it looks at for that."""
 
     trial: _Trial
-    held: tuple[Lent, ...]
-    """The kernel holds addresses only."""
     lanes: int
 
 
@@ -106,22 +97,22 @@ def watch(
         rate_hz: Plant steps a second.
 
     Raises:
-        ValueError: `every` is not positive, or a tensor is not what the kernel takes; see `lend`.
+        ValueError: `every` is not positive.
     """
     if every < 1:
         raise ValueError(f"contact is looked for every so many steps, not every {every}")
     lanes = goal.shape[-1]
-    prisms = lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64)
-    goals = lend("goal", goal, 3, lanes, dtype=torch.float64)
-    stand = tuple(
-        lend(name, value, lanes, dtype=dtype)
-        for (name, dtype), value in zip(_STANDING, standing, strict=True)
-    )
-    addresses = (part.address for part in stand)
     trial = _Trial(
-        prisms.address, len(solids), goals.address, radius_m, every, made, rate_hz, *addresses
+        lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
+        len(solids),
+        lend("goal", goal, 3, lanes, dtype=torch.float64),
+        *(radius_m, every, made, rate_hz),
+        *(
+            lend(name, value, lanes, dtype=dtype)
+            for (name, dtype), value in zip(_STANDING.items(), standing, strict=True)
+        ),
     )
-    return Watched(trial, (prisms, goals, *stand), lanes)
+    return Watched(trial, lanes)
 
 
 class CompiledPlant:
@@ -133,14 +124,9 @@ class CompiledPlant:
         lanes = airframes.shape[-1]
         whole = airframes.contiguous()
         self._airframes = lend("airframes", whole, _AIRFRAME, lanes, dtype=torch.float64)
-        self._law = _Law(
-            dt=dt_s,
-            gravity_kick=-GRAVITY_MPS2 * 0.5 * dt_s,
-            gain=RATE_GAIN_PER_S,
-            rate_limit=RATE_LIMIT_RADPS,
-            collective_limit=COLLECTIVE_MAX_N,
-            motor_limit=MOTOR_THRUST_MAX_N,
-        )
+        gravity_kick = -GRAVITY_MPS2 * 0.5 * dt_s
+        limits = (RATE_GAIN_PER_S, RATE_LIMIT_RADPS, COLLECTIVE_MAX_N, MOTOR_THRUST_MAX_N)
+        self._law = _Law(dt_s, gravity_kick, *limits)
 
     def fly(
         self,
@@ -160,7 +146,7 @@ class CompiledPlant:
 
         Raises:
             RuntimeError: A tensor cannot be expanded to the lanes.
-            ValueError: It is not on the CPU (see `lend`), or other trials are watched.
+            ValueError: It is not on the CPU, or other trials are watched.
         """
         lanes = self._airframes.tensor.shape[1]
         if watched is not None and watched.lanes != lanes:
@@ -172,13 +158,11 @@ class CompiledPlant:
         ends = torch.empty(sum(_ROWS), lanes, dtype=torch.float64)
         self._kernels.call(
             "faultpath_fly",
-            ctypes.byref(self._law),
-            self._airframes,
-            ctypes.byref(_Before(*(part.address for part in ready))),
+            *(self._law, self._airframes, _Before(*ready)),
             _ready("command", command, 4, lanes),
             _ready("winds", winds, len(winds), 3, lanes),
             *(len(winds), lanes),
-            None if watched is None else ctypes.byref(watched.trial),
+            None if watched is None else watched.trial,
             lend("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
         )
         parts = zip(ends.split(_ROWS), _BODY.values(), strict=True)

@@ -32,7 +32,7 @@ def recur(
         sequence: `[T, inputs, N]`, float32.
 
     Raises:
-        ValueError: There are more inputs, or a tensor is not what the kernel takes; see `lend`.
+        ValueError: There are more inputs.
     """
     steps, inputs, columns = sequence.shape
     if not fits(inputs, LATENT):

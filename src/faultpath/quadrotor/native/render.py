@@ -5,7 +5,7 @@ import ctypes
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.native.lending import lend
+from faultpath.quadrotor.native.lending import Block, fields, lend
 from faultpath.quadrotor.native.library import WIDEST, Kernels
 
 _SOLID = 12
@@ -14,15 +14,12 @@ _WIDEST_IMAGE = 64
 """Columns for which `render.cpp` has room."""
 
 
-class _Camera(ctypes.Structure):
+class _Camera(Block):
     """`Camera` of `render_view.hpp`."""
 
     _fields_ = (
-        ("height", ctypes.c_int64),
-        ("width", ctypes.c_int64),
-        ("left", ctypes.c_void_p),
-        ("up", ctypes.c_void_p),
-        ("planes", ctypes.c_void_p),
+        *fields(ctypes.c_int64, "height width"),
+        *fields(ctypes.c_void_p, "left up planes"),
         ("range", ctypes.c_float),
     )
 
@@ -50,8 +47,8 @@ class CompiledRenderer:
             range_m: What a pixel reads that sees nothing.
 
         Raises:
-            ValueError: The image is wider than the kernel's rows or not whole vectors wide, there
-                is no prism, or a tensor is not what the kernel takes; see `lend`.
+            ValueError: The image is wider than the kernel's rows or not whole vectors wide, or
+                there is no prism.
         """
         self._kernels = kernels
         _, count, scenes = solids.shape
@@ -65,12 +62,13 @@ class CompiledRenderer:
                 f"multiples of {WIDEST}, and an arena; it was given {len(left)} columns and "
                 f"{count} prisms"
             )
-        self._kept = (  # the kernel holds addresses only
+        self._camera = _Camera(
+            *self._shape,
             lend("left", left, len(left)),
             lend("up", up, len(up)),
             lend("planes", planes.double().contiguous(), 6, 4, dtype=torch.float64),
+            range_m,
         )
-        self._camera = _Camera(*self._shape, *(part.address for part in self._kept), range_m)
 
     def render(self, position: Tensor, rotation: Tensor) -> Tensor:
         """Return `[B, 36, 64]` as cameras at `[3, B]` of attitudes `[3, 3, B]` see it, float64."""
@@ -80,9 +78,7 @@ class CompiledRenderer:
         turned = rotation.expand(3, 3, scenes).contiguous()
         self._kernels.call(
             "faultpath_render",
-            ctypes.byref(self._camera),
-            self._solids,
-            *(count, scenes),
+            *(self._camera, self._solids, count, scenes),
             lend("position", at, 3, scenes, dtype=torch.float64),
             lend("rotation", turned, 3, 3, scenes, dtype=torch.float64),
             scenes,

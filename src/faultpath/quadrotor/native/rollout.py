@@ -12,7 +12,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.device import host_readable
-from faultpath.quadrotor.native.lending import Lent, lend
+from faultpath.quadrotor.native.lending import Block, Lent, fields, lend
 from faultpath.quadrotor.native.library import Kernels
 from faultpath.quadrotor.native.packing import BLOCK, pack
 
@@ -94,31 +94,23 @@ _ROWS: Mapping[str, tuple[int, ...]] = MappingProxyType(
 """Rows of each input, in the order of `Inputs` of `rollout.cpp`."""
 
 
-class _Layer(ctypes.Structure):
-    _fields_ = (
-        ("weights", ctypes.c_void_p),
-        ("inputs", ctypes.c_int64),
-        ("outputs", ctypes.c_int64),
-    )
+class _Layer(Block):
+    _fields_ = (("weights", ctypes.c_void_p), *fields(ctypes.c_int64, "inputs outputs"))
 
 
-class _Model(ctypes.Structure):
+class _Model(Block):
     """`Predictor` of `rollout.cpp`."""
 
     _fields_ = (
-        ("kind", ctypes.c_int64),
-        ("windy", ctypes.c_int64),
-        ("dragging", ctypes.c_int64),
-        *((name, _Layer) for name in _LAYERS),
-        *((name, ctypes.c_float) for name in ("dt", "keep", "mean", "gravity")),
-        ("linear_bound", ctypes.c_float),
-        ("angular_bound", ctypes.c_float),
+        *fields(ctypes.c_int64, "kind windy dragging"),
+        *fields(_Layer, " ".join(_LAYERS)),
+        *fields(ctypes.c_float, "dt keep mean gravity linear_bound angular_bound"),
         ("drag", ctypes.c_float * 3),
         ("spread", ctypes.c_float * INCREMENTS),
     )
 
 
-class _Inputs(ctypes.Structure):
+class _Inputs(Block):
     """`Inputs` of `rollout.cpp`."""
 
     _fields_ = tuple((name, ctypes.c_void_p) for name in _ROWS)
@@ -159,14 +151,12 @@ class HorizonLoop:
         if why := misfit(step.kind, layers):
             raise ValueError(f"no compiled rollout: {why}")
         self._kernels = kernels
-        self._kept: list[Lent] = []  # the kernel holds addresses only
-        self._model = _Model(**asdict(step))
+        laid: dict[str, _Layer] = {}
         for name, weights in layers.items():
             packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
-            lent = lend(name, packed, *packed.shape)
-            self._kept.append(lent)
             blocks, inputs, _ = packed.shape
-            setattr(self._model, name, _Layer(lent.address, inputs - 1, blocks * BLOCK))
+            laid[name] = _Layer(lend(name, packed, *packed.shape), inputs - 1, blocks * BLOCK)
+        self._model = _Model(**asdict(step), **laid)
         self._reads = _reads(step)
 
     def __call__(self, inputs: Mapping[str, Tensor | None], commands: Tensor) -> Rolled:
@@ -175,8 +165,7 @@ class HorizonLoop:
         Inputs that the step has no use for are left out.
 
         Raises:
-            ValueError: There is no step, an input is missing, or a tensor is not what the kernel
-                takes; see `lend`.
+            ValueError: There is no step, or an input is missing.
         """
         horizon, _, scenes, candidates = commands.shape
         if not horizon:
@@ -187,8 +176,7 @@ class HorizonLoop:
         given = [self._lend(name, inputs.get(name), scenes) for name in _ROWS]
         self._kernels.call(
             "faultpath_roll",
-            ctypes.byref(self._model),
-            ctypes.byref(_Inputs(*(part if part is None else part.address for part in given))),
+            *(self._model, _Inputs(*given)),
             lend("commands", commands.contiguous(), horizon, COMMAND, scenes, candidates),
             *(horizon, scenes, candidates),
             lend("positions", positions, 3, scenes, horizon, candidates),

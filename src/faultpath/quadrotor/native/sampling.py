@@ -25,9 +25,6 @@ def noise(
         step: Which part of the streams.
         size: Steps of the horizon H and candidates K; whole vectors.
         correlation: What a step keeps of the one before, and how much of it is drawn afresh.
-
-    Raises:
-        ValueError: A tensor is not what the kernel takes; see `lend`.
     """
     horizon, candidates = size
     scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
@@ -60,9 +57,6 @@ def candidates(
         sigma: Spread of the thrust as a fraction of `hover`, then of the three rates.
         limit: Of the rates, rad/s.
         noise: `[H, 4, S, K]`; K in whole vectors.
-
-    Raises:
-        ValueError: A tensor is not what the kernel takes; see `lend`.
     """
     horizon, _, scenes, count = noise.shape
     kernels.call(
