@@ -116,7 +116,7 @@ def test_a_cost_without_one_of_its_terms_is_refused() -> None:
     terms = dict.fromkeys(costs.TERMS, 1.0)
     del terms["hit"]
     with pytest.raises(ValueError, match="it takes goal, risk, hit"):
-        costs.cost(native.load(native.available()[0]), terms, False, paths)
+        costs.cost(native.load(native.available()[0]), terms, paths)
 
 
 @torch.inference_mode()
