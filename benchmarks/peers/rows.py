@@ -13,7 +13,7 @@ from benchmarks import problem
 from faultpath.quadrotor.planner import CostWeights, SamplerSettings
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
-from faultpath.quadrotor.predictors.network import LATENT, LatentNetwork
+from faultpath.quadrotor.predictors.network import LATENT, Affine, LatentNetwork
 from faultpath.quadrotor.vehicle import (
     CONTROL_DT_S,
     GRAVITY_MPS2,
@@ -33,19 +33,16 @@ KEEP = math.exp(-CONTROL_DT_S / RATE_LAG_S)
 MEAN = RATE_LAG_S / CONTROL_DT_S * (1 - KEEP)
 
 
-def _linear(weight: Tensor, bias: Tensor) -> nn.Linear:
-    layer = nn.Linear(weight.shape[1], weight.shape[0])
-    layer.weight.data.copy_(weight)
-    layer.bias.data.copy_(bias.flatten())
-    return layer
-
-
-def folded(weight: Tensor, bias: Tensor, mean: Tensor, std: Tensor, at: slice) -> nn.Linear:
-    """Return a layer over raw inputs; the columns `at` met standardised ones."""
-    scaled, shifted = weight.detach().clone(), bias.detach().clone()
-    scaled[:, at] /= std.T
-    shifted -= scaled[:, at] @ mean
-    return _linear(scaled, shifted)
+def linear(layer: Affine, *, over: tuple[Tensor, Tensor] | None = None, at: int = 0) -> nn.Linear:
+    """Return a layer; with mean and deviation `over`, its inputs from `at` on are taken raw."""
+    weight, bias = layer.weight.detach().clone(), layer.bias.detach().flatten()
+    if over is not None:
+        mean, deviation = over
+        weight[:, at:] /= deviation.T
+        bias = bias - weight[:, at:] @ mean[:, 0]
+    made = nn.Linear(weight.shape[1], weight.shape[0])
+    made.load_state_dict({"weight": weight, "bias": bias})
+    return made
 
 
 class RowsModel(nn.Module):
@@ -59,25 +56,20 @@ class RowsModel(nn.Module):
         super().__init__()
         network: LatentNetwork = problem.model().network
         mean, std = network.feature_mean, network.feature_std
-        self.embed = folded(
-            network.embed.weight, network.embed.bias, mean[15:19], std[15:19], slice(0, 4)
-        )
+        self.embed = linear(network.embed, over=(mean[15:19], std[15:19]))
         self.cell = nn.GRUCell(16, LATENT)
-        with torch.no_grad():
-            self.cell.weight_ih.copy_(network.cell.from_input.weight)
-            self.cell.weight_hh.copy_(network.cell.from_latent.weight)
-            self.cell.bias_ih.copy_(network.cell.from_input.bias[:, 0])
-            self.cell.bias_hh.copy_(network.cell.from_latent.bias[:, 0])
-        first = folded(
-            network.first.weight, network.first.bias, mean, std, slice(LATENT, LATENT + 19)
+        given, kept = network.cell.from_input, network.cell.from_latent
+        self.cell.load_state_dict(
+            {
+                "weight_ih": given.weight,
+                "weight_hh": kept.weight,
+                "bias_ih": given.bias[:, 0],
+                "bias_hh": kept.bias[:, 0],
+            }
         )
-        self.head = nn.Sequential(
-            first,
-            nn.ReLU(),
-            _linear(network.second.weight, network.second.bias),
-            nn.ReLU(),
-            _linear(network.last.weight, network.last.bias),
-        )
+        first = linear(network.first, over=(mean, std), at=LATENT)
+        second, last = linear(network.second), linear(network.last)
+        self.head = nn.Sequential(first, nn.ReLU(), second, nn.ReLU(), last)
         given = problem.inputs(1)
         assert given.dynamics is not None
         assert given.wind_mps is not None

@@ -45,11 +45,6 @@ class FreeLattice:
         """Where the vehicle fits."""
         return self.distance_m >= COLLISION_RADIUS_M + MARGIN_M - 1e-9
 
-    @property
-    def connected(self) -> bool:
-        """Whether a way leads from start to goal."""
-        return self.path_length_m() < np.inf
-
     @cached_property
     def _graph(self) -> csr_array:
         """Steps between neighbouring free points with their lengths, one direction of each."""

@@ -13,6 +13,7 @@ from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
 WALL_M = 0.16  # thicker than the lattice spacing of the distance field
 MIN_GAP_M = 0.7  # between loose obstacles and to anything else [BARN, aerial_gym scale]
 _FLUSH_M = 1e-6
+_TRIES = 60  # places that a loose obstacle is tried at
 
 
 @dataclass(frozen=True)
@@ -167,25 +168,21 @@ class Layout:
         """Add a pillar from floor to ceiling."""
         self.solids.append(self._pillar(at, radius))
 
-    def scatter(self, count: int, x: Plan, y: Plan, *, tall: float = 0.7, tries: int = 60) -> int:
-        """Add loose obstacles that keep the gap rule; return how many found a place.
+    def scatter(self, count: int, x: Plan, y: Plan, *, tall: float = 0.7) -> None:
+        """Add loose obstacles that keep the gap rule; what finds no place is left out.
 
         Args:
             count: How many to add at most.
             x: Where their centres may be, along x.
             y: Where their centres may be, along y.
             tall: Part of them that reaches from floor to ceiling.
-            tries: Attempts for each.
         """
-        placed = 0
         for _ in range(count):
-            for _ in range(tries):
+            for _ in range(_TRIES):
                 thing = self._loose((self.within(*x), self.within(*y)), tall)
                 if self._fits(prism(thing)):
                     self.solids.append(thing)
-                    placed += 1
                     break
-        return placed
 
     def _loose(self, at: Plan, tall: float) -> Box | Cylinder:
         low, high = 0.0, self.size_m[2]
