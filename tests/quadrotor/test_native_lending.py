@@ -115,7 +115,7 @@ def test_a_cost_without_one_of_its_terms_is_refused() -> None:
     )
     terms = dict.fromkeys(costs.TERMS, 1.0)
     del terms["hit"]
-    with pytest.raises(ValueError, match="it takes goal, risk, hit"):
+    with pytest.raises(ValueError, match="it takes running, goal, risk, hit"):
         costs.cost(native.load(native.available()[0]), terms, paths)
 
 
