@@ -7,9 +7,9 @@ import torch
 
 from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Instant
-from faultpath.quadrotor.contact import Progress
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.modules.vehicle import Flying
+from faultpath.quadrotor.plant.contact import Progress
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.recorded import Flights, record
 from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
