@@ -18,8 +18,9 @@ from torch import Tensor
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.evidence.recording import blocks, recorded
-from faultpath.quadrotor.models import predictor
+from faultpath.quadrotor.models import Shelf, predictor
 from faultpath.quadrotor.plant import PlantState, TorchPlant
+from faultpath.quadrotor.platform import FIRST, Platform
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows
@@ -41,15 +42,18 @@ def main() -> int:
     with torch.inference_mode(), native.using(native.PORTABLE):
         found = {
             "windows": len(windows),
-            "predictor_cm": _median_cm(_predicted(windows)),
+            "predictor_cm": _median_cm(_predicted(windows, FIRST)),
+            "following_cm": _median_cm(
+                _predicted(windows, FIRST.model_copy(update={"follows_motors": True}))
+            ),
             "plant_cm": {str(n): _median_cm(_replayed(windows, n)) for n in INTERVALS},
         }
     (REFERENCE / "motor-state.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     return 0
 
 
-def _predicted(windows: Windows) -> Tensor:
-    model = predictor("true-parameter", None)
+def _predicted(windows: Windows, platform: Platform) -> Tensor:
+    model = predictor("true-parameter", None, shelf=Shelf(platform))
     return position_errors(model, windows, wind="zero")[-1]
 
 

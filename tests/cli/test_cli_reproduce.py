@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from cli_runs import faultpath as run_command
 
 import faultpath
 from faultpath.cli import report
@@ -113,3 +114,9 @@ def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
     page = (done.folder / "reproduction.html").read_text("utf-8")
     assert (done.record.trials, done.record.flown) == (0, None)
     assert all(shown.topology in page for shown in done.record.gallery)
+
+
+def test_an_unknown_platform_is_refused_before_anything_flies(tmp_path: Path) -> None:
+    ended = run_command("reproduce", "table-4", "--platform", "moon", "--out", tmp_path / "r")
+    assert "unknown platform 'moon'; choose one of first" in ended.refused()
+    assert not (tmp_path / "r").exists()

@@ -32,6 +32,9 @@ def command(
         int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
+    platform: Annotated[
+        str | None, typer.Option(help="Frozen platform to fly on; default the quadrotor's.")
+    ] = None,
     time_limit: TimeLimit = None,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and compare the results with it."""
@@ -45,6 +48,7 @@ def command(
         folder=out,
         workers=workers,
         device=device,
+        platform=platform,
         time_limit_s=time_limit,
         progress=Display(SafeConsole(), ("faultpath", *sys.argv[1:])),
     )

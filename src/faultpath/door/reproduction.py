@@ -18,6 +18,7 @@ def reproduce(
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
     device: str | None = None,
+    platform: str | None = None,
     time_limit_s: float | None = None,
     progress: bool | Display = True,
     name: str = "reproduction",
@@ -31,6 +32,7 @@ def reproduce(
         folder: Run folder; default `runs/<name>-<library>-<profile>-<code>`.
         workers: Worker processes, 0 for this process alone; default one per core, or per GPU.
         device: `cpu` (default) or `cuda`.
+        platform: The frozen platform to fly on; default the quadrotor's own.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As in `audit`.
         name: Of the run folder.
@@ -41,11 +43,13 @@ def reproduce(
     """
     given = dict(locals())
     named = (pages,) if isinstance(pages, str) else tuple(pages)
-    options = {} if device is None else {"device": device}
+    chosen = {"device": device, "platform": platform}
+    options = {option: value for option, value in chosen.items() if value is not None}
     asked = plan(named, profile, standing(library), options)
     place, other = Path(folder or ""), ""
     if folder is None:
         own = "" if library is None else f"-{Path(library).stem}"
+        own += "" if platform is None else f"-{platform}"
         place, other = asked.folder(f"{name}{own}-{asked.profile.name}")
     told = display(progress, "reproduce", given | {"pages": named, "name": None})
 
