@@ -11,7 +11,6 @@ from flights import HELD_OUT, STEPS, fault, fly
 from faultpath.errors import UserError
 from faultpath.quadrotor import models
 from faultpath.quadrotor.checkpoint import shipped_folder
-from faultpath.quadrotor.choices import PlatformName
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import PerceptionSettings
 from faultpath.quadrotor.planner import BlendedGoal, CostWeights, NavigationCost
@@ -23,6 +22,7 @@ from faultpath.quadrotor.platform import (
     SceneVehicles,
     name_of,
 )
+from faultpath.quadrotor.platform_name import PlatformName
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.collection import different, recipe

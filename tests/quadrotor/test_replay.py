@@ -6,13 +6,14 @@ import pytest
 import torch
 
 from faultpath.quadrotor.evidence.inputs import Subject
-from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
+from faultpath.quadrotor.models import PACKAGE, PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.modules import prediction
+from faultpath.quadrotor.platform import FIRST
 from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay
 from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.flight import FlightSettings, fly
+from faultpath.quadrotor.training.flight import fly
 from faultpath.quadrotor.training.playback import at_present
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.reconstruction_task import _calibration, _history
@@ -60,7 +61,7 @@ def windows() -> Windows:
     """As many windows of collected flights as fill whole vectors."""
     flown = FlightData.decode(
         "test",
-        encode_rows(range(16), flights := fly("wind", range(16), 0, FlightSettings())),
+        encode_rows(range(16), flights := fly("wind", range(16), 0, FIRST)),
         encode_episodes(range(16), flights),
     )
     found = cut(flown)
@@ -88,7 +89,7 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, told):
 
 @pytest.mark.parametrize("name", ["wm-a", "wm-u+dcc", "wm-a-wind", "true-parameter", "dki-drag"])
 def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
-    model = PREDICTORS[name].load(name, 0)
+    model = PREDICTORS[name].load(name, 0, PACKAGE)
     with torch.inference_mode():
         present = at_present(windows, model, None, {"wind": "true_wind"})
         played, inputs = present.positions(), told[-1]
@@ -101,7 +102,7 @@ def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
 
 @pytest.mark.parametrize("name", ["gru", "gru-withheld"])
 def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
-    model = RECONSTRUCTIONS[name].load(name, 0)
+    model = RECONSTRUCTIONS[name].load(name, 0, PACKAGE)
     with torch.inference_mode():
         played = at_present(windows, None, model, {"wind": "reconstructed_wind"}).wind()
         supplied = _calibration(windows) if model.network.calibrated else None

@@ -62,7 +62,7 @@ def train(request: TrainRequest) -> int:
     `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
     and data that cannot be collected.
     """
-    from faultpath.quadrotor.choices import PlatformName, platform_name
+    from faultpath.quadrotor.platform_name import PlatformName, platform_name
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.store import make_folder

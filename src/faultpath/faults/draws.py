@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr
 
 from faultpath.streams import generators
 
@@ -55,6 +54,8 @@ class Draws:
     def uniform(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return uniform numbers in [0, 1), `[B, *shape_per_scene]`."""
         if self.own is not None:
+            from scipy.special import ndtr  # only here: it takes longer to load than all else
+
             return ndtr(self.normal(shape_per_scene, step))
         return self._rows("uniform", shape_per_scene, step, lambda g: g.random(shape_per_scene))
 

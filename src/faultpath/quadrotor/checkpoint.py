@@ -13,7 +13,7 @@ from torch import Tensor, nn
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import ModelCard, read_card, stem
-from faultpath.quadrotor.choices import PlatformName
+from faultpath.quadrotor.platform_name import PlatformName
 from faultpath.store.atomic import write
 
 

@@ -8,23 +8,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.errors import UserError
+from faultpath.quadrotor.platform_name import PlatformName
 from faultpath.trials import Offered
-
-
-class PlatformName(StrEnum):
-    """Platforms that are frozen; `platform.PLATFORMS` says what each is."""
-
-    FIRST = "first"
-
-
-def platform_name(text: str) -> PlatformName:
-    """Return the frozen platform of that name; `UserError` where there is none."""
-    try:
-        return PlatformName(text)
-    except ValueError:
-        known = ", ".join(PlatformName)
-        raise UserError(f"there is no platform '{text}': choose from {known}.") from None
 
 
 class Wind(StrEnum):

@@ -12,10 +12,10 @@ from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from faultpath.quadrotor.choices import PlatformName
 from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.perception import PerceptionSettings, camera
 from faultpath.quadrotor.planner import CostWeights, SamplerSettings
+from faultpath.quadrotor.platform_name import PlatformName
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.vehicle import (
     NOMINAL_DRAG_KGPS,

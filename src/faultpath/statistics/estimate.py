@@ -75,6 +75,11 @@ class Estimate(FrozenResult):
             raise ValueError(f"interval [{self.low}, {self.high}] is upside down")
         return self
 
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """Return (low, high), or None without an interval."""
+        return None if self.low is None or self.high is None else (self.low, self.high)
+
 
 class PairedTest(NamedTuple):
     """A two-sided test of no difference."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
-from faultpath.quadrotor.choices import PlatformName
+from faultpath.quadrotor.platform_name import PlatformName
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.platform import Platform

@@ -1,0 +1,20 @@
+"""Names of platforms, apart from all that a platform is: listing models must not load it."""
+
+from enum import StrEnum
+
+from faultpath.errors import UserError
+
+
+class PlatformName(StrEnum):
+    """Platforms that are frozen; `platform.PLATFORMS` says what each is."""
+
+    FIRST = "first"
+
+
+def platform_name(text: str) -> PlatformName:
+    """Return the frozen platform of that name; `UserError` where there is none."""
+    try:
+        return PlatformName(text)
+    except ValueError:
+        known = ", ".join(PlatformName)
+        raise UserError(f"there is no platform '{text}': choose from {known}.") from None
