@@ -23,7 +23,8 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from platform_matched import CELLS, QUANTITIES, ZERO, Flyer, judged
+from platform_judged import judged
+from platform_matched import CELLS, QUANTITIES, ZERO, Flyer
 from platform_space import SPACE, STARTS, platform_of
 
 from faultpath.quadrotor import native

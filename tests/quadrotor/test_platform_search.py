@@ -55,34 +55,36 @@ def like_the_paper(matched: Any) -> dict[str, list[dict[str, Any]]]:
 
 
 def test_a_platform_like_the_paper_s_is_at_no_distance_and_departures_have_a_sign():
+    import platform_judged as judging
     import platform_matched as matched
 
     blocks = like_the_paper(matched)
-    found = matched.judged(blocks)
+    found = judging.judged(blocks)
     assert found["distance"] < 0.01  # 78.7 successes of a hundred are 79
     assert set(found["groups"]) == {"accuracy", "outcomes", "times", "calibration", "wind"}
     assert len(found["quantities"]) == len(matched.QUANTITIES)
     blocks["WM-A, e = +0.1"][0]["status"] = ["crash"] * 100
     blocks["DKI"][0]["time_s"] = [5.0] * 100
-    worse = matched.judged(blocks)
+    worse = judging.judged(blocks)
     assert worse["distance"] > found["distance"]
     assert worse["quantities"]["success, WM-A, e = +0.1"]["departure"] < -1
     assert worse["quantities"]["time, DKI"]["departure"] == pytest.approx(
-        np.log(5.0 / 4.25) / matched.TOLERANCE, abs=0.01
+        np.log(5.0 / 4.25) / judging.TOLERANCE, abs=0.01
     )
 
 
 def test_what_cannot_be_told_departs_by_the_cap_and_what_was_not_flown_is_left_out():
+    import platform_judged as judging
     import platform_matched as matched
 
     blocks = like_the_paper(matched)
     blocks["DKI"][0]["status"] = ["timeout"] * 100
     windless = {name: found for name, found in blocks.items() if "zero wind" not in name}
-    found = matched.judged(windless)
+    found = judging.judged(windless)
     assert found["quantities"]["time, DKI"] == {
         "value": None,
         "standard_error": None,
-        "departure": matched.CAP,
+        "departure": judging.CAP,
     }
     assert set(found["groups"]) == {"accuracy", "outcomes", "times", "calibration"}
 
