@@ -79,7 +79,7 @@ def test_correlated_uniform_numbers_stay_uniform() -> None:
 
 
 def test_a_fault_that_draws_nothing_has_no_loading() -> None:
-    with pytest.raises(ValueError, match="scale draws no errors; leave loading out"):
+    with pytest.raises(ValueError, match="scale takes no loading; leave it out"):
         Fault(channel="mass", intervention=Scale(factor=1.1), loading=0.5)
 
 

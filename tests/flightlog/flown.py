@@ -55,8 +55,16 @@ def write(path: Path, columns: dict[str, Any]) -> Path:
     return path
 
 
-def write_ulog(path: Path, columns: dict[str, Any], full_n: float = 30.0) -> Path:
-    """Write the three messages of PX4's ULog format that the shipped map reads."""
+def write_ulog(
+    path: Path,
+    columns: dict[str, Any],
+    full_n: float = 30.0,
+    quiet: dict[str, tuple[float, float]] | None = None,
+) -> Path:
+    """Write the three messages of PX4's ULog format that the shipped map reads.
+
+    `quiet` says from when to when a message is not sent, s.
+    """
     w, x, y, z = (columns[name] for name in ("qw", "qx", "qy", "qz"))
     v = np.stack([columns["vx"], -columns["vy"], -columns["vz"]], axis=1)
     messages = {
@@ -79,7 +87,10 @@ def write_ulog(path: Path, columns: dict[str, Any], full_n: float = 30.0) -> Pat
         out += put("A", struct.pack("<BH", 0, index) + name.encode())
     stamps = np.round(columns["t"] * 1e6).astype(np.uint64)
     for row, stamp in enumerate(stamps):
-        for index, (_, values) in enumerate(messages.values()):
+        for index, (name, (_, values)) in enumerate(messages.items()):
+            begins, ends = (quiet or {}).get(name, (0.0, 0.0))
+            if begins < columns["t"][row] < ends:
+                continue
             body = struct.pack("<HQ", index, int(stamp)) + values[row].astype("<f4").tobytes()
             out += put("D", body)
     path.write_bytes(out)

@@ -104,6 +104,16 @@ def test_a_gap_ends_a_stretch_and_the_rest_counts(tmp_path: Path) -> None:
     assert median(result, 0.0, 0.0) < 0.1
 
 
+def test_pauses_of_several_columns_that_overlap_are_one(tmp_path: Path) -> None:
+    """Inside the longest pause nothing counts, whatever other columns hold there."""
+    pytest.importorskip("pyulog")
+    quiet = {"vehicle_attitude": (20, 28), "vehicle_local_position": (21, 24)}
+    log = write_ulog(tmp_path / "flight.ulg", COLUMNS, quiet=quiet)
+    flight = read_flight(log, read_columns("px4").model_copy(update={"mass_kg": 1.5}))
+    assert flight.gaps == 1
+    assert not ((flight.time_s > 20.1) & (flight.time_s < 27.9)).any()
+
+
 @pytest.mark.parametrize("decided", ["less", "more", "not decided"])
 def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None:
     doubtful = known.model_copy(

@@ -81,7 +81,7 @@ class Watched(Results):
     def pairs(self, first: Cell, second: Cell, **named: object) -> Pairs:
         self.cells.extend((first, second))
         # Keywords are passed on as they come, so their types are those of the method itself.
-        return super().pairs(first, second, **named)  # type: ignore[arg-type]
+        return super().pairs(first, second, **named)
 
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
         self.cells.append(cell)

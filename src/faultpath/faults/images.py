@@ -12,12 +12,6 @@ from faultpath.arrays import Array, HostArray, copy, kept, namespace, place
 from faultpath.faults.base import Intervention, Memory, Moment
 
 
-def _no_image(shape: tuple[int, ...]) -> str | None:
-    if len(shape) >= 2:
-        return None
-    return f"it needs rows and columns, and the reading of one scene has the shape {list(shape)}"
-
-
 def _laid(mask: HostArray, reading: Array) -> Array:
     """Return `[B, H, W]` beside the reading, with an axis of length one for each that it lacks."""
     ones = (1,) * (reading.ndim - 3)
@@ -27,7 +21,9 @@ def _laid(mask: HostArray, reading: Array) -> Array:
 class _Image(Intervention):
     def misfit(self, shape: tuple[int, ...]) -> str | None:
         """Refuse a reading without rows and columns."""
-        return _no_image(shape)
+        if len(shape) >= 2:
+            return None
+        return f"it needs rows and columns, and the reading of one scene has shape {list(shape)}"
 
 
 class Occlusion(_Image):

@@ -1,6 +1,6 @@
 """A recorded flight on a grid of control intervals."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -75,12 +75,7 @@ def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]
     columns = list(series.values())
     begin = max(float(each.time_s[0]) for each in columns)
     end = min(float(each.time_s[-1]) for each in columns)
-    breaks: list[tuple[float, float]] = []
-    for each in columns:
-        steps = np.diff(each.time_s)
-        long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
-        breaks += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
-    breaks = sorted(set(breaks))
+    breaks = _pauses(columns)
     starts = [begin, *(after for _, after in breaks)]
     stops = [*(before for before, _ in breaks), end]
     grids = [
@@ -92,6 +87,22 @@ def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]
             "and whether the columns are of one flight"
         )
     return grids, len(breaks)
+
+
+def _pauses(columns: Iterable[Series]) -> list[tuple[float, float]]:
+    """Return when some column has no readings: ascending, with those that overlap as one."""
+    found: list[tuple[float, float]] = []
+    for each in columns:
+        steps = np.diff(each.time_s)
+        long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
+        found += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
+    merged: list[tuple[float, float]] = []
+    for before, after in sorted(found):
+        if merged and before < merged[-1][1]:
+            merged[-1] = merged[-1][0], max(merged[-1][1], after)
+        else:
+            merged.append((before, after))
+    return merged
 
 
 def _grid(start: float, stop: float) -> Floats:

@@ -69,6 +69,7 @@ def _numbers(path: Path, name: str, table: pa.Table) -> Floats:
 
 def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
     try:
+        # It ships no types.
         from pyulog import ULog  # pyright: ignore[reportMissingTypeStubs]
     except ImportError:
         raise UserError(
