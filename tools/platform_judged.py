@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from platform_matched import QUANTITIES, Quantity
+from platform_matched import Quantity
 
 from faultpath.streams import generator
 
@@ -16,21 +16,23 @@ PAPER_SCENES = 100
 RATE_TOLERANCE = 0.03
 TOLERANCE = 0.10
 """Of errors and times, relative."""
+ERROR_TOLERANCE_M = 0.01
+"""Of errors, beside it: what two discretisations of a motor may differ by in a second."""
 CAP = 5.0
 """Largest departure that counts: one quantity out of reach must not hide all others."""
 RESAMPLES = 400
 
 
-def judged(flown: Mapping[str, Sequence[dict[str, Any]]]) -> dict[str, Any]:
-    """Return every quantity with its standard error and departure, and the distance.
+def judged(
+    asked: Sequence[Quantity], flown: Mapping[str, Sequence[dict[str, Any]]]
+) -> dict[str, Any]:
+    """Return each quantity with its standard error and departure, and the distance.
 
-    `flown` has the blocks of each cell; quantities of cells that were not flown are left out. The
-    distance is the mean over groups of the mean squared departure in each. A departure is the
-    difference over the root of three squares: the standard error here, that of the paper, and the
-    tolerance; at most `CAP`. Errors and times differ by their logarithm. What cannot be told, as a
-    time without success, departs by `CAP`.
+    `flown` has the blocks of each cell. The distance is the mean over groups of the mean squared
+    departure in each. A departure is the difference over the root of three squares: the standard
+    error here, that of the paper, and the tolerance; at most `CAP`. Errors and times differ by
+    their logarithm. What cannot be told, as a time without success, departs by `CAP`.
     """
-    asked = [quantity for quantity in QUANTITIES if quantity.cell in flown]
     rows = [_judge(quantity, flown[quantity.cell]) for quantity in asked]
     groups: dict[str, list[float]] = {}
     for quantity, row in zip(asked, rows, strict=True):
@@ -81,7 +83,8 @@ def _median(asked: Quantity, groups: Sequence[Sequence[float]]) -> dict[str, Any
     ]
     error = float(np.std(draws))
     # The paper prints no error of its medians: it is taken to be as large as ours, relatively.
-    relative = (2 * (error / median) ** 2 + TOLERANCE**2) ** 0.5
+    least = ERROR_TOLERANCE_M / asked.target if asked.kind == "error" else 0.0
+    relative = (2 * (error / median) ** 2 + TOLERANCE**2 + least**2) ** 0.5
     return _row(median, error, float(np.log(median / asked.target)) / relative)
 
 

@@ -17,6 +17,8 @@ SPACE: dict[str, dict[str, Any]] = {
     "thrust_effort": {"low": 2.0, "high": 40.0, "log": True},
     "goal": {"low": 4.0, "high": 20.0, "log": True},
     "risk": {"low": 5.0, "high": 80.0, "log": True},
+    "rate_effort": {"low": 0.2, "high": 3.0, "log": True},
+    "temperature": {"low": 0.04, "high": 0.2, "log": True},
     "margin_m": {"low": 0.2, "high": 0.5, "step": 0.05},
     "drag_across_kgps": {"low": 0.3, "high": 0.8, "step": 0.1},
     "drag_along_kgps": {"low": 0.6, "high": 1.6, "step": 0.2},
@@ -39,6 +41,8 @@ STARTS: list[dict[str, Any]] = [
         "thrust_effort": 5.0,
         "goal": 10.0,
         "risk": 40.0,
+        "rate_effort": 0.5,
+        "temperature": 0.08,
         "margin_m": 0.35,
         "drag_across_kgps": 0.5,
         "drag_along_kgps": 1.2,
@@ -73,13 +77,13 @@ def platform_of(point: dict[str, Any]) -> Platform:
     means = tuple(round(strongest * share, 3) for share in _SHARES)
     # Winds of the pool keep their accelerations too.
     pool = (0.0, round(FIRST.winds.pool_mean_mps[1] * FIRST.drag_kgps[0] / across, 1))
-    weights = CostWeights(
-        **{name: point[name] for name in ("thrust_effort", "goal", "risk", "margin_m")}
-    )
+    weighed = ("thrust_effort", "rate_effort", "goal", "risk", "margin_m")
+    weights = CostWeights(**{name: point[name] for name in weighed})
     return FIRST.with_drag((across, across, along)).model_copy(
         update={
             "planner": PlannerSettings(
                 goal_running=point["goal_running"],
+                temperature=point["temperature"],
                 weights=weights,
                 running=weights.model_copy(update={"thrust_effort": 5.0}),
             ),
