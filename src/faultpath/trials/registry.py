@@ -31,7 +31,7 @@ BUILT_IN = {"quadrotor": "faultpath.quadrotor.factory:create"}
 MEASURERS = {"quadrotor": "faultpath.quadrotor.evidence:measure"}
 """What measures on recorded windows, by name of the system."""
 
-_EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco"}
+_EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco", "gymnasium": "gymnasium"}
 
 
 def load_system(spec: SystemSpec) -> System:

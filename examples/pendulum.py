@@ -1,0 +1,114 @@
+"""An inverted pendulum that nobody here wrote: Gymnasium's, on MuJoCo.
+
+Two modules need the gain of the cart's motor, newtons for a unit of command:
+
+    filter      a Kalman filter; it also estimates the force that nobody ordered, for which it has
+                to know which force was ordered: gain * command
+    regulator   command = (wanted force - estimated force) / gain
+
+Baseline `calibrated`: the filter uses the gain that was measured on this unit, as the regulator
+does. Repair `nominal`: the filter uses the data sheet's, so a bad calibration cannot mislead it.
+
+    faultpath audit examples/pendulum.py:create --baseline calibrated --repair nominal \
+        --fault motor_gain:scale=0.8
+"""
+
+import numpy as np
+from scipy.linalg import expm, solve_discrete_are
+
+from faultpath.loop import Module, Port
+from faultpath.systems import ComposedSystem, Parts
+from faultpath.systems.gymnasium import GymnasiumPlant
+
+DATA_SHEET_GAIN, DT_S = 100.0, 0.04  # N a unit of command; s a control step
+
+
+def model():
+    """Return state [cart, angle, their rates, unordered force] one step on, and what force adds."""
+    total, pole, centre, inertia, damping = 15.49, 5.02, 0.3, 0.64, 1.0
+    mass = [[total, pole * centre], [pole * centre, inertia]]
+    rates = np.linalg.solve(
+        mass, [[0, 0, -damping, 0, 1], [0, pole * 9.81 * centre, 0, -damping, 0]]
+    )
+    flow = np.zeros((6, 6))
+    flow[:2, 2:4], flow[2:4, :5], flow[2:4, 5] = np.eye(2), rates, rates[:, 4]
+    step = expm(flow * DT_S)
+    return step[:5, :5], step[:5, 5]
+
+
+A, B = model()
+SEEN = np.eye(2, 5)
+SPREAD = solve_discrete_are(A.T, SEEN.T, np.diag([1e-6, 1e-6, 1e-4, 1e-4, 4.0]), 1e-6 * np.eye(2))
+INNOVATION = SPREAD @ SEEN.T @ np.linalg.inv(SEEN @ SPREAD @ SEEN.T + 1e-6 * np.eye(2))
+COST = solve_discrete_are(A[:4, :4], B[:4, None], np.diag([20.0, 50.0, 1.0, 1.0]), [[1e-3]])
+FEEDBACK = B[:4] @ COST @ A[:4, :4] / (1e-3 + B[:4] @ COST @ B[:4])
+
+
+class Filter(Module):
+    name, writes = "filter", ("state",)
+    reads_past = frozenset({Port("command", "executed")})
+
+    def __init__(self, calibrated):
+        calibration = {Port("motor_gain", "model")} if calibrated else set()
+        self.reads = frozenset({Port("encoders", "innovation"), *calibration})
+
+    def step(self, inputs, memory):
+        seen = inputs["encoders", "innovation"]
+        gain = inputs.get(Port("motor_gain", "model"), DATA_SHEET_GAIN)
+        if memory is None:
+            memory = np.hstack([seen, np.zeros((len(seen), 3))])
+        force = gain * inputs["command", "executed"]
+        state = memory @ A.T + force[:, None] * B
+        state = state + (seen - state[:, :2]) @ INNOVATION.T
+        return {"state": state}, state
+
+
+class Regulator(Module):
+    name, writes = "regulator", ("command",)
+    reads = frozenset({Port("state", "feedback"), Port("motor_gain", "inverse")})
+
+    def before(self, batch):
+        return {"command": np.zeros(len(batch.scenes))}
+
+    def step(self, inputs, memory):
+        state = inputs["state", "feedback"]
+        force = -state[:, :4] @ FEEDBACK - state[:, 4]
+        return {"command": np.clip(force / inputs["motor_gain", "inverse"], -3.0, 3.0)}, memory
+
+
+def setup(env, rng):
+    """Give each scene its own motor, and a force that pulls at the cart."""
+    world = env.unwrapped
+    world.model.actuator_gear[0, 0] = gain = rng.uniform(80.0, 120.0)
+    world.data.qfrc_applied[0] = rng.uniform(-40.0, 40.0)
+    return {"motor_gain": gain}
+
+
+def in_place(flown):
+    """Say whether the pole stood to the end and the cart came to rest at the middle of its rail."""
+    return not flown.terminated and abs(flown["encoders"][-25:, 0].mean()) < 0.05
+
+
+def create():
+    plant = GymnasiumPlant(
+        "InvertedPendulum-v5",
+        observes={"encoders": slice(0, 2)},
+        action="command",
+        steps=200,
+        setup=setup,
+        succeeded=in_place,
+    )
+    return ComposedSystem(
+        "pendulum",
+        plant,
+        variants={
+            "calibrated": Parts("The filter uses the calibration.", [Filter(True), Regulator()]),
+            "nominal": Parts("The filter uses the data sheet.", [Filter(False), Regulator()]),
+        },
+        units={
+            "encoders": "m, rad",
+            "motor_gain": "N",
+            "state": "m, rad, m/s, rad/s, N",
+            "command": "1",
+        },
+    )

@@ -1,0 +1,227 @@
+"""A system composed of a plant of episodes and modules; all that can be seen is not declared."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from hashlib import sha256
+from typing import Any, cast
+
+import numpy as np
+from pydantic import ValidationError
+from typing_extensions import override
+
+from faultpath.errors import SystemMistake, UserError
+from faultpath.interface import Interface
+from faultpath.loop import Batch, Loop, Module, Part, graph
+from faultpath.systems.episodes import SCENE, EpisodePlant, scene
+from faultpath.taps import Reading
+from faultpath.text import unknown
+from faultpath.trials import Library, LoopSystem, Wiring
+
+SCENES: Mapping[str, Sequence[int]] = {"training": range(100), "held-out": range(1000, 1100)}
+"""The seeds of the libraries that a system has unless it says otherwise."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A variant: its modules, in any order, or a function of the arm's seed that returns them.
+
+    The function is for trained modules; with `None` only their ports and shapes are looked at.
+    """
+
+    description: str
+    modules: Sequence[Module] | Callable[[int | None], Sequence[Module]]
+
+    def of(self, seed: int | None) -> Sequence[Module]:
+        """Return the modules of an arm."""
+        return self.modules(seed) if callable(self.modules) else self.modules
+
+
+class ComposedSystem(LoopSystem):
+    """A system of a plant and modules whose interface is what runs.
+
+    Consumers follow from the modules' ports, shapes from the first step of each variant.
+    A source of the plant is measured, what a scene's set-up tells is an estimate of it (its channel
+    has a fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
+
+    Args:
+        name: Of the system.
+        plant: What senses and is moved.
+        variants: The ways to wire it.
+        units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
+            more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group.
+        channels: Those that several sources may feed, with these sources; every other source is a
+            channel of its own. In a variant the first that one of its modules writes feeds it, else
+            the first that the plant gives.
+        scenes: Seeds of the scenes of each library.
+
+    Raises:
+        SystemMistake: The parts do not fit together, or a source has no unit.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        plant: EpisodePlant,
+        variants: Mapping[str, Parts],
+        units: Mapping[str, str | Mapping[str, Any]],
+        channels: Mapping[str, Sequence[str]] | None = None,
+        scenes: Mapping[str, Sequence[int]] = SCENES,
+    ) -> None:
+        self.name, self.control_dt_s = name, plant.dt_s
+        self._plant, self._parts, self._scenes = plant, dict(variants), dict(scenes)
+        self._facts = _Facts(name, plant, self._parts, units, dict(channels or {}))
+        self._wirings = {
+            key: Wiring(parts.description, self._facts.bindings(parts.of(None)))
+            for key, parts in self._parts.items()
+        }
+        self._interface = self._facts.interface(plant.shapes)
+        self._interface = self._facts.interface(plant.shapes | self._shapes())
+
+    @property
+    @override
+    def interface(self) -> Interface:
+        return self._interface
+
+    @property
+    @override
+    def wirings(self) -> Mapping[str, Wiring]:
+        return self._wirings
+
+    @override
+    def plant(self) -> EpisodePlant:
+        return self._plant
+
+    @override
+    def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
+        return self._parts[variant].of(seed)
+
+    @override
+    def library(self, name: str) -> Library:
+        if name not in self._scenes:
+            raise UserError(f"{self.name}: {unknown('library', name, self._scenes)}")
+        seeds = [int(seed) for seed in self._scenes[name]]
+        content = sha256(f"{self._plant.identity()}{seeds}".encode()).hexdigest()[:16]
+        return Library(name, tuple(map(scene, seeds)), content)
+
+    @override
+    def fingerprint(self) -> str:
+        return self._plant.identity()
+
+    @property
+    @override
+    def parts(self) -> Sequence[str]:
+        return self._plant.code()
+
+    def _shapes(self) -> dict[str, tuple[int, ...]]:
+        """Return the shape of one scene's reading of each source that somebody reads."""
+        seen = _Shapes()
+        for name in self._parts:
+            made = graph(
+                self._interface, self._plant, self.modules(name, None), self.wirings[name].bindings
+            )
+            batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
+            first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
+            first.state.worlds.close()
+        return seen.shapes
+
+
+@dataclass
+class _Shapes:
+    """Stands in for the taps during a first step, and takes down the shapes that pass."""
+
+    shapes: dict[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
+
+    def set_active(self, mask: Any) -> None:
+        del mask
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+        del channel, consumer, step
+        if hasattr(reading.value, "shape"):
+            self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
+        return reading.value
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What is known of the sources before anything runs."""
+
+    name: str
+    plant: EpisodePlant
+    variants: Mapping[str, Parts]
+    units: Mapping[str, str | Mapping[str, Any]]
+    several: Mapping[str, Sequence[str]]
+
+    @property
+    def modules(self) -> list[Module]:
+        return [each for parts in self.variants.values() for each in parts.of(None)]
+
+    def bindings(self, modules: Iterable[Module]) -> dict[str, str]:
+        """Return what feeds the channels of several sources in a variant."""
+        written = [name for module in modules for name in module.writes]
+        given = (*written, *self.plant.senses)
+        return {
+            channel: next((name for name in given if name in sources), sources[0])
+            for channel, sources in self.several.items()
+        }
+
+    def interface(self, shapes: Mapping[str, tuple[int, ...]]) -> Interface:
+        """Return the interface; what no shape is known of counts as a number."""
+        readers = self._readers()
+        commanded = self.several.get(self.plant.action, (self.plant.action,))
+        made: dict[str, dict[str, None]] = {}
+        for module in self.modules:
+            written = (name for name in module.writes if name not in commanded)
+            made.setdefault(module.name, {}).update(dict.fromkeys(written))
+        read = (name for c in readers for name in self.several.get(c, (c,)))
+        written = (name for module in self.modules for name in module.writes)
+        sources = dict.fromkeys((*self.plant.senses, *written, *read))
+        declared = {name: self._source(name, shapes, commanded) for name in sources}
+        feeds = {c: declared[self.several.get(c, (c,))[0]]["provenance"] for c in readers}
+        content = {
+            "name": self.name,
+            "sources": list(declared.values()),
+            "channels": [
+                {
+                    "name": channel,
+                    "sources": list(self.several.get(channel, (channel,))),
+                    "consumers": list(consumers),
+                    "gap": "fidelity" if feeds[channel] == "estimated" else "none",
+                }
+                for channel, consumers in readers.items()
+            ],
+            "reconstructs": {module: list(names) for module, names in made.items() if names},
+        }
+        try:
+            return Interface.model_validate(content)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            where = ".".join(map(str, first["loc"]))
+            raise SystemMistake(f"system '{self.name}': {where} {first['msg']}") from None
+
+    def _readers(self) -> dict[str, dict[str, None]]:
+        """Return who reads each channel, in the order of the parts."""
+        found: dict[str, dict[str, None]] = {}
+        parts: list[Part] = [*self.modules, self.plant]
+        for part in parts:
+            for port in sorted(part.ports):
+                found.setdefault(port.channel, {})[f"{part.name}.{port.place}"] = None
+        return found
+
+    def _source(
+        self, name: str, shapes: Mapping[str, tuple[int, ...]], commanded: Sequence[str]
+    ) -> dict[str, Any]:
+        if name not in self.units:
+            raise SystemMistake(
+                f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for a "
+                "number without one"
+            )
+        given = self.units[name]
+        facts = {"unit": given} if isinstance(given, str) else dict(given)
+        known = dict.fromkeys(self.plant.senses, "measured")
+        known |= dict.fromkeys(self.plant.told, "estimated") | dict.fromkeys(commanded, "commanded")
+        return {
+            "name": name,
+            "shape": shapes.get(name, ()),
+            "provenance": known.get(name, "reconstructed"),
+            **facts,
+        }

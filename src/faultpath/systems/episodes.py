@@ -1,0 +1,272 @@
+"""A plant of episodes: each scene runs until it ends, and stays as it ended."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import Any, cast
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.arrays import HostArray, to_numpy
+from faultpath.errors import SystemMistake
+from faultpath.loop import Batch, Inputs, Plant, Port, Progress
+from faultpath.text import unknown
+from faultpath.trials import SceneRef
+
+SCENE = "seed/"
+"""A scene is the seed of its reset."""
+
+
+def scene(seed: int) -> SceneRef:
+    """Return the scene whose reset has this seed."""
+    return SceneRef(f"{SCENE}{seed}", seed)
+
+
+def seed_of(name: str) -> int:
+    """Return the seed of a scene's reset; `SystemMistake` for a scene that is not of `scene`."""
+    digits = name.removeprefix(SCENE)
+    if digits == name or not digits.isdecimal():
+        raise SystemMistake(f"scene '{name}' names no seed: such scenes are called {SCENE}7")
+    return int(digits)
+
+
+@dataclass(frozen=True)
+class Episode:
+    """One finished trial, as rules on success see it.
+
+    `episode["angle"]` is what the source `angle` held: at the start and after each step,
+    `[T + 1, ...]`. Of a source with more than one axis, such as an image, only the last is kept,
+    `[1, ...]`.
+    """
+
+    signals: Mapping[str, HostArray]
+    rewards: HostArray
+    """`[T]`; zeros where there are none."""
+    terminated: bool
+    """Whether the environment ended it, for good or bad; else its time was up."""
+    info: Mapping[str, Any]
+    """What the environment said at its last step."""
+    dt_s: float
+
+    def __getitem__(self, source: str) -> HostArray:
+        """Return what a source held; `SystemMistake` for an unknown one."""
+        if source not in self.signals:
+            raise SystemMistake(f"an episode: {unknown('source', source, self.signals)}")
+        return self.signals[source]
+
+    @property
+    def returned(self) -> float:
+        """The sum of its rewards."""
+        return float(self.rewards.sum())
+
+
+@dataclass(frozen=True)
+class Stepped:
+    """What a step did in each scene; rows of scenes that no longer run mean nothing."""
+
+    observation: Any
+    """An array `[B, ...]`, or a mapping or tuple of such."""
+    rewards: HostArray
+    terminated: HostArray
+    truncated: HostArray
+    info: Callable[[int], Mapping[str, Any]]
+    """Of one scene, by its place in the batch."""
+
+
+class Worlds(ABC):
+    """The scenes of a batch, side by side; made for one batch and thrown away with it."""
+
+    observation: Any
+    """At the start, as in `Stepped`."""
+    told: Mapping[str, HostArray]
+    """What the set-up of each scene says of it, `[B, ...]` by source."""
+    initial: Sequence[str]
+    """A hash of each scene's initial state."""
+    disturbances: Sequence[str]
+    """A hash of what its set-up did."""
+
+    @abstractmethod
+    def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
+        """Move the scenes that run by one step. Nothing else of the others may be looked at."""
+
+    def close(self) -> None:
+        """Free what the worlds hold."""
+        return
+
+
+Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
+"""Where in the observation a source stands: a key, an index or slice, several in turn, or a
+function of the batch's observation that returns an array `[B, ...]`."""
+
+
+def look(observation: Any, at: Look) -> HostArray:
+    """Return a part of a batch's observation, `[B, ...]`."""
+    if callable(at):
+        return np.array(at(observation))
+    for each in at if isinstance(at, tuple) else (at,):
+        observation = observation[each] if isinstance(each, str) else observation[:, each]
+    return np.array(observation)
+
+
+@dataclass
+class _Flown:
+    """A batch under way."""
+
+    worlds: Worlds
+    sensed: dict[str, HostArray]
+    running: HostArray
+    succeeded: HostArray
+    crashed: HostArray
+    steps: HostArray
+    """Those that each scene has made."""
+    log: dict[str, list[HostArray]]
+    rewards: list[HostArray]
+
+
+class EpisodePlant(Plant):
+    """A plant whose scenes end by themselves, each in its own time.
+
+    A scene that has ended is frozen: it is not moved any more, and what it senses stays what it
+    was at its end. It counts as a success where `succeeded` says so of its episode; else as a crash
+    where the environment ended it, and as a timeout where its time was up.
+
+    Raises `SystemMistake` for a source that the observation does not hold.
+    """
+
+    name = "plant"
+
+    def __init__(
+        self,
+        *,
+        observes: Mapping[str, Look],
+        action: str,
+        steps: int,
+        dt_s: float,
+        succeeded: Callable[[Episode], bool],
+    ) -> None:
+        self.dt_s, self.steps = dt_s, steps
+        self.reads = frozenset({Port(action, "actuator")})
+        self.action = action
+        self._observes, self._succeeded = dict(observes), succeeded
+        probed = self.worlds(Batch((f"{SCENE}0",), 0, dt_s))
+        self.told = tuple(probed.told)
+        self.senses = (*self._observes, *self.told)
+        self.shapes = {name: np.shape(v)[1:] for name, v in self._sensed(probed).items()}
+        probed.close()
+
+    @abstractmethod
+    def worlds(self, batch: Batch) -> Worlds:
+        """Return the scenes of a batch at their start."""
+
+    def identity(self) -> str:
+        """Return what decides a flight and stands in no file that the system imports."""
+        return ""
+
+    def code(self) -> Sequence[str]:
+        """Return classes, as `module:name`, whose code decides a flight and is not imported."""
+        return ()
+
+    def _sensed(self, worlds: Worlds, observation: Any = None) -> dict[str, HostArray]:
+        seen = worlds.observation if observation is None else observation
+        try:
+            return {n: look(seen, at) for n, at in self._observes.items()} | dict(worlds.told)
+        except (LookupError, TypeError) as error:
+            kind = type(seen).__name__ if not hasattr(seen, "shape") else list(seen.shape[1:])
+            raise SystemMistake(
+                f"observes: the observation ({kind}) holds no such part ({error}): give a key, an "
+                "index or a slice of it"
+            ) from error
+
+    @override
+    def start(self, batch: Batch) -> _Flown:
+        worlds, n = self.worlds(batch), len(batch.scenes)
+        sensed = self._sensed(worlds)
+        no = np.zeros((3, n), bool)
+        log = {name: [value] for name, value in sensed.items()}
+        return _Flown(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), log, [])
+
+    @override
+    def sense(self, state: _Flown) -> dict[str, HostArray]:
+        return state.sensed
+
+    @override
+    def advance(self, state: _Flown, inputs: Inputs) -> _Flown:
+        """Move what runs, freeze what does not, and judge what ends."""
+        now, was = state, state.running
+        action = to_numpy(inputs[self.action, "actuator"])
+        done = now.worlds.step(action, was, inputs.step)
+        fresh = self._sensed(now.worlds, done.observation)
+        now.sensed = {name: _where(was, fresh[name], old) for name, old in now.sensed.items()}
+        for name, value in now.sensed.items():
+            if value.ndim > 2:
+                now.log[name].clear()
+            now.log[name].append(value)
+        now.rewards.append(np.where(was, done.rewards, 0.0))
+        now.steps = now.steps + was
+        terminated = was & np.asarray(done.terminated, bool)
+        ended = was & (terminated | np.asarray(done.truncated, bool) | (now.steps == self.steps))
+        succeeded, crashed = now.succeeded.copy(), now.crashed.copy()
+        for i in map(int, np.flatnonzero(ended)):
+            succeeded[i] = self._judged(now, i, bool(terminated[i]), done.info(i))
+            crashed[i] = terminated[i] and not succeeded[i]
+        now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
+        if not now.running.any():
+            now.worlds.close()
+        return now
+
+    def _judged(self, now: _Flown, i: int, terminated: bool, info: Mapping[str, Any]) -> bool:
+        signals = {name: np.stack([each[i] for each in log]) for name, log in now.log.items()}
+        rewards = np.array([each[i] for each in now.rewards])
+        said: Any = self._succeeded(Episode(signals, rewards, terminated, info, self.dt_s))
+        if type(said) not in (bool, np.bool_):
+            raise SystemMistake(
+                f"`succeeded` returned {said!r:.80} of an episode: it must return true or false"
+            )
+        return bool(said)
+
+    @override
+    def progress(self, state: _Flown) -> Progress:
+        time_s = state.steps * self.dt_s
+        return Progress(state.running, state.succeeded, state.crashed, time_s)
+
+    @override
+    def conditions(self, state: _Flown) -> tuple[Sequence[str], Sequence[str]]:
+        return state.worlds.initial, state.worlds.disturbances
+
+
+def stacked(rows: Sequence[Any]) -> Any:
+    """Return observations of single scenes as that of a batch."""
+    first = rows[0]
+    if isinstance(first, Mapping):
+        return {
+            key: stacked([row[key] for row in rows]) for key in cast("Mapping[Any, Any]", first)
+        }
+    if isinstance(first, tuple):
+        return tuple(stacked(each) for each in zip(*rows, strict=True))
+    return np.stack(rows)
+
+
+def hashed(*parts: Any) -> str:
+    """Return a hash of arrays, numbers and what holds such, exact to the bit."""
+    return sha256("\n".join(map(_exact, parts)).encode()).hexdigest()
+
+
+def _exact(part: Any) -> str:
+    if isinstance(part, Mapping):
+        items = cast("Mapping[Any, Any]", part).items()
+        return str({str(key): _exact(value) for key, value in items})
+    if isinstance(part, tuple | list):
+        return str([_exact(each) for each in cast("Sequence[Any]", part)])
+    if isinstance(part, np.ndarray | np.generic):
+        array = cast("HostArray", part)
+        return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
+    return repr(part)
+
+
+def _where(running: HostArray, fresh: HostArray, old: HostArray) -> HostArray:
+    """Return the fresh rows of scenes that run, and the old ones of the others."""
+    if running.all():
+        return fresh
+    return np.where(running.reshape(-1, *[1] * (fresh.ndim - 1)), fresh, old)

@@ -1,0 +1,90 @@
+"""Plain functions as the plant of a system: one that starts a scene, one that makes a step."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.arrays import HostArray
+from faultpath.loop import Batch
+from faultpath.streams import generator
+from faultpath.systems.episodes import (
+    Episode,
+    EpisodePlant,
+    Look,
+    Stepped,
+    Worlds,
+    hashed,
+    stacked,
+)
+
+
+class FunctionPlant(EpisodePlant):
+    """A plant of two functions of one scene.
+
+    Args:
+        start: `start(rng)` returns the state at the start of a scene: an array, or numbers and
+            arrays by name. Whatever makes one scene another is drawn from `rng`.
+        step: `step(state, action, rng)` returns the state one control step later. What it draws
+            is another for each step and seed, and the same in every arm.
+        observes: Source to its part of the state: a name, an index, a slice, several of them in
+            turn, or a function of the batch's state.
+        action: Channel from which the plant is moved, at the place `actuator`.
+        steps: Control steps of an episode.
+        dt_s: Length of a control step, s.
+        succeeded: Says of each finished episode whether it was a success.
+        over: `over(state)` says whether the scene ends before its time; without it none does.
+    """
+
+    def __init__(
+        self,
+        start: Callable[[np.random.Generator], Any],
+        step: Callable[[Any, HostArray, np.random.Generator], Any],
+        *,
+        observes: Mapping[str, Look],
+        action: str,
+        steps: int,
+        dt_s: float,
+        succeeded: Callable[[Episode], bool],
+        over: Callable[[Any], bool] | None = None,
+    ) -> None:
+        self._start, self._step, self._over = start, step, over
+        super().__init__(
+            observes=observes, action=action, steps=steps, dt_s=dt_s, succeeded=succeeded
+        )
+
+    @override
+    def worlds(self, batch: Batch) -> Worlds:
+        return _FunctionWorlds(batch, self._start, self._step, self._over)
+
+
+class _FunctionWorlds(Worlds):
+    def __init__(
+        self,
+        batch: Batch,
+        start: Callable[[np.random.Generator], Any],
+        step: Callable[[Any, HostArray, np.random.Generator], Any],
+        over: Callable[[Any], bool] | None,
+    ) -> None:
+        self._batch, self._step, self._over = batch, step, over
+        self._states = [start(generator("plant/start", name, 0)) for name in batch.scenes]
+        self.observation, self.told = stacked(self._states), {}
+        self.initial = [hashed(state) for state in self._states]
+        # What a step draws is addressed by scene and seed, so this is all that decides it.
+        self.disturbances = [hashed(name, batch.seed) for name in batch.scenes]
+
+    @override
+    def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
+        terminated = np.zeros(len(running), bool)
+        for i in np.flatnonzero(running):
+            rng = generator("plant/step", self._batch.scenes[i], self._batch.seed, step)
+            self._states[i] = self._step(self._states[i], action[i], rng)
+            terminated[i] = self._over is not None and self._over(self._states[i])
+        no = np.zeros(len(running), bool)
+        return Stepped(stacked(self._states), np.zeros(len(running)), terminated, no, _silent)
+
+
+def _silent(scene: int) -> Mapping[str, Any]:
+    del scene
+    return {}

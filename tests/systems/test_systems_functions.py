@@ -1,0 +1,143 @@
+"""Plain functions as a plant: a scene is what `start` draws, a step is what `step` does."""
+
+import numpy as np
+import pytest
+from gym_toys import SCENES, Steer, fly
+
+import faultpath
+from faultpath.errors import SystemMistake
+from faultpath.loop import Port
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.trials import Status
+
+SYSTEM = """
+from faultpath.loop import Module, Port
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+
+class Brake(Module):
+    name, writes = "brake", ("push",)
+
+    def __init__(self, known):
+        more = {Port("gain", "model")} if known else set()
+        self.reads = frozenset({Port("place", "feedback"), *more})
+
+    def step(self, inputs, memory):
+        gain = inputs.get(Port("gain", "model"), 1.0)
+        return {"push": -0.5 * inputs["place", "feedback"] / gain}, memory
+
+def start(rng):
+    return {"place": rng.uniform(1, 2), "gain": rng.uniform(0.5, 1.5)}
+
+def step(state, push, rng):
+    return state | {"place": state["place"] + state["gain"] * push + rng.normal(scale=0.01)}
+
+def create():
+    plant = FunctionPlant(start, step, observes={"place": "place", "gain": "gain"}, action="push",
+        steps=12, dt_s=0.1, succeeded=lambda episode: abs(episode["place"][-1]) < 0.05)
+    variants = {"known": Parts("", [Brake(True)]), "typical": Parts("", [Brake(False)])}
+    units = {"place": "m", "gain": {"unit": "1", "provenance": "estimated"}, "push": "m"}
+    return ComposedSystem("cart", plant, variants, units)
+"""
+
+
+def start(rng):
+    return {"at": rng.uniform(-1, 1), "clock": 0}
+
+
+def step(state, push, rng):
+    at = state["at"] + float(push) + rng.normal(scale=0.05)
+    return {"at": at, "clock": state["clock"] + 1}
+
+
+def cart(**given):
+    episodes = []
+
+    def note(episode):
+        episodes.append(episode)
+        return not episode.terminated
+
+    more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | given
+    plant = FunctionPlant(
+        start,
+        step,
+        observes={"place": "at", "clock": "clock"},
+        action="push",
+        steps=6,
+        dt_s=0.5,
+        **more,
+    )
+    units = {"place": "m", "push": "m", "clock": "1"}
+    built = ComposedSystem("cart", plant, {"only": Parts("One.", [Steer()])}, units)
+    episodes.clear()
+    return built, episodes
+
+
+def test_a_scene_ends_where_over_says_so_and_is_frozen():
+    built, episodes = cart()
+    outcomes = fly(built)
+    assert {o.status for o in outcomes} == {Status.SUCCESS, Status.CRASH}
+    assert sorted(len(e.rewards) * 0.5 for e in episodes) == sorted(o.time_s for o in outcomes)
+    assert all(list(e["clock"]) == list(range(len(e.rewards) + 1)) for e in episodes)
+    for episode in episodes:
+        beyond = np.abs(episode["place"]) > 1.5
+        assert not beyond[:-1].any()
+        assert beyond[-1] == episode.terminated
+
+
+def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_flies_beside():
+    built, _ = cart()
+    by_scene = {o.scene: o for o in fly(built)}
+    mixed = [SCENES[i] for i in (3, 1)]
+    assert fly(built, mixed) == [by_scene[scene] for scene in mixed]
+    other = fly(built, mixed, seed=1)
+    assert [o.initial_hash for o in other] == [by_scene[s].initial_hash for s in mixed]
+    assert all(o.disturbance_hash != by_scene[o.scene].disturbance_hash for o in other)
+
+
+def test_an_array_as_state():
+    plant = FunctionPlant(
+        lambda rng: rng.uniform(size=2),
+        lambda state, push, rng: state + push,
+        observes={"place": 0, "both": slice(0, 2)},
+        action="push",
+        steps=3,
+        dt_s=0.1,
+        succeeded=lambda episode: episode["both"].shape == (4, 2),
+    )
+    units = {"place": "m", "both": "m", "push": "m"}
+    built = ComposedSystem("array", plant, {"only": Parts("", [Steer()])}, units)
+    assert {o.status for o in fly(built)} == {Status.SUCCESS}
+    assert built.interface.source("both").shape == (2,)
+
+
+def test_a_module_that_reads_the_past_says_what_was_before():
+    class Late(Steer):
+        reads_past = frozenset({Port("push", "executed")})
+
+    built, _ = cart()
+    with pytest.raises(SystemMistake, match="before the first step"):
+        ComposedSystem(
+            "late",
+            built.plant(),
+            {"only": Parts("", [Late()])},
+            {"place": "m", "push": "m", "clock": "1"},
+        )
+
+
+def test_a_system_of_functions_is_audited(tmp_path):
+    (tmp_path / "cart.py").write_text(SYSTEM)
+    run = faultpath.audit(
+        tmp_path / "cart.py",
+        baseline="typical",
+        repair="known",
+        fault="gain:scale=0.2",
+        scenes=30,
+        workers=0,
+        folder=tmp_path / "run",
+        progress=False,
+    )
+    assert run.record.findings == ()
+    assert [path.name for path in run.record.paths] == ["correct", "brake"]
+    effects = {effect.path: effect.success.value for effect in run.record.effects}
+    assert effects["correct"] > 0
+    assert effects["brake"] < 0

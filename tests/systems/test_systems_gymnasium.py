@@ -1,0 +1,290 @@
+"""Gymnasium's environments as plants: ends of episodes, scenes, what follows from what runs."""
+
+import sys
+from functools import partial
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
+from gymnasium.vector import AutoresetMode, SyncVectorEnv
+
+import faultpath
+from faultpath.errors import SystemMistake, UserError
+from faultpath.faults import Fault, Offset
+from faultpath.loop import Module, Port
+from faultpath.systems import ComposedSystem, Parts
+from faultpath.trials import Status, SystemSpec, load_system
+from faultpath.trials.state import system_code
+
+PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
+
+
+class Choose(Module):
+    """Goes left or right; its readings have two axes of their own."""
+
+    name, writes = "choose", ("push",)
+    reads = frozenset({Port("place", "feedback"), Port("eye", "look")})
+
+    def step(self, inputs, memory):
+        return {"push": (inputs["place", "feedback"] < 0).astype(int)}, memory
+
+
+def vector(count, mode=AutoresetMode.NEXT_STEP, copy=True):
+    return SyncVectorEnv([Walk] * count, autoreset_mode=mode, copy=copy)
+
+
+def told(outcomes):
+    return [(o.scene, o.status, o.time_s, o.initial_hash) for o in outcomes]
+
+
+@pytest.mark.parametrize("mode", AutoresetMode)
+@pytest.mark.parametrize("copy", [True, False])
+def test_each_mode_of_autoreset_ends_the_same_episodes_in_the_same_way(mode, copy):
+    alone = fly(system(plant()))
+    assert {o.status for o in alone} == {Status.SUCCESS, Status.CRASH}
+    assert len({o.time_s for o in alone}) > 2
+    assert told(fly(system(plant(vector=partial(vector, mode=mode, copy=copy))))) == told(alone)
+
+
+@pytest.mark.parametrize("mode", AutoresetMode)
+def test_a_finished_episode_is_frozen_as_it_ended(mode):
+    episodes = []
+
+    def note(episode):
+        episodes.append(episode)
+        return True
+
+    seen = {"observes": {"place": 0, "clock": 1}, "succeeded": note}
+    units = {"units": {"clock": "1"}}
+
+    class Watch(Steer):
+        reads = frozenset({Port("place", "feedback"), Port("clock", "watch")})
+        clocks = []  # noqa: RUF012 - one list for the one batch that is watched
+
+        def step(self, inputs, memory):
+            self.clocks.append(inputs["clock", "watch"].copy())
+            return super().step(inputs, memory)
+
+    built = system(plant(vector=partial(vector, mode=mode), **seen), [Watch()], **units)
+    Watch.clocks.clear()
+    ends = [round(o.time_s / 0.5) for o in fly(built)]
+    assert sorted(len(e.rewards) for e in episodes) == sorted(ends)
+    assert all(list(e["clock"]) == list(range(len(e.rewards) + 1)) for e in episodes)
+    assert all(e.returned == -abs(e["place"][1:]).sum() for e in episodes)
+    clocks = np.array(Watch.clocks)
+    assert [list(column) for column in clocks.T] == [
+        [min(step, end) for step in range(len(clocks))] for end in ends
+    ]
+
+
+def test_an_environment_of_its_own_is_never_moved_beyond_its_end():
+    made = []
+
+    def make():
+        made.append(Walk())
+        return made[-1]
+
+    built = system(plant(make))
+    made.clear()
+    ends = [round(o.time_s / 0.5) for o in fly(built)]
+    assert [each.calls for each in made] == [["reset", *["step"] * end] for end in ends]
+
+
+def test_a_scene_does_not_depend_on_the_scenes_beside_it():
+    built, mixed = system(plant()), [SCENES[i] for i in (4, 0, 3)]
+    by_scene = {o.scene: o for o in fly(built)}
+    assert fly(built, mixed) == [by_scene[scene] for scene in mixed]
+
+
+def test_time_is_up_at_the_steps_that_were_asked_for():
+    outcomes = fly(system(plant(steps=2, succeeded=lambda episode: False)))
+    assert {(o.status, o.time_s) for o in outcomes} == {(Status.TIMEOUT, 1.0)}
+
+
+def test_what_runs_is_the_interface():
+    def setup(env, rng):
+        env.unwrapped.slope = rng.uniform(-0.1, 0.1)
+        return {"slope": env.unwrapped.slope}
+
+    class Knowing(Steer):
+        reads = frozenset({Port("place", "feedback"), Port("slope", "model")})
+
+    built = system(plant(setup=setup, observes={"place": slice(0, 1)}), [Knowing()])
+    found = {s.name: (s.shape, s.unit, s.provenance.value) for s in built.interface.sources}
+    assert found == {
+        "place": ((1,), "m", "measured"),
+        "push": ((1,), "m", "commanded"),
+        "slope": ((), "m", "estimated"),
+    }
+    assert built.interface.channel("slope").gap == "fidelity"
+    assert built.variants["only"].consumers == {"steer.feedback", "steer.model", "plant.actuator"}
+
+
+def test_scenes_set_up_in_another_way_are_no_pair():
+    def setup(width, env, rng):
+        env.unwrapped.slope = rng.uniform(-width, width)
+
+    def disturbances(width):
+        return [o.disturbance_hash for o in fly(system(plant(setup=partial(setup, width))))]
+
+    def drawn_twice(env, rng):
+        setup(0.1, env, rng)
+        rng.uniform()
+
+    assert disturbances(0.1) == disturbances(0.1)
+    assert len(set(disturbances(0.1))) == len(SCENES)
+    twice = [o.disturbance_hash for o in fly(system(plant(setup=drawn_twice)))]
+    assert not set(twice) & set(disturbances(0.1))
+
+
+def test_what_the_setup_returns_is_hashed_too():
+    def disturbances(size):
+        built = system(plant(setup=lambda env, rng: {"slope": size}))
+        return {o.disturbance_hash for o in fly(built)}
+
+    assert not disturbances(0.1) & disturbances(0.2)
+
+
+def test_keys_images_and_choices():
+    seen = []
+
+    def note(episode):
+        seen.append((episode["eye"].shape, len(episode["place"]) - len(episode.rewards)))
+        return True
+
+    observes = {"place": ("at", 0), "eye": "eye"}
+    walk = plant(Keyed, observes=observes, succeeded=note)
+    built = system(walk, [Choose()], units={"eye": "1"})
+    assert built.interface.source("eye").shape == (4, 4)
+    fly(built)
+    assert set(seen) == {((1, 4, 4), 1)}
+
+
+def test_several_sources_of_a_channel_and_the_one_that_a_variant_writes():
+    class Guess(Module):
+        name, writes, reads = "guess", ("guessed",), frozenset({Port("clock", "model")})
+
+        def step(self, inputs, memory):
+            return {"guessed": 0.0 * inputs["clock", "model"]}, memory
+
+    built = ComposedSystem(
+        "walk",
+        plant(observes={"seen": 0, "clock": 1}),
+        {"seeing": Parts("", [Steer()]), "guessing": Parts("", [Guess(), Steer()])},
+        {"seen": "m", "guessed": "m", "clock": "1", "push": "m"},
+        channels={"place": ("seen", "guessed")},
+    )
+    assert built.variants["seeing"].bindings == {"place": "seen"}
+    assert built.variants["guessing"].bindings == {"place": "guessed"}
+    assert built.interface.reconstructs == {"guess": ("guessed",)}
+
+
+def test_a_fault_acts_at_its_tap():
+    built = system(plant())
+    fault = Fault(channel="place", intervention=Offset(by=9.0), consumers=("steer.feedback",))
+    ends = [[o.time_s for o in fly(built, faults=struck)] for struck in ((), (fault,))]
+    assert all(struck <= clean for clean, struck in zip(*ends, strict=True))
+    assert ends[0] != ends[1]
+
+
+def test_libraries_are_seeds():
+    built = system(plant(), scenes={"some": range(5, 8)})
+    library = built.library("some")
+    assert [scene.id for scene in library.scenes] == ["seed/5", "seed/6", "seed/7"]
+    other = system(plant(), scenes={"some": range(6, 9)}).library("some")
+    assert library.content_hash != other.content_hash
+    with pytest.raises(UserError, match="unknown library 'held-out'; known: some"):
+        built.library("held-out")
+
+
+def unnamed(count):
+    envs = vector(count)
+    del envs.metadata["autoreset_mode"]
+    return envs
+
+
+def test_the_first_version_did_not_name_its_one_mode(monkeypatch):
+    monkeypatch.setattr(gymnasium, "__version__", "1.0.0")
+    assert told(fly(system(plant(vector=unnamed)))) == told(fly(system(plant())))
+
+
+class Whole(Steer):
+    def step(self, inputs, memory):
+        return {"push": np.zeros((len(inputs["place", "feedback"]), 2))}, memory
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: plant(observes={"place": 7}), "holds no such part"),
+        (lambda: plant(observes={"place": "at"}), "holds no such part"),
+        (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
+        (lambda: plant(steps=None), "does not say steps: give it"),
+        (lambda: plant(None), "give an environment, or else a vector"),
+        (lambda: system(plant(), units={"place": ""}, modules=[Choose()]), "'eye' has no unit"),
+        (
+            lambda: fly(system(plant(), [Whole()])),
+            r"shape \[1\], and.* of shape \[2\]",
+        ),
+        (
+            lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))),
+            "takes whole numbers.*float64: give integers",
+        ),
+        (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
+        (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
+        (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
+        (lambda: plant(vector=lambda n: vector(n + 1)), "asked for 1 environments and returned 2"),
+        (lambda: plant(vector=unnamed), r"metadata\['autoreset_mode'\].* is None"),
+        (
+            lambda: plant(vector=partial(gymnasium.make_vec, "CartPole-v1"), dt_s=0.1),
+            "takes no list of seeds",
+        ),
+    ],
+)
+def test_mistakes_are_told_in_a_sentence(make, said):
+    with pytest.raises(SystemMistake, match=said):
+        make()
+
+
+def test_the_code_of_an_environment_that_nobody_imports_counts(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "their_walk.py").write_text(
+        "import gymnasium\nfrom gym_toys import Walk\n"
+        "class Theirs(Walk): pass\n"
+        "gymnasium.register('Theirs-v0', lambda: Theirs(), max_episode_steps=30)\n"
+    )
+    built = system(plant("their_walk:Theirs-v0", steps=None))
+    assert built.plant().steps == 30
+    code = system_code(built, SystemSpec(name="examples/pendulum.py:create"))
+    assert any(name.endswith("their_walk.py") for name in code.state.files)
+    assert "Theirs-v0" in built.fingerprint()
+
+
+def test_the_pendulum_counts_the_simulator_and_needs_its_package(monkeypatch):
+    built = load_system(SystemSpec(name=f"{PENDULUM}:create"))
+    assert "'mujoco': " in built.fingerprint()
+    assert built.control_dt_s == pytest.approx(0.04)
+    monkeypatch.setitem(sys.modules, "gymnasium", None)
+    monkeypatch.delitem(sys.modules, "faultpath.systems.gymnasium")
+    with pytest.raises(SystemMistake, match=r"pip install 'faultpath\[gymnasium\]'"):
+        load_system(SystemSpec(name=f"{PENDULUM}:create"))
+
+
+def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_the_shared(tmp_path):
+    run = faultpath.audit(
+        PENDULUM,
+        baseline="calibrated",
+        repair="nominal",
+        fault="motor_gain:scale=0.8",
+        library="training",
+        scenes=20,
+        workers=0,
+        folder=tmp_path / "run",
+        progress=False,
+    )
+    assert run.failed == 0
+    assert run.record.findings == ()
+    effects = {effect.path: effect.success.value for effect in run.record.effects}
+    assert effects["filter"] > 0 > effects["shared"]
