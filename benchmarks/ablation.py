@@ -15,9 +15,6 @@ from faultpath.quadrotor.perception import DepthRenderer, seen
 from faultpath.quadrotor.planner import (
     AutoregressiveSampler,
     NavigationCost,
-    Sampler,
-    ScaledTemperature,
-    mppi,
 )
 from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.predictors.network import GatedCell
@@ -30,10 +27,7 @@ KERNELS: Mapping[str, tuple[Any, str, tuple[str, ...]]] = {
     "depth renderer": (DepthRenderer, "__init__", ("rendering",)),
     "distance field": (DistanceField, "query", ("clearance queries",)),
     "noise": (AutoregressiveSampler, "noise", ("noise",)),
-    "candidates": (Sampler, "candidates", ("candidates",)),
     "costs": (NavigationCost, "__call__", ("costs and update",)),
-    "weights": (ScaledTemperature, "weights", ("costs and update",)),
-    "weighted mean": (mppi, "weighted_mean", ("costs and update",)),
     "plant and contact": (TorchPlant, "__init__", ("plant and contact",)),
     "recurrent cells": (GatedCell, "last", ("history code", "wind reconstruction")),
 }

@@ -136,11 +136,15 @@ COMPARISONS: Mapping[str, Comparison] = {
         Comparison(
             "closed-loop",
             loop.CLOSED_LOOP,
-            edition=2,
-            changed="the flights have moved to the loop that audits share, and candidates and "
-            "rollout have become rows of their own",
+            edition=3,
+            changed="candidates, weights and mean run in torch",
         ),
-        Comparison("kernels", ablation.CASES),
+        Comparison(
+            "kernels",
+            ablation.CASES,
+            edition=2,
+            changed="candidates, weights and mean have no kernel any more",
+        ),
         Comparison("latency", loop.ONE_VEHICLE),
         _contest(
             "plant",

@@ -15,10 +15,8 @@ from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.planner import (
     NavigationCost,
-    ScaledTemperature,
     Scored,
     TerminalGoal,
-    weighted_mean,
 )
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
@@ -236,33 +234,11 @@ class OwnGoal(TerminalGoal):
         return torch.full_like(super().distance(scored), 1e6)
 
 
-class OwnTemperature(ScaledTemperature):
-    def of(self, cost: Tensor) -> Tensor:
-        return torch.full_like(super().of(cost), 1e6)
-
-
 @pytest.mark.parametrize("own", [OwnCost(TerminalGoal()), NavigationCost(OwnGoal())])
 def test_a_cost_of_ones_own_is_what_decides(own: NavigationCost) -> None:
     case = scored(torch.Generator().manual_seed(0), 16)
     with pytest.warns(PortableNotice, match="not of Own"):
         assert float(own(case).min()) > 1e5
-
-
-def test_a_temperature_of_ones_own_is_what_weighs() -> None:
-    cost = torch.arange(16.0)[None]
-    with pytest.warns(PortableNotice, match="not of OwnTemperature"):
-        weights = OwnTemperature(0.08).weights(cost)
-    torch.testing.assert_close(weights, torch.full((1, 16), 1 / 16), rtol=1e-3, atol=0)
-
-
-def test_what_no_planner_kernel_takes_is_computed_in_torch() -> None:
-    """Other precision, and numbers through which a gradient should flow."""
-    cost = torch.arange(16.0, dtype=torch.float64)[None]
-    assert ScaledTemperature(0.08).weights(cost).dtype == torch.float64
-    commands = torch.ones(2, 4, 1, 16, requires_grad=True)
-    weighted_mean(commands, torch.full((1, 16), 1 / 16)).sum().backward()
-    assert commands.grad is not None
-    torch.testing.assert_close(commands.grad, torch.full_like(commands, 1 / 16))
 
 
 @torch.inference_mode()

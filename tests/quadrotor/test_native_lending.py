@@ -43,7 +43,7 @@ def test_memory_that_a_kernel_would_misread_is_refused(tensor: Tensor, says: str
 
 def test_a_tensor_that_nobody_checked_never_reaches_a_kernel() -> None:
     with pytest.raises(TypeError, match="not lent"):
-        native.load(native.available()[0]).call("faultpath_mean", torch.zeros(3))
+        native.load(native.available()[0]).call("faultpath_cost", torch.zeros(3))
 
 
 @torch.inference_mode()

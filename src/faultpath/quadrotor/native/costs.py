@@ -1,10 +1,9 @@
-"""Costs of candidates, their weights and their weighted mean, compiled."""
+"""Costs of candidates, compiled."""
 
 import ctypes
 from collections.abc import Mapping
 from typing import NamedTuple
 
-import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.lending import lend
@@ -73,45 +72,3 @@ def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
         lend("costs", costs, scenes, count),
     )
     return costs
-
-
-def weights(kernels: Kernels, cost: Tensor, fraction: float, least: float) -> Tensor:
-    """Return the softmax `[S, K]` of costs, at a temperature from the spread of their better half.
-
-    Args:
-        kernels: Compiled kernels.
-        cost: `[S, K]`; K in whole vectors.
-        fraction: The temperature over that spread.
-        least: Lowest temperature.
-
-    Raises:
-        ValueError: A tensor is not what the kernel takes; see `lend`.
-    """
-    scenes, count = cost.shape
-    found, scratch = torch.empty_like(cost), cost.new_empty(count)
-    kernels.call(
-        "faultpath_weights",
-        lend("cost", cost.contiguous(), scenes, count),
-        (ctypes.c_float * 2)(fraction, least),
-        *(scenes, count),
-        lend("scratch", scratch, count),
-        lend("weights", found, scenes, count),
-    )
-    return found
-
-
-def mean(kernels: Kernels, commands: Tensor, weight: Tensor) -> Tensor:
-    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`.
-
-    K in whole vectors. Raises `ValueError` for a tensor that the kernel does not take; see `lend`.
-    """
-    steps, channels, scenes, count = commands.shape
-    plan = commands.new_empty(steps, channels, scenes)
-    kernels.call(
-        "faultpath_mean",
-        lend("commands", commands.contiguous(), *commands.shape),
-        lend("weight", weight.contiguous(), scenes, count),
-        *(steps * channels, scenes, count),
-        lend("plan", plan, steps, channels, scenes),
-    )
-    return plan

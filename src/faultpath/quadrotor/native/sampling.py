@@ -1,7 +1,6 @@
-"""Noise and candidates of a sampling planner, compiled."""
+"""Noise of a sampling planner, compiled."""
 
 import ctypes
-from collections.abc import Sequence
 
 import torch
 from torch import Tensor
@@ -38,33 +37,3 @@ def noise(
         lend("noise", drawn, *drawn.shape),
     )
     return drawn
-
-
-def candidates(
-    kernels: Kernels,
-    plan: Tensor,
-    hover: Tensor,
-    sigma: Sequence[float],
-    limit: Sequence[float],
-    noise: Tensor,
-) -> Tensor:
-    """Turn `noise` `[H, 4, S, K]` into commands, in place, and return it.
-
-    Args:
-        kernels: Compiled kernels.
-        plan: `[H, 4, S]`.
-        hover: Thrust that holds each vehicle, `[S]`, N; thrusts stay between 0 and twice that.
-        sigma: Spread of the thrust as a fraction of `hover`, then of the three rates.
-        limit: Of the rates, rad/s.
-        noise: `[H, 4, S, K]`; K in whole vectors.
-    """
-    horizon, _, scenes, count = noise.shape
-    kernels.call(
-        "faultpath_candidates",
-        lend("plan", plan.contiguous(), horizon, 4, scenes),
-        lend("hover", hover.contiguous(), scenes),
-        *((ctypes.c_float * 4)(*sigma), (ctypes.c_float * 3)(*limit)),
-        *(horizon, scenes, count),
-        lend("noise", noise, horizon, 4, scenes, count),
-    )
-    return noise

@@ -8,9 +8,6 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.native import costs
-from faultpath.quadrotor.native.lending import covered
 from faultpath.quadrotor.planner.costs import NavigationCost, Scored
 from faultpath.quadrotor.planner.protocol import Planner, Search
 from faultpath.quadrotor.planner.sampler import Sampler
@@ -43,22 +40,10 @@ class ScaledTemperature(Temperature):
         half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
         return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=self.least)
 
-    def weights(self, cost: Tensor) -> Tensor:
-        """See `Temperature.weights`; the kernel sorts no more than it must."""
-        built = native.kernels_for(cost)
-        if built is None or not native.whole_vectors(cost.shape[1]):
-            return super().weights(cost)
-        if not covered(self, ScaledTemperature):
-            return super().weights(cost)
-        return costs.weights(built, cost, self.fraction, self.least)
-
 
 def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
     """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
-    built = native.kernels_for(commands, weight)
-    if built is None or not native.whole_vectors(commands.shape[-1]):
-        return (commands * weight).sum(-1)
-    return costs.mean(built, commands, weight)
+    return (commands * weight).sum(-1)
 
 
 class MPPI(Planner):

@@ -44,10 +44,6 @@ class Sampler(ABC):
         bounds lie evenly around it: bounds that cut one side lift the mean plan and would hide
         one sign of a calibration fault.
         """
-        settings, built = self.settings, native.kernels_for(plan, hover, noise)
-        if built is not None and native.whole_vectors(noise.shape[-1]) and noise.is_contiguous():
-            sigma = (settings.thrust_sigma, *settings.rate_sigma_radps)
-            return sampling.candidates(built, plan, hover, sigma, RATE_LIMIT_RADPS, noise)
         return bound(noise.mul_(scales(self.settings, hover)).add_(plan[..., None]), hover)
 
 

@@ -1,5 +1,5 @@
-// The cost of candidates, and their weighted mean; see `planner/costs.py` and `planner/mppi.py`.
-#include <algorithm>
+// The cost of candidates; see `planner/costs.py`.
+#include <initializer_list>
 
 #include "simd.hpp"
 
@@ -64,9 +64,6 @@ INLINE Vector heading(const Scene& at, int64_t end, int64_t k) {
   return 1.0f - along / sqrt(scale + 1e-4f);
 }
 
-// An order of all numbers: what is none comes last.
-bool cheaper(float one, float other) { return one < other || (other != other && one == one); }
-
 // Steps outside and candidates inside: rows are read from end to end, as they lie in memory.
 void score(const Weights& w, const Scene& at, int64_t steps, int64_t candidates, float* costs) {
   Weights mean = w;
@@ -109,58 +106,4 @@ extern "C" __attribute__((visibility("default"))) void faultpath_cost(
                    scenes * candidates};
     score(*weights, at, steps, candidates, costs + across);
   }
-}
-
-// `weights` [S, K] from `costs` [S, K]: the softmax at a temperature that is `fraction` of the spread
-// of the better half of the costs, at least `least`. `scratch` [K].
-extern "C" __attribute__((visibility("default"))) void faultpath_weights(
-    const float* costs, const float* scale, int64_t scenes, int64_t candidates, float* scratch,
-    float* weights) {
-  const float fraction = scale[0], least = scale[1];
-  const int64_t half = candidates / 2;
-  for (int64_t s = 0; s < scenes; ++s, costs += candidates, weights += candidates) {
-    std::memcpy(scratch, costs, candidates * sizeof(float));
-    std::nth_element(scratch, scratch + half, scratch + candidates, cheaper);
-    const float lowest = *std::min_element(scratch, scratch + half);
-    double sum = 0.0, squares = 0.0;
-    for (int64_t k = 0; k < half; ++k) sum += scratch[k];
-    for (int64_t k = 0; k < half; ++k) {
-      const double departure = scratch[k] - sum / half;
-      squares += departure * departure;
-    }
-    const float spread = static_cast<float>(__builtin_sqrt(squares / (half - 1)));
-    const float temperature = spread * fraction > least ? spread * fraction : least;
-    double total = 0.0;
-    for (int64_t k = 0; k < candidates; k += LANES) {
-      const Vector x = (lowest - load(costs + k)) / temperature;
-      // Weights too small to matter are zero: sums of such numbers would crawl.
-      store(weights + k, select(x < -80.0f, splat(0.0f), power_of_two(x * LOG2_E)));
-    }
-    for (int64_t k = 0; k < candidates; ++k) total += weights[k];
-    const float share = static_cast<float>(1.0 / total);
-    for (int64_t k = 0; k < candidates; k += LANES) store(weights + k, load(weights + k) * share);
-  }
-}
-
-// `plan` [H, 4, S] becomes the mean of `commands` [H, 4, S, K] under `weights` [S, K].
-extern "C" __attribute__((visibility("default"))) void faultpath_mean(
-    const float* commands, const float* weights, int64_t rows, int64_t scenes, int64_t candidates,
-    float* plan) {
-  constexpr int PART = 16;  // partial sums, the same for all widths
-  for (int64_t r = 0; r < rows; ++r)
-    for (int64_t s = 0; s < scenes; ++s) {
-      const float* command = commands + (r * scenes + s) * candidates;
-      const float* weight = weights + s * candidates;
-      Vector sums[PART / LANES] = {};
-      for (int64_t k = 0; k < candidates; k += PART)
-        for (int i = 0; i < PART / LANES; ++i) {
-          const int64_t at = k + i * LANES;
-          sums[i] = fma(load(command + at), load(weight + at), sums[i]);
-        }
-      float parts[PART];
-      std::memcpy(parts, sums, sizeof parts);
-      float total = 0.0f;
-      for (int i = 0; i < PART; ++i) total += parts[i];
-      plan[r * scenes + s] = total;
-    }
 }

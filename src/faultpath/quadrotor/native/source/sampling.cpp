@@ -1,4 +1,4 @@
-// Noise of the candidates, and the candidates; see `planner/sampler.py`.
+// Noise of the candidates; see `planner/sampler.py`.
 #include "philox.hpp"
 
 namespace {
@@ -83,22 +83,4 @@ extern "C" __attribute__((visibility("default"))) void faultpath_noise(
       row[0] = 0.0f;
     }
   }
-}
-
-// Noise becomes commands, in place. `plan` [H, 4, S], `hover` [S], `sigma` [4], `limit` [3].
-extern "C" __attribute__((visibility("default"))) void faultpath_candidates(
-    const float* plan, const float* hover, const float* sigma, const float* limit,
-    int64_t horizon, int64_t scenes, int64_t candidates, float* noise) {
-  for (int64_t h = 0; h < horizon; ++h)
-    for (int64_t c = 0; c < 4; ++c)
-      for (int64_t s = 0; s < scenes; ++s) {
-        const int64_t row = (h * 4 + c) * scenes + s;
-        const Vector centre = splat(plan[row]);
-        const Vector scale = splat(c == 0 ? sigma[0] * hover[s] : sigma[c]);
-        const Vector high = splat(c == 0 ? 2.0f * hover[s] : limit[c - 1]);
-        const Vector low = c == 0 ? splat(0.0f) : -high;
-        float* at = noise + row * candidates;
-        for (int64_t k = 0; k < candidates; k += LANES)
-          store(at + k, bounded(fma(load(at + k), scale, centre), low, high));
-      }
 }
