@@ -62,16 +62,14 @@ def train(request: TrainRequest) -> int:
     `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
     and data that cannot be collected.
     """
-    from faultpath.quadrotor.platform_name import PlatformName, platform_name
+    from faultpath.quadrotor.platform_name import DEFAULT_NAME, platform_name
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.store import make_folder
 
     console = SafeConsole()
     failed = 0
-    chosen = choose(
-        request.names, request.seeds, platform_name(request.platform or PlatformName.FIRST)
-    )
+    chosen = choose(request.names, request.seeds, platform_name(request.platform or DEFAULT_NAME))
     if request.tensorboard is not None:
         tensorboard_writer()
     for place in (request.out, request.tensorboard, request.data):

@@ -13,11 +13,11 @@ from torch import Tensor, nn
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import ModelCard, read_card, stem
-from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platform_name import DEFAULT_NAME
 from faultpath.store.atomic import write
 
 
-def shipped_folder(platform: str = PlatformName.FIRST) -> Path:
+def shipped_folder(platform: str = DEFAULT_NAME) -> Path:
     """Return the folder of the checkpoints that come with the package for a platform."""
     return Path(str(files("faultpath.quadrotor"))) / "checkpoints" / platform
 
@@ -83,7 +83,7 @@ def save_checkpoint(module: nn.Module, path: Path, card: Mapping[str, Any]) -> M
     return full
 
 
-def ship(path: Path, platform: str = PlatformName.FIRST) -> None:
+def ship(path: Path, platform: str = DEFAULT_NAME) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
     folder = shipped_folder(platform)
     try:

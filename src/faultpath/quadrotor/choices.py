@@ -8,7 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 from faultpath.trials import Offered
 
 
@@ -85,9 +85,7 @@ class QuadrotorChoices(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    platform: Annotated[PlatformName, "Vehicle, winds, planner and perception."] = (
-        PlatformName.FIRST
-    )
+    platform: Annotated[PlatformName, "Vehicle, winds, planner and perception."] = DEFAULT_NAME
     wind: Annotated[Wind, "Wind level."] = Wind.L0
     environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES
     clearance: Annotated[

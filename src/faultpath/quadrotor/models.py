@@ -14,7 +14,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint, shipped_folder
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.perception import ClearanceModel
-from faultpath.quadrotor.platform import CLEARANCE, FIRST, Platform, name_of
+from faultpath.quadrotor.platform import CLEARANCE, DEFAULT, Platform, name_of
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
@@ -36,7 +36,7 @@ Model = TypeVar("Model", Predictor, Reconstruction)
 class Shelf:
     """Where trained weights are taken from: those of a platform."""
 
-    platform: Platform = FIRST
+    platform: Platform = DEFAULT
     folder: Path | None = None
     """`None`: the package's folder of the platform."""
 

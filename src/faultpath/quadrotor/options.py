@@ -36,14 +36,14 @@ from faultpath.quadrotor.planner import (
     goal_cost,
 )
 from faultpath.quadrotor.plant import Plant, TorchPlant
-from faultpath.quadrotor.platform import FIRST, PLATFORMS, Platform
+from faultpath.quadrotor.platform import DEFAULT, PLATFORMS, Platform
 from faultpath.trials.options import call
 
 
 class QuadrotorOptions(QuadrotorChoices):
     """One configuration of the quadrotor: what a user chose, and what is behind it."""
 
-    settings: Platform = FIRST
+    settings: Platform = DEFAULT
     """The platform of that name; a search puts its own here."""
     checkpoints: Path | None = None
     """Folder of the trained models; `None`: the package's of the platform of that name."""

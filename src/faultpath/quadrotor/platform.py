@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.perception import PerceptionSettings, camera
 from faultpath.quadrotor.planner import CostWeights, SamplerSettings
-from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.vehicle import (
     NOMINAL_DRAG_KGPS,
@@ -129,6 +129,7 @@ class Platform(_Frozen):
 
 FIRST = Platform()
 PLATFORMS: Mapping[PlatformName, Platform] = MappingProxyType({PlatformName.FIRST: FIRST})
+DEFAULT = PLATFORMS[DEFAULT_NAME]
 
 
 def name_of(platform: Platform) -> PlatformName | None:

@@ -11,6 +11,10 @@ class PlatformName(StrEnum):
     FIRST = "first"
 
 
+DEFAULT_NAME = PlatformName.FIRST
+"""What flies, is fitted and is shown unless another one is asked for."""
+
+
 def platform_name(text: str) -> PlatformName:
     """Return the frozen platform of that name; `UserError` where there is none."""
     try:

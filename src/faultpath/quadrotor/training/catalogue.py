@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
-from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 
 if TYPE_CHECKING:
     from faultpath.quadrotor.platform import Platform
@@ -49,7 +49,7 @@ class Job:
 
     entry: Entry
     seed: int
-    platform: PlatformName = PlatformName.FIRST
+    platform: PlatformName = DEFAULT_NAME
 
     @property
     def stem(self) -> str:
@@ -120,7 +120,7 @@ GROUPS: dict[str, tuple[Entry, ...]] = {
 def choose(
     names: Sequence[str],
     seeds: Sequence[int] = (),
-    platform: PlatformName = PlatformName.FIRST,
+    platform: PlatformName = DEFAULT_NAME,
 ) -> tuple[Job, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 

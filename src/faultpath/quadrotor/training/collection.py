@@ -12,7 +12,7 @@ from pathlib import Path
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import wind
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import DEFAULT, Platform
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
 from faultpath.quadrotor.training.provenance import (
@@ -39,7 +39,7 @@ def collect(
     episodes: Mapping[str, int] | None = None,
     seed: int = 0,
     progress: Progress | None = None,
-    platform: Platform = FIRST,
+    platform: Platform = DEFAULT,
 ) -> dict[str, Path]:
     """Collect `pools` into `folder` and return the file of each pool.
 
@@ -70,7 +70,7 @@ def collect(
 
 
 def recipe(
-    pool: str, episodes: int | None = None, seed: int = 0, platform: Platform = FIRST
+    pool: str, episodes: int | None = None, seed: int = 0, platform: Platform = DEFAULT
 ) -> Recipe:
     """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
     if pool not in EPISODES:

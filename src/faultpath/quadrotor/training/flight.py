@@ -28,7 +28,7 @@ from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import DEFAULT, Platform
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import Course, WaypointController
@@ -162,7 +162,7 @@ def fly(
     pool: str,
     episodes: Sequence[int],
     seed: int,
-    platform: Platform = FIRST,
+    platform: Platform = DEFAULT,
     build: Callable[[Vehicle], VehiclePlant] = TorchPlant,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.

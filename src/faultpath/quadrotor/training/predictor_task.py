@@ -12,7 +12,7 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.models import PREDICTORS
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import DEFAULT, Platform
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
@@ -68,7 +68,7 @@ class PredictorTask(Task):
         seed: int,
         data: Path,
         half_range: float = DCC_HALF_RANGE,
-        platform: Platform = FIRST,
+        platform: Platform = DEFAULT,
     ) -> None:
         self.name = name
         self.seed = seed

@@ -16,7 +16,7 @@ from faultpath.quadrotor.models import (
     Shelf,
     clearance_model,
 )
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import DEFAULT, Platform
 from faultpath.quadrotor.training import quality_rows
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
 from faultpath.quadrotor.training.pool import Pool, read_pool
@@ -84,7 +84,7 @@ def measure(
     data: Path,
     folder: Path | None = None,
     progress: Progress | None = None,
-    platform: Platform = FIRST,
+    platform: Platform = DEFAULT,
 ) -> Quality:
     """Measure every checkpoint of a folder, by default of the package, on validation windows.
 

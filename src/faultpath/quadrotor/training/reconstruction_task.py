@@ -15,7 +15,7 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import DEFAULT, Platform
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.provenance import rows_sha256
@@ -91,7 +91,9 @@ class ReconstructionTask(Task):
     a stream of its own, because a flight begins with few.
     """
 
-    def __init__(self, name: str, seed: int, data_folder: Path, platform: Platform = FIRST) -> None:
+    def __init__(
+        self, name: str, seed: int, data_folder: Path, platform: Platform = DEFAULT
+    ) -> None:
         if name not in MODELS:
             raise UserError(
                 f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.platform import PLATFORMS
-from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.closed_loop import record_flights
@@ -33,7 +33,7 @@ BLOCK = 14
 def record(
     folder: Path,
     workers: int = 2,
-    platform: PlatformName = PlatformName.FIRST,
+    platform: PlatformName = DEFAULT_NAME,
     progress: Progress | None = None,
 ) -> Path:
     """Fly and write the pool, from wherever an earlier call left it; return its file.
@@ -82,7 +82,7 @@ def fly(platform: PlatformName, level: str, first: int) -> Flights:
     return record_flights(system, VARIANT, scenes[first : first + BLOCK], SEED)
 
 
-def code_sha256(platform: PlatformName = PlatformName.FIRST) -> str:
+def code_sha256(platform: PlatformName = DEFAULT_NAME) -> str:
     """Return a hash of what decides the pool: the system, its weights, and the settings here."""
     spec = SystemSpec(name=Quadrotor.name, options={"platform": platform, "clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
