@@ -80,15 +80,16 @@ class Search:
         }
 
 
-def search(found: Search, trials: int) -> None:
-    """Evaluate generations until there are so many trials."""
+def search(found: Search, trials: int, by_hand: Sequence[dict[str, Any]] = ()) -> None:
+    """Evaluate generations until there are so many trials; what is given by hand goes first."""
     made = found.record["trials"]
     while True:
         running = [each for each in made if each["state"] == "running"]
         if running:
             climb(found, running)
         elif len(made) < trials:
-            made += _asked(made, min(GENERATION, trials - len(made)))
+            made += _asked(made, min(GENERATION, trials - len(made)), by_hand)
+            by_hand = ()
             found.save()
         else:
             return
@@ -147,25 +148,27 @@ def _promoted(trials: list[dict[str, Any]], trial: dict[str, Any], rung: int) ->
     return reached.index(trial["rungs"][rung]["distance"]) < -(-len(reached) // KEEP)
 
 
-def _asked(trials: list[dict[str, Any]], count: int) -> list[dict[str, Any]]:
-    """Return the next trials: the starts, then what the sampler makes of all former trials.
-
-    The sampler is made anew, with their number as its seed, so that a search that was cut short
-    goes on as it would have gone.
-    """
+def _asked(
+    trials: list[dict[str, Any]], count: int, by_hand: Sequence[dict[str, Any]]
+) -> list[dict[str, Any]]:
+    """Return the next trials: the starts, what is given by hand, then what the sampler proposes."""
     numbers = range(len(trials), len(trials) + count)
-    points = [STARTS[number] if number < len(STARTS) else None for number in numbers]
-    if None in points:
-        points = _proposed(trials, points)
+    starts = [{"point": point} for point in STARTS[len(trials) :]]
+    given = [*starts, *({"by_hand": True, "point": point} for point in by_hand)][:count]
+    lacking = count - len(given)
+    proposed = [{"point": point} for point in _proposed(trials, lacking)] if lacking else []
     return [
-        {"number": number, "point": point, "state": "running", "rungs": []}
-        for number, point in zip(numbers, points, strict=True)
+        {"number": number, **each, "state": "running", "rungs": []}
+        for number, each in zip(numbers, [*given, *proposed], strict=True)
     ]
 
 
-def _proposed(
-    trials: list[dict[str, Any]], points: list[dict[str, Any] | None]
-) -> list[dict[str, Any]]:
+def _proposed(trials: list[dict[str, Any]], count: int) -> list[dict[str, Any]]:
+    """Return what the sampler makes of all former trials.
+
+    It is made anew, with their number as its seed, so that a search that was cut short goes on as
+    it would have gone.
+    """
     import optuna  # only here: what was found can be shown without it
 
     optuna.logging.set_verbosity(optuna.logging.WARNING)
@@ -174,7 +177,7 @@ def _proposed(
     )
     study = optuna.create_study(sampler=sampler)
     study.add_trials([_told(each) for each in trials])
-    return [point or study.ask(_distributions()).params for point in points]
+    return [study.ask(_distributions()).params for _ in range(count)]
 
 
 def _told(trial: dict[str, Any]) -> Any:
@@ -210,6 +213,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--trials", type=int, default=0, help="trials that there will be in all")
+    parser.add_argument("--by-hand", type=Path, help="JSON list of points to try first")
     parser.add_argument("--finalists", type=int, default=0, help="best ones to fly with all seeds")
     parser.add_argument("--workers", type=int, default=2, help="processes of one thread each")
     parser.add_argument("--show", action="store_true", help="print the best trials")
@@ -217,7 +221,8 @@ def main() -> int:
     with local(asked.workers) as executor:
         found = Search(asked.folder, executor)
         if asked.trials:
-            search(found, asked.trials)
+            points = json.loads(asked.by_hand.read_text("utf-8")) if asked.by_hand else ()
+            search(found, asked.trials, points)
         if asked.finalists:
             finals(found, asked.finalists)
     if asked.show:
