@@ -20,7 +20,8 @@ from faultpath.quadrotor import native
 from faultpath.quadrotor.evidence.recording import blocks, recorded
 from faultpath.quadrotor.models import Shelf, predictor
 from faultpath.quadrotor.plant import PlantState, TorchPlant
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows

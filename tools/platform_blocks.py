@@ -6,7 +6,7 @@ from operator import itemgetter
 import platform_tables
 from blocks import ROOT, Wrong, tabled
 
-from faultpath.quadrotor.platform import PLATFORMS
+from faultpath.quadrotor.platforms import PLATFORMS
 from faultpath.tables import MISSING
 
 RECORDS = ROOT / "docs" / "design" / "platform-search"

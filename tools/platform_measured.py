@@ -15,7 +15,8 @@ from platform_matched import CELLS, Flyer, Quantity, quantities
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.checkpoint import shipped_folder
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.fitting import fit
 from faultpath.quadrotor.training.predictor_task import PredictorTask

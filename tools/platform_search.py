@@ -23,7 +23,8 @@ from platform_matched import QUANTITIES
 from platform_measured import RUNGS, SEEDS, Measurer
 from platform_space import SPACE, STARTS, platform_of
 
-from faultpath.quadrotor.platform import FIRST, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.training.provenance import code_of
 from faultpath.store import atomic
 from faultpath.work import Executor, local, run_all

@@ -9,7 +9,8 @@ from faultpath.quadrotor.flight_settings import (
 )
 from faultpath.quadrotor.perception import PerceptionSettings
 from faultpath.quadrotor.planner import CostWeights
-from faultpath.quadrotor.platform import FIRST, PlannerSettings, Platform, SceneVehicles
+from faultpath.quadrotor.platform import PlannerSettings, Platform, SceneVehicles
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.wind import Winds
 
 SPACE: dict[str, dict[str, Any]] = {

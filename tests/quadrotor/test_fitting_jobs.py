@@ -10,7 +10,7 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import Stopped, UserError
-from faultpath.quadrotor.platform import FIRST
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES

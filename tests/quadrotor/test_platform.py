@@ -14,15 +14,9 @@ from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import PerceptionSettings
 from faultpath.quadrotor.planner import BlendedGoal, CostWeights, NavigationCost
-from faultpath.quadrotor.platform import (
-    FIRST,
-    PLATFORMS,
-    PlannerSettings,
-    Platform,
-    SceneVehicles,
-    name_of,
-)
+from faultpath.quadrotor.platform import PlannerSettings, Platform, SceneVehicles
 from faultpath.quadrotor.platform_name import PlatformName
+from faultpath.quadrotor.platforms import FIRST, PLATFORMS, name_of
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.collection import different, recipe

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from faultpath.quadrotor.platform import FIRST
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.work import Here
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -15,7 +15,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS, Shelf
-from faultpath.quadrotor.platform import FIRST
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork

@@ -8,7 +8,7 @@ import torch
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.models import PACKAGE, PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.modules import prediction
-from faultpath.quadrotor.platform import FIRST
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay

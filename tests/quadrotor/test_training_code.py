@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import Root, read_code
-from faultpath.quadrotor.platform import FIRST
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import clearance_data, closed_loop, flight

@@ -14,7 +14,8 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint, shipped_folder
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.perception import ClearanceModel
-from faultpath.quadrotor.platform import CLEARANCE, DEFAULT, Platform, name_of
+from faultpath.quadrotor.platform import CLEARANCE, Platform
+from faultpath.quadrotor.platforms import DEFAULT, name_of
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,

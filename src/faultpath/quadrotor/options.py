@@ -36,7 +36,8 @@ from faultpath.quadrotor.planner import (
     goal_cost,
 )
 from faultpath.quadrotor.plant import Plant, TorchPlant
-from faultpath.quadrotor.platform import DEFAULT, PLATFORMS, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT, PLATFORMS
 from faultpath.trials.options import call
 
 

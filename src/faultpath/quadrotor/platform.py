@@ -1,13 +1,11 @@
 """Everything that describes a platform, as one value: what flies, in which air, planned how.
 
-A platform is frozen under a name, and its hash tells it from all others. Nothing of it is global:
+Its hash tells it from all others; `platforms` has those that are frozen. Nothing of it is global:
 who needs a part is handed it.
 """
 
 import hashlib
 import json
-from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any, Self
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -15,7 +13,6 @@ from pydantic import BaseModel, ConfigDict, Field
 from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.perception import PerceptionSettings, camera
 from faultpath.quadrotor.planner import CostWeights, SamplerSettings
-from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.vehicle import (
     NOMINAL_DRAG_KGPS,
@@ -125,16 +122,6 @@ class Platform(_Frozen):
         x, y, z = ((each * low, each * high) for each in kgps)
         ranges = VehicleRanges(**{**vars(self.ranges), "drag_kgps": (x, y, z)})
         return self.model_copy(update={"drag_kgps": kgps, "ranges": ranges})
-
-
-FIRST = Platform()
-PLATFORMS: Mapping[PlatformName, Platform] = MappingProxyType({PlatformName.FIRST: FIRST})
-DEFAULT = PLATFORMS[DEFAULT_NAME]
-
-
-def name_of(platform: Platform) -> PlatformName | None:
-    """Return the name under which a platform is frozen, `None` for one that is not."""
-    return next((name for name, frozen in PLATFORMS.items() if frozen == platform), None)
 
 
 def _hash(content: object) -> str:

@@ -6,7 +6,7 @@ from faultpath.errors import UserError
 
 
 class PlatformName(StrEnum):
-    """Platforms that are frozen; `platform.PLATFORMS` says what each is."""
+    """Platforms that are frozen; `platforms.PLATFORMS` says what each is."""
 
     FIRST = "first"
 

@@ -58,7 +58,7 @@ class Job:
 
     def task(self, data: Path) -> Task:
         """Return what is to be fitted, with data from a folder."""
-        from faultpath.quadrotor.platform import PLATFORMS
+        from faultpath.quadrotor.platforms import PLATFORMS
 
         return self.entry.factory(self.entry.name, self.seed, data, PLATFORMS[self.platform])
 

@@ -13,7 +13,8 @@ from typing_extensions import override
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath.quadrotor.platform import CLEARANCE, DEFAULT
+from faultpath.quadrotor.platform import CLEARANCE
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples

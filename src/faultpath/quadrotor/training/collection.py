@@ -12,7 +12,8 @@ from pathlib import Path
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import wind
-from faultpath.quadrotor.platform import DEFAULT, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
 from faultpath.quadrotor.training.provenance import (

@@ -28,7 +28,8 @@ from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
-from faultpath.quadrotor.platform import DEFAULT, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import Course, WaypointController

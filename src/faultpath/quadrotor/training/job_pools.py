@@ -5,7 +5,7 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.platform import PLATFORMS
+from faultpath.quadrotor.platforms import PLATFORMS
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath.quadrotor.training.collection import collect, different, recipe

@@ -12,7 +12,8 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.models import PREDICTORS
-from faultpath.quadrotor.platform import DEFAULT, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,

@@ -16,7 +16,8 @@ from faultpath.quadrotor.models import (
     Shelf,
     clearance_model,
 )
-from faultpath.quadrotor.platform import DEFAULT, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.training import quality_rows
 from faultpath.quadrotor.training.catalogue import ALL, CLEARANCE, choose
 from faultpath.quadrotor.training.pool import Pool, read_pool

@@ -15,7 +15,8 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.platform import DEFAULT, Platform
+from faultpath.quadrotor.platform import Platform
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.provenance import rows_sha256

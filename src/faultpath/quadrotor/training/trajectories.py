@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.platform import PLATFORMS
 from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
+from faultpath.quadrotor.platforms import PLATFORMS
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.closed_loop import record_flights
