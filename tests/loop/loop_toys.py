@@ -1,13 +1,14 @@
 """A counter on a line: a plant that goes where it is told, and modules that tell it."""
 
+import contextlib
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, Trace, graph
+from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, graph
 from faultpath.loop import interface_of as derived
-from faultpath.taps import Query, Taps
+from faultpath.taps import Query, Taps, TracedTaps, TraceEnded
 
 DT_S = 0.1
 SCENES = ("a", "b")
@@ -99,9 +100,12 @@ def interface_of(parts, place=""):
 def execute(modules, faults=(), place="", trace=None, guard=False):
     """Return the instants and the taps of one execution."""
     interface, parts = wired(modules, place)
-    taps = Taps(interface, faults, scenes=SCENES, dt_s=DT_S, privileged=("field",), guard=guard)
-    loop = Loop(interface, parts, trace)
-    return list(loop.execute(Batch(SCENES, 0, DT_S), taps)), taps
+    asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
+    traced = {} if trace is None else {"trace": trace}
+    taps = (TracedTaps if traced else Taps)(interface, faults, **asked, **traced)
+    with contextlib.suppress(TraceEnded):
+        return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
+    return [], taps
 
 
 def wired(modules, place="") -> tuple[Interface, Graph]:
@@ -109,4 +113,4 @@ def wired(modules, place="") -> tuple[Interface, Graph]:
     return interface, graph(interface, Line(), modules)
 
 
-__all__ = ["At", "Guess", "Line", "Planner", "Trace", "execute", "interface_of", "wired"]
+__all__ = ["At", "Guess", "Line", "Planner", "execute", "interface_of", "wired"]

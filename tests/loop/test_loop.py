@@ -7,9 +7,9 @@ from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interf
 from faultpath.errors import SystemMistake
 from faultpath.faults import Fault, Scale, parse_fault
 from faultpath.interface import interface_yaml, read_interface, transitive_consumers
-from faultpath.loop import Batch, Loop, Module, Port, Trace, consumers, graph
+from faultpath.loop import Batch, Loop, Module, Port, consumers, graph
 from faultpath.loop import interface_of as derived
-from faultpath.taps import IllegalRead, MalformedReading, Taps
+from faultpath.taps import IllegalRead, MalformedReading, Taps, Trace
 
 
 def fault(text):
@@ -182,12 +182,13 @@ def test_the_trace_says_who_read_what_and_who_did_not_look() -> None:
 
     trace = Trace(steps=2)
     execute((Blind(), Planner()), trace=trace, place=", latency_s: 0.1")
-    read = {(each.step, each.module, each.port.channel): each for each in trace.reads}
+    read = {(each.step, each.consumer, each.channel): each for each in trace.reads}
     assert len(trace.reads) == 2 * 5
-    assert read[1, "observer", "position"].valid_step == 0
-    assert read[1, "observer", "position"].source == "place"
-    assert read[1, "line", "action"].valid_step == 1
-    assert list(trace.unused()) == [("observer", Port("action", "executed"))]
+    assert read[1, "observer.seen", "position"].valid_step == 0
+    assert read[1, "observer.seen", "position"].source == "place"
+    assert read[1, "line.motor", "action"].valid_step == 1
+    assert read[1, "planner.cost", "clearance"].asks == 1
+    assert list(trace.unused()) == [("action", "observer.executed")]
 
 
 def test_the_interface_follows_from_the_ports() -> None:

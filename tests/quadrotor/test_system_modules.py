@@ -5,15 +5,17 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from flights import HELD_OUT, STEPS, WatchedTaps, fault, fly, quadrotor, wire
+from flights import HELD_OUT, STEPS, WatchedTaps, fault, fly, quadrotor
 
+from faultpath.execution.attempt import taps_of
 from faultpath.interface import Provenance
-from faultpath.loop import Batch, Graph, Trace, consumers
+from faultpath.loop import Batch, Graph, consumers
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.modules.estimator import ExactEstimator
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Query
+from faultpath.taps import Query, Trace, TracedTaps
+from faultpath.trials import Arm
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 FLOWN = [
@@ -84,19 +86,18 @@ def test_truth_has_one_door(systems):
 
 @pytest.mark.parametrize(("options", "variant"), FLOWN, ids=[name for _, name in FLOWN])
 def test_what_flies_looks_at_every_port_and_takes_truth_at_the_door_only(options, variant):
-    system, trace = quadrotor(**options), Trace(steps=3)
-    taps, batch = wire(system, variant, HELD_OUT[:2]), Batch(HELD_OUT[:2], 0, system.control_dt_s)
+    system, trace = quadrotor(**options), Trace(steps=None)
+    batch = Batch(HELD_OUT[:2], 0, system.control_dt_s)
+    taps = taps_of(system, Arm(variant=variant), batch.scenes, TracedTaps, trace=trace)
     with torch.inference_mode():
-        instants = list(system.loop(variant, 0, trace).execute(batch, taps))
+        instants = list(system.loop(variant, 0).execute(batch, taps))
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
     assert list(trace.unused()) == []
     assert trace.truths == {("estimator", "vehicle")}
-    assert {f"{each.module}.{each.port.place}" for each in trace.reads} == set(
-        system.variants[variant].consumers
-    )
-    taught = {each.module for each in trace.reads if each.port.channel == "action"} - {"vehicle"}
-    late = {(each.module, each.port.channel) for each in trace.reads if each.valid_step < each.step}
-    assert late == {(module, "action") for module in taught}
+    assert {each.consumer for each in trace.reads} == set(system.variants[variant].consumers)
+    taught = {each.consumer for each in trace.reads if each.channel == "action"}
+    late = {each.consumer for each in trace.reads if each.valid_step < each.step}
+    assert late == taught - {"vehicle.actuators"}
 
 
 class _Watching(WatchedTaps):

@@ -3,9 +3,9 @@
 import math
 import time
 import traceback
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ from faultpath.taps import TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
+
+Made = TypeVar("Made", bound=Taps)
 
 
 class WrongOutcomes(SystemMistake):
@@ -58,20 +60,50 @@ class Died:
 Reply = Done | Raised | Wrong | Died
 
 
+def taps_of(
+    system: System,
+    arm: Arm,
+    scenes: Sequence[str],
+    kind: Callable[..., Made],
+    **more: Any,
+) -> Made:
+    """Return new taps for an arm over some scenes; `more` are arguments of their `kind`."""
+    variant = system.variants[arm.variant]
+    return kind(
+        system.interface,
+        arm.faults,
+        scenes=tuple(scenes),
+        dt_s=system.control_dt_s,
+        seed=arm.seed,
+        bindings=variant.bindings,
+        consumers=variant.consumers,
+        privileged=variant.privileged,
+        **more,
+    )
+
+
 def attempt(
-    system: System, arm: Arm, scenes: Sequence[str], guard: bool = False
+    system: System,
+    arm: Arm,
+    scenes: Sequence[str],
+    guard: bool = False,
+    kind: Callable[..., Taps] = Taps,
 ) -> Done | Raised | Wrong:
-    """Run an arm over some scenes; an error comes back as a value. `guard` is that of `Taps`."""
+    """Run an arm over some scenes through taps of a kind; an error comes back as a value.
+
+    `guard` is that of `Taps`.
+    """
     started = time.perf_counter()
     try:
-        outcomes, taps = _run(system, arm, scenes, guard)
+        taps = taps_of(system, arm, scenes, kind, guard=guard)
+        outcomes, counts = _run(system, arm, scenes, taps)
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
         return Raised(_exited(error), traceback.format_exc())
     except Exception as error:
         return Raised(_said(error), traceback.format_exc())
-    return Done(outcomes, taps, time.perf_counter() - started)
+    return Done(outcomes, counts, time.perf_counter() - started)
 
 
 def _exited(error: SystemExit) -> str:
@@ -88,20 +120,8 @@ def _said(error: BaseException) -> str:
 
 
 def _run(
-    system: System, arm: Arm, scenes: Sequence[str], guard: bool
+    system: System, arm: Arm, scenes: Sequence[str], taps: Taps
 ) -> tuple[tuple[Outcome, ...], tuple[TapCount, ...]]:
-    variant = system.variants[arm.variant]
-    taps = Taps(
-        system.interface,
-        arm.faults,
-        scenes=tuple(scenes),
-        dt_s=system.control_dt_s,
-        seed=arm.seed,
-        bindings=variant.bindings,
-        consumers=variant.consumers,
-        privileged=variant.privileged,
-        guard=guard,
-    )
     outcomes = _outcomes(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
     taps.verify(_last_steps(outcomes, system.control_dt_s))
     receipts = taps.receipts()

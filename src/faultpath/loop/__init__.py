@@ -15,7 +15,6 @@ from faultpath.loop.module import (
     consumers,
 )
 from faultpath.loop.ports import Inputs, Port
-from faultpath.loop.trace import Trace
 
 __all__ = [
     "Batch",
@@ -31,7 +30,6 @@ __all__ = [
     "Port",
     "Progress",
     "State",
-    "Trace",
     "consumers",
     "graph",
     "interface_of",

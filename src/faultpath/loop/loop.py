@@ -2,7 +2,7 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,6 @@ from faultpath.errors import SystemMistake
 from faultpath.interface import Interface, Source
 from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
 from faultpath.loop.ports import Inputs, Port
-from faultpath.loop.trace import Trace
 from faultpath.taps import Reading, Taps
 from faultpath.text import listed
 
@@ -65,8 +64,6 @@ class Loop:
     """Declares rates and latencies of the sources."""
     graph: Graph
     """What is executed; see `faultpath.loop.graph`."""
-    trace: Trace | None = None
-    """Takes down who reads what, if given."""
 
     def execute(self, batch: Batch, taps: Taps) -> Iterator[Instant]:
         """Start a batch, and yield each of its control steps and the one at which nothing runs.
@@ -81,7 +78,6 @@ class _Execution:
 
     def __init__(self, loop: Loop, batch: Batch, taps: Taps) -> None:
         self._graph = graph = loop.graph
-        self._trace = loop.trace
         self._taps = taps
         read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
         self._clocks = {name: Clock(loop.interface.source(name), batch.dt_s) for name in read}
@@ -106,15 +102,16 @@ class _Execution:
             sensed = plant.sense(state)
             self._hold(plant, sensed, step, plant.senses)
             self._truths = {name: sensed[name] for name in plant.shows}
+            given: list[Inputs] = []
             for index, module in enumerate(modules):
-                inputs = self._inputs(module, step, running)
+                given.append(inputs := self._inputs(module, step, running))
                 outputs, memories[index] = module.step(inputs, memories[index])
                 self._hold(module, outputs, step, module.writes)
-                self._note(module, inputs)
-            inputs = self._inputs(plant, step, running)
+            given.append(inputs := self._inputs(plant, step, running))
             yield Instant(step, state, inputs)
             state = plant.advance(state, inputs)
-            self._note(plant, inputs)
+            if self._taps.traced:  # not before: a query looks when it is asked
+                self._taps.looked(step, *_looks(given))
             step += 1
         yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
@@ -163,7 +160,14 @@ class _Execution:
             )
         return held
 
-    def _note(self, part: Part, inputs: Inputs) -> None:
-        if self._trace is not None:
-            valid = {port: self._reading(part, port).step for port in inputs}
-            self._trace.note(self._graph, part, inputs, valid)
+
+def _looks(
+    given: Sequence[Inputs],
+) -> tuple[dict[tuple[str, str], bool], set[tuple[str, str]]]:
+    """Return who looked at what came through which tap in a step, and what truths were taken."""
+    looks = {
+        (port.channel, f"{inputs.module}.{port.place}"): port in inputs.used
+        for inputs in given
+        for port in inputs
+    }
+    return looks, {(inputs.module, name) for inputs in given for name in inputs.used_truths}

@@ -32,13 +32,14 @@ class Inputs(Mapping[Port, Any]):
         truths: Mapping[str, Any],
         running: Array = None,
     ) -> None:
+        self.module = module
         self.step = step
         """Control step, from 0."""
         self.running = running
         """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
         self.used: set[Port] = set()
         """Ports that were looked at, for tracing."""
-        self._module = module
+        self.used_truths: set[str] = set()
         self._delivered = delivered
         self._truths = truths
 
@@ -49,7 +50,7 @@ class Inputs(Mapping[Port, Any]):
             value = self._delivered[found]
         except KeyError:
             raise SystemMistake(
-                f"module '{self._module}' looked for channel '{found.channel}' at "
+                f"module '{self.module}' looked for channel '{found.channel}' at "
                 f"'{found.place}', a port that it does not declare: add "
                 f"Port('{found.channel}', '{found.place}') to its reads"
             ) from None
@@ -76,7 +77,8 @@ class Inputs(Mapping[Port, Any]):
         """Return what the plant shows of its own state; `SystemMistake` for an undeclared one."""
         if name not in self._truths:
             raise SystemMistake(
-                f"module '{self._module}' looked for the plant's truth '{name}', which it does not "
+                f"module '{self.module}' looked for the plant's truth '{name}', which it does not "
                 "declare: add it to its truths"
             )
+        self.used_truths.add(name)
         return self._truths[name]

@@ -18,6 +18,7 @@ from faultpath.taps.receipts import (
     check_delivered,
 )
 from faultpath.taps.taps import ModuleTaps, Taps
+from faultpath.taps.trace import Read, Trace, TracedTaps, TraceEnded
 
 __all__ = [
     "IllegalRead",
@@ -26,12 +27,16 @@ __all__ = [
     "NotDelivered",
     "NotFinite",
     "Query",
+    "Read",
     "Reading",
     "Receipts",
     "StruckElsewhere",
     "TapCount",
     "TapError",
     "Taps",
+    "Trace",
+    "TraceEnded",
+    "TracedTaps",
     "UndeclaredReader",
     "WrittenTo",
     "added",

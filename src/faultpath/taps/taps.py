@@ -58,6 +58,9 @@ class Taps:
         UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
     """
 
+    traced = False
+    """Whether a loop has to tell which readings were looked at."""
+
     def __init__(
         self,
         interface: Interface,
@@ -203,6 +206,15 @@ class Taps:
     def set_active(self, mask: Array | None) -> None:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
         self._running = Running(mask)
+
+    def looked(
+        self,
+        step: int,
+        looks: Mapping[tuple[str, str], bool],
+        truths: Collection[tuple[str, str]],
+    ) -> None:
+        """Be told, where `traced`, whether the module behind each tap looked at what it got in a
+        step, and which `(module, truth)` of the plant's own were taken past all taps."""
 
     def for_module(self, module: str) -> ModuleTaps:
         """Return the view that `module` gets; raises `TapError` for an unknown module."""

@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from faultpath.arrays import Array, HostArray, namespace, to_numpy
 from faultpath.interface import Interface, Provenance
-from faultpath.loop import Batch, Graph, Loop, Module, Plant, Trace, consumers, graph
+from faultpath.loop import Batch, Graph, Loop, Module, Plant, consumers, graph
 from faultpath.taps import Taps
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.system import System, Variant
@@ -58,12 +58,12 @@ class LoopSystem(System):
     def _variants(self) -> Mapping[str, Variant]:
         return {name: self._variant(name, wiring) for name, wiring in self.wirings.items()}
 
-    def loop(self, variant: str, seed: int | None, trace: Trace | None = None) -> Loop:
+    def loop(self, variant: str, seed: int | None) -> Loop:
         """Return the executable loop of a variant.
 
         Raises `SystemMistake` where its parts do not fit together; see `faultpath.loop.graph`.
         """
-        return Loop(self.interface, self._graph(variant, seed), trace)
+        return Loop(self.interface, self._graph(variant, seed))
 
     @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
