@@ -11,6 +11,7 @@ import typer
 
 from faultpath.cli import (
     audit,
+    check,
     claims,
     interface,
     log,
@@ -47,7 +48,12 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     return app
 
 
-_OF_SYSTEMS = {"audit": audit.command, "interface": interface.command, "probe": probe.command}
+_OF_SYSTEMS = {
+    "audit": audit.command,
+    "check": check.command,
+    "interface": interface.command,
+    "probe": probe.command,
+}
 _OTHERS = {
     "claims": claims.command,
     "log": log.command,

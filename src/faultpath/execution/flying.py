@@ -3,50 +3,64 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from typing import Any, Generic, Protocol, TypeVar
 
-from faultpath.execution.attempt import Died, Reply, Wrong
+from faultpath.execution.attempt import Died, Wrong
 from faultpath.execution.limits import TimeLimit
-from faultpath.execution.schedule import Recheck, Task
-from faultpath.execution.worker import Order, Started, Undeclared
+from faultpath.execution.worker import Started, Undeclared
 from faultpath.patience import too_late
-from faultpath.work import End, Executor, Failed, Lost, WorkerLost
+from faultpath.work import Call, End, Executor, Failed, Lost, WorkerLost
 
 _TICK_S = 0.5
 _FALSE_STARTS = 4
 """So many workers in a row may die before they have built the system."""
 
 
+class Scened(Protocol):
+    """Some scenes to fly."""
+
+    @property
+    def scenes(self) -> tuple[str, ...]:
+        """Scene ids."""
+        ...
+
+
+T = TypeVar("T", bound=Scened)
+
+
 @dataclass
-class _Running:
-    task: Task
+class _Running(Generic[T]):
+    task: T
     since: float
     started: bool = False
     """Whether the system was built; its building has a limit of its own."""
 
 
-class Flying:
+class Flying(Generic[T]):
     """Hands tasks out, watches their time, and makes a reply of what comes back.
 
-    `fly` flies an order; `name` is that of the system.
+    `call` is what flies a task, and tells `Started`; `name` is that of the system.
     """
 
     def __init__(
-        self, executor: Executor, fly: Callable[[Order], Reply], limit: TimeLimit, name: str
+        self, executor: Executor, call: Callable[[T], Call], limit: TimeLimit, name: str
     ) -> None:
-        self._executor, self._fly, self._limit, self._name = executor, fly, limit, name
-        self._running: dict[int, _Running] = {}
+        self._executor, self._call, self._limit, self._name = executor, call, limit, name
+        self._running: dict[int, _Running[T]] = {}
         self._false_starts = 0
         self.undeclared: set[str] = set()
         """Files that the system has read and does not name among its data files."""
 
     def run(
         self,
-        take: Callable[[int], Task | None],
-        settle: Callable[[Task, Reply], None],
+        take: Callable[[int], T | None],
+        settle: Callable[[T, Any], None],
         report: Callable[[], None],
     ) -> None:
-        """Run what `take` returns for a worker, until it returns nothing and all is settled."""
+        """Run what `take` returns for a worker, until it returns nothing and all is settled.
+
+        `settle` gets what the call returned, `Wrong` for an error that it raised, or `Died`.
+        """
         while True:
             for worker in self._executor.free():
                 if task := take(worker):
@@ -63,7 +77,7 @@ class Flying:
                 settle(task, reply)
             report()
 
-    def _submit(self, worker: int, task: Task) -> None:
+    def _submit(self, worker: int, task: T) -> None:
         running = self._running[worker] = _Running(task, time.monotonic())
 
         def told(message: Started | Undeclared) -> None:
@@ -73,17 +87,16 @@ class Flying:
                 running.started, running.since = True, time.monotonic()
                 self._false_starts = 0
 
-        order = Order(task.unit.arm, task.scenes, task.recheck is Recheck.GUARDED)
-        self._executor.submit(worker, partial(self._fly, order), told)
+        self._executor.submit(worker, self._call(task), told)
 
-    def _start_again(self, worker: int, task: Task, end: Lost) -> None:
+    def _start_again(self, worker: int, task: T, end: Lost) -> None:
         self._false_starts += 1
         if self._false_starts > _FALSE_STARTS:
             raise WorkerLost(f"worker processes do not come up: {end.how}")
         self._submit(worker, task)
 
-    def _stop_late(self) -> list[tuple[Task, Died]]:
-        late: list[tuple[Task, Died]] = []
+    def _stop_late(self) -> list[tuple[T, Died]]:
+        late: list[tuple[T, Died]] = []
         now = time.monotonic()
         for worker, running in tuple(self._running.items()):
             building, task = not running.started, running.task
@@ -99,7 +112,7 @@ class Flying:
         return late
 
 
-def _reply(end: End) -> Reply:
+def _reply(end: End) -> Any:
     if isinstance(end, Failed):
         return Wrong(end.error)
     return Died(end.how) if isinstance(end, Lost) else end.value

@@ -14,9 +14,9 @@ from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
 from faultpath.execution.limits import TimeLimit
 from faultpath.execution.rechecks import Rechecks
-from faultpath.execution.schedule import Schedule, Task, Unit, plan
+from faultpath.execution.schedule import Recheck, Schedule, Task, Unit, plan
 from faultpath.execution.standing import Progress, ProgressCallback, Standing
-from faultpath.execution.worker import Brief, fly, fly_here
+from faultpath.execution.worker import Brief, Order, fly, fly_here
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
@@ -29,7 +29,7 @@ from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
 from faultpath.version import __version__
-from faultpath.work import Executor, local
+from faultpath.work import Call, Executor, local
 
 _log = logging.getLogger("faultpath")
 
@@ -137,8 +137,8 @@ def run_study(
             brief = Brief(study.system, study.library, code.state, library.content_hash)
             with hands as held:
                 there, here = partial(fly, brief), partial(fly_here, system, code.unread())
-                call = here if held.in_process else there
-                flying = Flying(held, call, limit, study.system.name)
+                flown = here if held.in_process else there
+                flying = Flying[Task](held, _orders(flown), limit, study.system.name)
                 _run(flying, schedule, standing, report)
                 if recheck:
                     _recheck(flying, again, standing)
@@ -192,7 +192,16 @@ def _keep_finished(standing: Standing, run: RunFolder, notice: Callable[[str], N
     return schedule
 
 
-def _run(flying: Flying, schedule: Schedule, standing: Standing, report: ProgressCallback) -> None:
+def _orders(fly: Callable[[Order], Reply]) -> Callable[[Task], Call]:
+    """Return what makes a call of a task."""
+    return lambda task: partial(
+        fly, Order(task.unit.arm, task.scenes, task.recheck is Recheck.GUARDED)
+    )
+
+
+def _run(
+    flying: Flying[Task], schedule: Schedule, standing: Standing, report: ProgressCallback
+) -> None:
     def take(worker: int) -> Task | None:
         if task := schedule.take(worker):
             standing.start(task)
@@ -204,7 +213,7 @@ def _run(flying: Flying, schedule: Schedule, standing: Standing, report: Progres
     flying.run(take, settle, lambda: report(standing.progress()))
 
 
-def _recheck(flying: Flying, again: Rechecks, standing: Standing) -> None:
+def _recheck(flying: Flying[Task], again: Rechecks, standing: Standing) -> None:
     def settle(task: Task, reply: Reply) -> None:
         again.settle(task, reply, standing.outcomes)
 

@@ -1,6 +1,7 @@
 """What a worker does for a study: builds the system that it is told, then flies what it is sent."""
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
 
@@ -47,14 +48,16 @@ class Undeclared:
 
 
 @dataclass(frozen=True)
-class _Built:
+class Built:
+    """A system that a process keeps for its next orders."""
+
     brief: Brief
     system: System
     code: Code
     unread: Watch
 
 
-_built: list[_Built] = []
+_built: list[Built] = []
 """What this worker process has built last."""
 
 
@@ -64,6 +67,13 @@ def fly(brief: Brief, order: Order) -> Reply:
     It tells `Started`, and `Undeclared` files. Raises what makes the audit itself wrong, and where
     the system cannot be built or is another one here.
     """
+    with building(brief) as built:
+        return fly_here(built.system, built.unread, order)
+
+
+@contextmanager
+def building(brief: Brief) -> Generator[Built]:
+    """Give a worker process the system of a brief, and tell files that it reads unnamed."""
     if not _built or _built[0].brief != brief:
         _built.clear()
         try:
@@ -74,10 +84,9 @@ def fly(brief: Brief, order: Order) -> Reply:
             raise
     built = _built[0]
     tell(Started())
-    reply = fly_here(built.system, built.unread, order)
+    yield built
     if undeclared := _reads().undeclared(built.code):
         tell(Undeclared(undeclared))
-    return reply
 
 
 def fly_here(system: System, unread: Watch, order: Order) -> Reply:
@@ -90,7 +99,7 @@ def fly_here(system: System, unread: Watch, order: Order) -> Reply:
     return reply
 
 
-def _build(brief: Brief) -> _Built:
+def _build(brief: Brief) -> Built:
     reads = _reads()
     before = source_state(brief.system)
     reads.forget()
@@ -107,7 +116,7 @@ def _build(brief: Brief) -> _Built:
             f"system {brief.system.name!r} is another one in a worker process than here "
             f"({named(differ)}): nothing of it may depend on the process that builds it"
         )
-    return _Built(brief, system, code, code.unread())
+    return Built(brief, system, code, code.unread())
 
 
 @cache

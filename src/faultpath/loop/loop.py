@@ -129,7 +129,9 @@ class _Execution:
                 continue
             if name in outputs:
                 value = outputs[name]
-                arrived = Reading(value, name, 0) if first else self._clocks[name].read(value, step)
+                arrived = (
+                    Reading(value, name, -1) if first else self._clocks[name].read(value, step)
+                )
                 self._now[name] = arrived
             elif not first:
                 raise SystemMistake(

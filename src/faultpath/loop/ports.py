@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from faultpath.arrays import Array
-from faultpath.errors import SystemMistake
+from faultpath.taps import IllegalRead, UndeclaredReader
 
 
 class Port(NamedTuple):
@@ -44,12 +44,12 @@ class Inputs(Mapping[Port, Any]):
         self._truths = truths
 
     def __getitem__(self, port: tuple[str, str]) -> Any:
-        """Return what came at a port; raises `SystemMistake` for one that is not declared."""
+        """Return what came at a port; raises `UndeclaredReader` for one that is not declared."""
         found = Port(*port)
         try:
             value = self._delivered[found]
         except KeyError:
-            raise SystemMistake(
+            raise UndeclaredReader(
                 f"module '{self.module}' looked for channel '{found.channel}' at "
                 f"'{found.place}', a port that it does not declare: add "
                 f"Port('{found.channel}', '{found.place}') to its reads"
@@ -74,9 +74,9 @@ class Inputs(Mapping[Port, Any]):
         return len(self._delivered)
 
     def truth(self, name: str) -> Any:
-        """Return what the plant shows of its own state; `SystemMistake` for an undeclared one."""
+        """Return what the plant shows of its own state; `IllegalRead` for an undeclared one."""
         if name not in self._truths:
-            raise SystemMistake(
+            raise IllegalRead(
                 f"module '{self.module}' looked for the plant's truth '{name}', which it does not "
                 "declare: add it to its truths"
             )

@@ -276,12 +276,14 @@ class Taps:
         if reading.source != tap.source:
             return IllegalRead(
                 f"tap {tap}: the reading is of source '{reading.source}', but the channel is "
-                f"bound to '{tap.source}'"
+                f"bound to '{tap.source}'; deliver that one, or bind the channel in the variant"
             )
         if not tap.legal:
             return IllegalRead(
-                f"tap {tap}: source '{tap.source}' is privileged and this arm does not permit it"
+                f"tap {tap}: source '{tap.source}' is privileged and this arm does not permit it; "
+                "read another one, or name it in the variant's privileged sources"
             )
         return IllegalRead(
-            f"tap {tap}: the reading is of step {reading.step}, which is after step {step}"
+            f"tap {tap}: the reading is of step {reading.step}, which is after step {step}; "
+            "deliver what is known by then"
         )

@@ -1,6 +1,6 @@
 """What the taps did in every arm of a study, from their receipts."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Self
 
 from faultpath.frozen import Frozen
@@ -50,7 +50,10 @@ class Deliveries(Frozen):
             for row in study.rows
         )
         reads = [(row.variant, tap) for row in rows for tap in row.taps]
-        return cls(rows=rows, findings=(*findings, *_unread(reads), *_unproven(table)))
+        return cls(
+            rows=rows,
+            findings=(*findings, *unread(reads), *unproven([row.outcome for row in table.rows])),
+        )
 
     def at(self, variant: str, path: str) -> tuple[TapCount, ...]:
         """Return the taps of a variant on a path, all seeds together; `KeyError` without any."""
@@ -60,7 +63,7 @@ class Deliveries(Frozen):
         return added(count for row in rows for count in row.taps)
 
 
-def _unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
+def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
     """Name the consumers that a variant declares and that never read, in any of its arms.
 
     `counts` are what the taps did in each arm, with the name of the variant.
@@ -77,9 +80,9 @@ def _unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
     )
 
 
-def _unproven(table: OutcomeTable) -> tuple[str, ...]:
+def unproven(outcomes: Sequence[Outcome]) -> tuple[str, ...]:
     """Say so where the hashes are the same in all scenes, and so prove nothing about the pairs."""
-    sound = [row.outcome for row in table.rows if not row.outcome.failed]
+    sound = [outcome for outcome in outcomes if not outcome.failed]
     scenes = {outcome.scene for outcome in sound}
     if len(scenes) < 2 or len({_conditions(outcome) for outcome in sound}) > 1:
         return ()

@@ -153,8 +153,8 @@ def pair(
     void = _flags(ones, Status.FAILED) | _flags(twos, Status.FAILED)
     for at, (seed, one, two) in enumerate(zip(seeds, ones, twos, strict=True)):
         for scene, (a, b) in enumerate(zip(one, two, strict=True)):
-            if differences := _differences(a.outcome, b.outcome, hashes):
-                mismatches.append(Mismatch(first, second, a.outcome.scene, seed, differences))
+            if found := unlike(a.outcome, b.outcome, hashes):
+                mismatches.append(Mismatch(first, second, a.outcome.scene, seed, found))
                 void[scene, at] = True
     keep: Bools = np.asarray(~void.any(axis=1), dtype=np.bool_)
     kept = [row for row, stays in zip(ones[0], keep, strict=True) if stays]
@@ -193,7 +193,10 @@ def _check_scenes(
         )
 
 
-def _differences(a: Outcome, b: Outcome, hashes: Sequence[str]) -> tuple[tuple[str, str, str], ...]:
+def unlike(
+    a: Outcome, b: Outcome, hashes: Iterable[str] = _HASHES
+) -> tuple[tuple[str, str, str], ...]:
+    """Return the name of each hash in which two trials differ, and both of its values."""
     if a.failed or b.failed:
         return ()  # a failed trial has no conditions to compare; its pair is void anyway
     values = ((name, getattr(a, name), getattr(b, name)) for name in hashes)

@@ -2,6 +2,7 @@
 
 # pyright: reportUnusedImport=false
 from faultpath.work.executor import (
+    Call,
     End,
     Executor,
     Failed,
