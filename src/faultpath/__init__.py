@@ -12,6 +12,7 @@ from faultpath.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.door.audit import audit
+    from faultpath.door.mapping import reversal_map
     from faultpath.door.reproduced import ReproductionRun
     from faultpath.door.reproduction import reproduce
     from faultpath.door.run import Run, open_run
@@ -30,6 +31,7 @@ __all__ = [
     "load_system",
     "open_run",
     "reproduce",
+    "reversal_map",
 ]
 
 _HOMES = {
@@ -42,6 +44,7 @@ _HOMES = {
     "load_system": "faultpath.door.systems",
     "open_run": "faultpath.door.run",
     "reproduce": "faultpath.door.reproduction",
+    "reversal_map": "faultpath.door.mapping",
 }
 
 

@@ -93,10 +93,10 @@ def plan_audit(
     a fault that reaches neither variant, a primary path that does not exist, or newly trained
     models of a system that trains none or from one seed.
     """
-    variants = [_variant(system, name) for name in (baseline, repair)]
+    variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
         raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
-    chosen = _scenes(library, scenes)
+    chosen = scenes_of(library, scenes)
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")
     strikes = _strikes(system.interface, fault, variants)
@@ -147,13 +147,15 @@ def _check_trainings(system: System, seeds: Sequence[int]) -> None:
         )
 
 
-def _variant(system: System, name: str) -> Variant:
+def variant_of(system: System, name: str) -> Variant:
+    """Return a variant by its name; `UserError` for an unknown one."""
     if name not in system.variants:
         raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
     return system.variants[name]
 
 
-def _scenes(library: Library, count: int | None) -> tuple[str, ...]:
+def scenes_of(library: Library, count: int | None) -> tuple[str, ...]:
+    """Return the first scenes of a library; `UserError` for a number that it has not got."""
     available = len(library.scenes)
     if count is not None and not 1 <= count <= available:
         raise UserError(

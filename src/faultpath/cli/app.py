@@ -15,6 +15,7 @@ from faultpath.cli import (
     claims,
     interface,
     log,
+    map,
     probe,
     report,
     reproduce,
@@ -52,6 +53,7 @@ _OF_SYSTEMS = {
     "audit": audit.command,
     "check": check.command,
     "interface": interface.command,
+    "map": map.command,
     "probe": probe.command,
 }
 _OTHERS = {

@@ -73,6 +73,14 @@ def _seed(text: str, said: str) -> int:
     return int(text)
 
 
+def sizes(text: str, what: str) -> tuple[float, ...]:
+    """Read comma-separated numbers such as `0.1,0.2`; `UserError` for what is none."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise UserError(f"{what} {text!r} is not a list of numbers, for example 0.1,0.2.") from None
+
+
 def refuse_unless(needed: str, **given: object) -> None:
     """Raise `UserError` for options that were given and only go with another one."""
     if idle := _named(given):

@@ -14,7 +14,7 @@ from faultpath.door.systems import Chosen, choose, worker_count
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
 from faultpath.patience import patience
-from faultpath.planning import Audit, plan_audit
+from faultpath.planning import plan_audit
 from faultpath.record import Generalise
 from faultpath.trials import System, library_of
 from faultpath.trials.state import system_code
@@ -74,8 +74,8 @@ def audit(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     given = dict(locals())
-    _checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
-    drawn = _checked_seeds(seeds)
+    checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
+    drawn = checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
     limit = patience(str(system), time_limit_s) if called else nullcontext()
     with limit:
@@ -90,7 +90,7 @@ def audit(
         fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
         fault_text=fault,
         library=scenes_from,
-        scenes=_checked_count("scenes", scenes),
+        scenes=checked_count("scenes", scenes),
         seeds=drawn,
         primary=primary,
         generalise=generalise,
@@ -103,15 +103,8 @@ def audit(
     from faultpath.door.run import Run
     from faultpath.door.saved import read_run
 
-    if folder is None:
-        place, other = _folder(asked, chosen, library, scenes)
-    else:
-        place, other = Path(folder), ""
-    if chosen.own and (place / "manifest.json").exists():
-        raise UserError(
-            f"{place} holds a run, and whether it was of this same object cannot be told: give "
-            "another folder, or put what builds the system into a file and name that."
-        )
+    named = [asked.study.name, fault, Path(library).stem]
+    place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s)
@@ -120,48 +113,63 @@ def audit(
     return run
 
 
-def _folder(audit: Audit, chosen: Chosen, library: str, scenes: int | None) -> tuple[Path, str]:
-    """Return the run folder of a question and the code as it is, and a sentence about others."""
+def run_folder(
+    folder: str | PathLike[str] | None,
+    chosen: Chosen,
+    named: Sequence[str],
+    scenes: int | None,
+    seeds: Sequence[int],
+) -> tuple[Path, str]:
+    """Return the folder of a run, and a sentence about others of the same question.
+
+    Without a `folder` it is that of the question, which `named` tells apart, and of the code as it
+    is. `UserError` for one that holds a run of an object, which may have been another.
+    """
     from faultpath.store.manifest import keyed
 
-    name = _name(audit, library, scenes)
-    if chosen.own:
-        now = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
-        return Path("runs") / f"{name}-{now}", ""
-    return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+    name = _name(chosen, named, scenes, seeds)
+    if folder is None and not chosen.own:
+        return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+    now = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
+    place = Path("runs") / f"{name}-{now}" if folder is None else Path(folder)
+    if chosen.own and (place / "manifest.json").exists():
+        raise UserError(
+            f"{place} holds a run, and whether it was of this same object cannot be told: give "
+            "another folder, or put what builds the system into a file and name that."
+        )
+    return place, ""
 
 
-def _name(audit: Audit, library: str, scenes: int | None) -> str:
+def _name(chosen: Chosen, named: Sequence[str], scenes: int | None, seeds: Sequence[int]) -> str:
     """Name the run folder after everything that makes it another study."""
-    asked = audit.question
-    seeds = ",".join(map(str, asked.seeds))
-    options = (f"{key}-{value}" for key, value in sorted(asked.options.items()))
-    parts = [audit.study.name, asked.fault, Path(library).stem, *options]
+    drawn = ",".join(map(str, seeds))
+    options = (f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))
+    parts = [*named, *options]
     if scenes is not None:
         parts.append(f"{scenes}-scenes")
-    if seeds != "0":
-        parts.append(f"seeds-{seeds}")
+    if drawn != "0":
+        parts.append(f"seeds-{drawn}")
     name = re.sub(r"[^A-Za-z0-9.+=,_-]+", "_", "-".join(parts)).strip("._")
     if len(name) > _LONGEST_NAME:
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     return name
 
 
-def _checked_texts(**given: object) -> None:
+def checked_texts(**given: object) -> None:
     """Raise `UserError` for what is no text."""
     for name, value in given.items():
         if not isinstance(value, str):
             raise UserError(f"{name} is {value!r:.80}: give it as text.")
 
 
-def _checked_count(name: str, value: object) -> int | None:
+def checked_count(name: str, value: object) -> int | None:
     """Return a whole number or `None`; `UserError` for anything else."""
     if value is None or (isinstance(value, int) and not isinstance(value, bool)):
         return value
     raise UserError(f"{name} is {value!r:.80}: give a whole number, or None.")
 
 
-def _checked_seeds(seeds: int | Sequence[int]) -> tuple[int, ...]:
+def checked_seeds(seeds: int | Sequence[int]) -> tuple[int, ...]:
     """Return the seeds; `UserError` for what is no whole number between 0 and 2^63 - 1."""
     found: tuple[object, ...] = (
         tuple(seeds) if isinstance(seeds, Sequence) and not isinstance(seeds, str) else (seeds,)

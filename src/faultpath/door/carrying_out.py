@@ -43,7 +43,7 @@ def carry_out(
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
     result = _run(system, audit, folder, workers, told, time_limit_s)
-    _tell_failures(told, result, folder)
+    tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
@@ -83,7 +83,8 @@ def _run(
             ) from None
 
 
-def _tell_failures(told: Display, result: RunResult, folder: Path) -> None:
+def tell_failures(told: Display, result: RunResult, folder: Path) -> None:
+    """Tell of the trials that failed, the same error once."""
     if not result.failures:
         return
     told.say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")

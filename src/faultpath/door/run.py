@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import pyarrow as pa
 
-from faultpath.door.saved import RECORD, read_provenance, read_run
+from faultpath.door.saved import MAP, RECORD, read_provenance, read_run
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.html import notebook_view, write_report
@@ -20,6 +20,7 @@ from faultpath.trials import Status
 if TYPE_CHECKING:
     import pandas
 
+    from faultpath.door.mapped import MapRun
     from faultpath.door.reproduced import ReproductionRun
 
 
@@ -83,14 +84,19 @@ class Run:
         return notebook_view(self.record)
 
 
-def open_run(folder: str | PathLike[str]) -> "Run | ReproductionRun":
-    """Open the folder of a finished audit or reproduction, one's own or anybody's.
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ReproductionRun":
+    """Open the folder of a finished audit, map or reproduction, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
     Raises `UserError` for a folder that holds neither, or a damaged or changed one.
     """
     place = Path(folder)
-    if RECORD in read_provenance(place).files or not (place / "reproduction.json").exists():
+    files = read_provenance(place).files
+    if MAP in files:
+        from faultpath.door.mapped import read_map
+
+        return read_map(place)
+    if RECORD in files or not (place / "reproduction.json").exists():
         return Run(place, *read_run(place))
     from faultpath.door.reproduced import read_reproduction
 

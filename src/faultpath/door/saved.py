@@ -19,7 +19,7 @@ from faultpath.store.sealed import AGAIN, read_regular, unseal
 from faultpath.store.tables import decode_outcomes, decode_traces
 from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
-RECORD, SYSTEM = "record.json", "system.json"
+RECORD, SYSTEM, MAP = "record.json", "system.json", "map.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 """The files of a run folder that its pages are made from, and checked against."""
 
@@ -30,7 +30,7 @@ _Table = TypeVar("_Table")
 def read_provenance(folder: Path) -> RunProvenance:
     """Read how a run was made, with the digests of its files; `UserError` without a sound one."""
     place = folder / "provenance.json"
-    return _parsed(read_regular(place), place, RunProvenance)
+    return parsed(read_regular(place), place, RunProvenance)
 
 
 def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
@@ -41,9 +41,9 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
     """
     provenance = read_provenance(folder)
     held = unseal(folder, provenance.files, MADE_FROM)
-    record = _parsed(held[RECORD], folder / RECORD, DecisionRecord)
-    shown = _parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
-    deliveries = _parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
+    record = parsed(held[RECORD], folder / RECORD, DecisionRecord)
+    shown = parsed(held[SYSTEM], folder / SYSTEM, SystemShown)
+    deliveries = parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
     outcomes = _decoded(held[OUTCOMES], folder / OUTCOMES, decode_outcomes)
     traces = _decoded(held[TRACES], folder / TRACES, decode_traces)
     doubts = _doubts(record, provenance, shown, outcomes) or _unlike(record, deliveries)
@@ -61,7 +61,7 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
     return read, read_table(held[OUTCOMES])
 
 
-def _parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
+def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
     """Return a file's contents as `model`; `UserError` when they are not that."""
     try:
         return model.model_validate_json(data)

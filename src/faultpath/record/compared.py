@@ -7,7 +7,6 @@ import numpy as np
 
 from faultpath.errors import UserError
 from faultpath.record.family import CORRECT, Arms
-from faultpath.record.model import Path, Question
 from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
@@ -41,17 +40,13 @@ class Compared:
         return first.pairs.first.success.shape[1], first.arms[0].shape[1]
 
 
-def compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
-    """Return the trials that `decide` compares; `UserError` when no scene is left."""
-    pairs = {path.name: _pair(question, path.name, table) for path in paths}
+def compared(repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable) -> Compared:
+    """Return the trials of two variants that are compared; `UserError` when no scene is left."""
+    pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
     left = _comparable(pairs, mismatches)
     void = tuple(name for name in pairs if name not in left)
     return Compared(_trials(left), void, mismatches)
-
-
-def _pair(question: Question, path: str, table: OutcomeTable) -> Pairs:
-    return pair(table, Side(question.repair, path), Side(question.baseline, path))
 
 
 def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:

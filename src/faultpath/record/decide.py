@@ -51,7 +51,7 @@ def decide(
     gave the same.
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    found = compared(question, paths, table)
+    found = compared(question.repair, question.baseline, [p.name for p in paths], table)
     trials = found.trials
     if question.generalise == "models" and found.seeds[1] < 2:
         raise UserError(

@@ -5,6 +5,7 @@ In a mixture that meets the fault with probability p the expected difference is
 set for the break-even frequency (Fieller, Journal of the Royal Statistical Society B 16:175, 1954).
 """
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Literal
 
@@ -131,13 +132,7 @@ def _pieces(mixture: _Mixture, p_star: float | None) -> tuple[Piece, ...]:
     grid = np.linspace(0.0, 1.0, _GRID + 1)
     if p_star is not None:
         grid = np.unique(np.append(grid, p_star))
-    inside = mixture.undecided(grid)
-    edges = _edges(mixture, grid, inside)
-    if inside[0]:
-        edges = [0.0, *edges]
-    if inside[-1]:
-        edges = [*edges, 1.0]
-    pieces = list(zip(edges[::2], edges[1::2], strict=True))
+    pieces = list(pieces_of(mixture.undecided, grid))
     while len(pieces) > 2:  # not known to happen; closing a gap only claims less
         gaps = [after[0] - before[1] for before, after in pairwise(pieces)]
         least = int(np.argmin(gaps))
@@ -145,7 +140,18 @@ def _pieces(mixture: _Mixture, p_star: float | None) -> tuple[Piece, ...]:
     return tuple(pieces)
 
 
-def _edges(mixture: _Mixture, grid: Floats, inside: Bools) -> list[float]:
+def pieces_of(undecided: Callable[[Floats], Bools], grid: Floats) -> tuple[Piece, ...]:
+    """Return where something is not decided, as intervals: seen at ``grid``, ends by bisection."""
+    inside = undecided(grid)
+    edges = _edges(undecided, grid, inside)
+    if inside[0]:
+        edges = [float(grid[0]), *edges]
+    if inside[-1]:
+        edges = [*edges, float(grid[-1])]
+    return tuple(zip(edges[::2], edges[1::2], strict=True))
+
+
+def _edges(undecided: Callable[[Floats], Bools], grid: Floats, inside: Bools) -> list[float]:
     """Return where the set begins and ends between neighbouring points of the grid, in order."""
     at = np.flatnonzero(inside[1:] != inside[:-1])
     if not len(at):
@@ -153,7 +159,7 @@ def _edges(mixture: _Mixture, grid: Floats, inside: Bools) -> list[float]:
     low, high, state = grid[at], grid[at + 1], inside[at]
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        same = mixture.undecided(middle) == state
+        same = undecided(middle) == state
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     return np.where(state, low, high).tolist()
 

@@ -88,3 +88,10 @@ def normal_quantile(probability: float) -> float:
     from scipy import special
 
     return float(special.ndtri(probability))
+
+
+def normal_p_value(z: float) -> float:
+    """Return the chance that a standard normal value lies beyond ``z`` on either side."""
+    from scipy import special
+
+    return float(2.0 * special.ndtr(-abs(z)))

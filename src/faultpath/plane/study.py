@@ -1,0 +1,196 @@
+"""The trials of a map: at each point two errors at two modules of one source."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faultpath.errors import UserError
+from faultpath.faults import Fault
+from faultpath.plane.asked import MapQuestion, SizedFault, check_up_to, places, sized_fault
+from faultpath.plane.lattice import COARSE, UNITS, Point, lattice
+from faultpath.plane.surface import Differences
+from faultpath.planning import scenes_of, variant_of
+from faultpath.record import CORRECT
+from faultpath.record.compared import Compared, compared
+from faultpath.trials import (
+    Arm,
+    Library,
+    OutcomeTable,
+    Row,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
+
+COARSE_POINTS = len(lattice(COARSE))
+
+
+@dataclass(frozen=True)
+class MapPlan:
+    """A question about two errors, and the trials that answer it at any points."""
+
+    question: MapQuestion
+    system: System
+    spec: SystemSpec
+    fault: SizedFault = field(repr=False)
+    scenes: tuple[str, ...] = field(repr=False)
+
+    @property
+    def name(self) -> str:
+        """Name of its studies: the same whatever spread or number of points is asked for."""
+        asked = self.question
+        return f"{self.spec.name}-map-{asked.repair}-vs-{asked.baseline}"
+
+    def size(self, units: int) -> float:
+        """Return an error from a coordinate of a point."""
+        return round(self.question.up_to * units / UNITS, 12)
+
+    def path(self, point: Point) -> str:
+        """Return what rows of a point are called in the outcome table."""
+        return ",".join(f"{self.size(each):+.6g}" for each in point) if any(point) else CORRECT
+
+    def study(self, points: Sequence[Point]) -> Study:
+        """Return the study of all points. Arms that a fault cannot reach are flown once."""
+        variants = [self.system.variants[n] for n in (self.question.baseline, self.question.repair)]
+        rows = tuple(
+            Row(
+                variant=variant.name,
+                path=self.path(point),
+                seed=seed,
+                arm=Arm(variant=variant.name, faults=self._faults(point, variant), seed=seed),
+            )
+            for point in points
+            for variant in variants
+            for seed in self.question.seeds
+        )
+        return Study(
+            name=self.name,
+            system=self.spec,
+            library=self.question.library,
+            scenes=self.scenes,
+            rows=rows,
+        )
+
+    def _faults(self, point: Point, variant: Variant) -> tuple[Fault, ...]:
+        """Return the faults of a point, in a variant; equal errors are one fault that is shared,
+        as in an audit."""
+        by_size: dict[int, list[str]] = {}
+        for module, units in zip(self.question.against, point, strict=True):
+            if units:
+                by_size.setdefault(units, []).append(module)
+        return tuple(
+            part
+            for units, modules in by_size.items()
+            for part in self.fault.at(self.size(units))
+            .striking(*modules)
+            .resolved(self.system.interface, variant.consumers)
+        )
+
+    def compared(self, points: Sequence[Point], table: OutcomeTable) -> Compared:
+        """Return the pairs of all points, cut to the scenes that every one has.
+
+        `UserError` where a point has none.
+        """
+        names = [self.path(point) for point in points]
+        found = compared(self.question.repair, self.question.baseline, names, table)
+        if found.void:
+            raise UserError(
+                f"at the errors {' and '.join(found.void[:3])} no pair is left to compare, because "
+                "trials failed there: mend what made them fail, or choose a smaller --up-to."
+            )
+        return found
+
+    def differences(self, points: Sequence[Point], found: Compared) -> Differences:
+        """Return success at all points."""
+        arms = [found.trials[self.path(point)].arms for point in points]
+        repair, baseline = (np.array(each, dtype=np.float64) for each in zip(*arms, strict=True))
+        return Differences(tuple(points), repair, baseline)
+
+
+def plan_map(
+    system: System,
+    spec: SystemSpec,
+    *,
+    baseline: str,
+    repair: str,
+    fault: str,
+    against: tuple[str, ...],
+    library: Library,
+    up_to: float | None = None,
+    points: int = 81,
+    means: Sequence[float] = (0.0, 0.0),
+    spreads: Sequence[float] | None = None,
+    correlation: float | None = None,
+    scenes: int | None = None,
+    seeds: Sequence[int] = (0,),
+) -> MapPlan:
+    """Lay out a map. `UserError` for anything that cannot be flown or means nothing."""
+    variants = variant_of(system, baseline), variant_of(system, repair)
+    if baseline == repair:
+        raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
+    if not seeds or len(set(seeds)) < len(seeds):
+        raise UserError("give at least one seed, each of them once.")
+    sized = sized_fault(system, fault)
+    largest = check_up_to(sized, up_to)
+    for end in (-largest, largest):
+        sized.at(end)
+    modules, others = places(system.interface, sized.at(largest), against, variants)
+    if points < COARSE_POINTS:
+        raise UserError(
+            f"--points {points}: a map begins with {COARSE_POINTS}, give as many or more."
+        )
+    chosen = scenes_of(library, scenes)
+    middle, spread = _distribution(means, spreads, correlation, largest, sized)
+    question = MapQuestion(
+        system=spec.name,
+        options=spec.options,
+        baseline=baseline,
+        repair=repair,
+        fault=fault,
+        against=modules,
+        others=others,
+        up_to=largest,
+        relative=sized.relative,
+        unit=sized.unit,
+        means=middle,
+        spreads=spread,
+        correlation=correlation,
+        points=points,
+        library=library.name,
+        library_hash=library.content_hash,
+        n_scenes=len(chosen),
+        seeds=tuple(seeds),
+        trained=system.trained,
+    )
+    return MapPlan(question, system, spec, sized, chosen)
+
+
+def _distribution(
+    means: Sequence[float],
+    spreads: Sequence[float] | None,
+    correlation: float | None,
+    largest: float,
+    fault: SizedFault,
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the means and spreads of the joint distribution; `UserError` for impossible ones."""
+    given = spreads or (fault.expected or largest / 2.0,)
+    spread = _two("--spread", given)
+    if min(spread) <= 0.0:
+        raise UserError("--spread: a standard deviation is above 0.")
+    middle = _two("--mean", means)
+    if max(map(abs, middle)) > largest:
+        raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
+    if correlation is not None and not -1.0 <= correlation <= 1.0:
+        raise UserError(f"--correlation {correlation:g} does not lie between -1 and 1.")
+    return middle, spread
+
+
+def _two(option: str, values: Sequence[float]) -> tuple[float, float]:
+    """Return one number for both modules, or one for each."""
+    if len(values) not in (1, 2) or any(value - value != 0.0 for value in values):
+        raise UserError(
+            f"{option} needs one finite number, or one for each module: 0.1 or 0.1,0.2."
+        )
+    return values[0], values[-1]

@@ -1,0 +1,158 @@
+"""The reversal map, and the expected difference over the correlation of both errors."""
+
+from collections.abc import Iterator
+from itertools import pairwise, product
+
+from faultpath.plane.model import MapRecord
+from faultpath.plane.words import at_point
+from faultpath.report import wording
+from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
+from faultpath.report.svg import Svg, number, shortened
+
+_SIDE, _LEFT, _TOP = 420.0, 64.0, 58.0
+_SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
+"""From which difference on, pp, an area has which opacity."""
+
+
+def map_picture(record: MapRecord) -> Svg:
+    """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
+    asked = record.question
+    svg = Svg(_LEFT + _SIDE + 92, _TOP + _SIDE + 48, _title(record), record.headline)
+    x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + _SIDE)
+    y = Axis(-asked.up_to, asked.up_to, _TOP + _SIDE, _TOP)
+    hatch = svg.hatch("baseline", "range baseline", 6)
+    _key(svg, record, hatch)
+    _areas(svg, record, x, y, hatch)
+    svg.path(_square(x, y), "inner")
+    _paths(svg, record, x, y)
+    svg.path(" ".join(_zero(record, x, y)), "range")
+    for point in record.points:
+        at = x(point.errors[0]), y(point.errors[1])
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(asked, point))
+    _scales(svg, record, x, y)
+    return svg
+
+
+def _title(record: MapRecord) -> str:
+    asked = record.question
+    return f"Reversal map of {asked.system}: {asked.repair} against {asked.baseline}"
+
+
+def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
+    """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
+    surface = record.surface
+    edges = [
+        surface.sizes[0],
+        *((a + b) / 2 for a, b in pairwise(surface.sizes)),
+        surface.sizes[-1],
+    ]
+    drawn: dict[tuple[int, str], list[str]] = {}
+    for row, column in product(range(len(surface.sizes)), repeat=2):
+        sign = surface.sign[row][column]
+        size = abs(surface.difference[row][column])
+        if sign:
+            left, right = (number(x(edges[column + i])) for i in (0, 1))
+            low, high = (number(y(edges[row + i])) for i in (0, 1))
+            shade = next(shade for least, shade in _SHADES if size >= least)
+            piece = f"M{left} {low}H{right}V{high}H{left}Z"
+            drawn.setdefault((sign, shade), []).append(piece)
+    for (sign, shade), pieces in sorted(drawn.items()):
+        side = "repair-only" if sign > 0 else "baseline-only"
+        svg.path("".join(pieces), side, fill_opacity=shade, shape_rendering="crispEdges")
+    marked = [piece for (sign, _), pieces in drawn.items() for piece in pieces if sign < 0]
+    if marked:
+        svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
+
+
+def _paths(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
+    """Draw the isolated axes and the shared diagonal, each with its name."""
+    first, second = record.question.against
+    svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
+    svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
+    svg.line((x.start, y.start), (x.end, y.end), "back")
+    for name, across, up in ((first, x.end, y(0.0)), ("shared", x.end, y.end)):
+        svg.text(across + 6, up + 4, shortened(name, 84, 12), "bold", tip=name)
+    svg.text(x(0.0), y.end - 6, shortened(second, 160, 12), "bold", "middle", tip=second)
+
+
+def _square(x: Axis, y: Axis) -> str:
+    return (
+        f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z"
+    )
+
+
+def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
+    """Yield the pieces of the line on which the estimate is zero, cell by cell of the lattice."""
+    sizes, heights = record.surface.sizes, record.surface.difference
+    for row, column in product(range(len(sizes) - 1), repeat=2):
+        around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+        crossings: list[tuple[float, float]] = []
+        for (r1, c1), (r2, c2) in pairwise([*around, around[0]]):
+            a, b = heights[r1][c1], heights[r2][c2]
+            if (a > 0) != (b > 0):
+                share = a / (a - b)
+                across = sizes[c1] + share * (sizes[c2] - sizes[c1])
+                upward = sizes[r1] + share * (sizes[r2] - sizes[r1])
+                crossings.append((x(across), y(upward)))
+        for (x1, y1), (x2, y2) in zip(crossings[::2], crossings[1::2], strict=True):
+            yield f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}"
+
+
+def _scales(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
+    asked = record.question
+    unit = "%" if asked.relative else asked.unit
+    factor = 100.0 if asked.relative else 1.0
+    for tick in x.ticks(4):
+        draw_tick(svg, x, y, tick, tick_label(round(factor * tick, 9)))
+        svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
+        svg.text(x.start - 8, y(tick) + 4, tick_label(round(factor * tick, 9)), "small soft", "end")
+    middle = (x.start + x.end) / 2
+    across = f"error at the {asked.against[0]}, {unit}".removesuffix(", 1")
+    svg.text(middle, y.start + 36, shortened(across, _SIDE, 11), "small soft", "middle")
+    upward = f"error at the {asked.against[1]}, {unit}".removesuffix(", 1")
+    svg.text(0, y.end - 6, shortened(upward, _LEFT + _SIDE / 2 - 60, 11), "small soft")
+
+
+def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
+    asked = record.question
+    width = (_LEFT + _SIDE + 92) / 2
+    for column, (name, side) in enumerate(
+        ((f"{asked.repair} ahead", "repair-only"), (f"{asked.baseline} ahead", "baseline-only"))
+    ):
+        left = column * width
+        svg.path(f"M{number(left)} 2h22v11h-22Z", side, fill_opacity=_SHADES[1][1])
+        if column:
+            svg.path(f"M{number(left)} 2h22v11h-22Z", "", fill=hatch, fill_opacity="0.5")
+        svg.text(left + 30, 12, shortened(name, width - 40, 12), tip=name)
+    svg.path("M0 22h22v11h-22Z", "inner")
+    svg.text(30, 32, "not decided")
+    svg.line((width, 28), (width + 22, 28), "range")
+    svg.text(width + 30, 32, "estimate of no difference")
+
+
+def correlation_picture(record: MapRecord) -> Svg:
+    """Return the expected difference over the correlation, in an arm's colour where decided."""
+    joint, asked = record.joint, record.question
+    told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
+    svg = Svg(576, 270, f"Expected difference over the correlation, {asked.system}", told)
+    x = Axis(-1.0, 1.0, 40, 566)
+    vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
+    y = vertical.at(222, 26)
+    svg.text(0, 12, f"{asked.repair} minus {asked.baseline}, pp", "small soft")
+    draw_levels(svg, x, y, 5, zero="zero")
+    for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        draw_tick(svg, x, y, tick, tick_label(tick))
+    svg.text(x(0.0), 258, "correlation of the two errors", "small soft", "middle")
+    upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
+    lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
+    svg.polygon([*upper, *reversed(lower)], "fan")
+    svg.polyline([(x(e.correlation), y(e.value)) for e in joint.curve], "curve")
+    for region in joint.regions:
+        side = "repair" if region.sign > 0 else "baseline"
+        inside = [e for e in joint.curve if region.low <= e.correlation <= region.high]
+        svg.polyline([(x(e.correlation), y(e.value)) for e in inside], f"curve {side}")
+    for low, high in joint.undecided:
+        svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
+    for at in joint.estimates:
+        svg.circle((x(at), y(0)), 5, "star", tip=f"estimate: no difference at {at:.2f}")
+    return svg

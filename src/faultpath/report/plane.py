@@ -1,0 +1,152 @@
+"""A map as tables, pictures, terminal and page; all numbers are the record's."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from markupsafe import Markup
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from faultpath.plane.lattice import SHARED
+from faultpath.plane.model import Flip, MapPoint, MapRecord
+from faultpath.record import RunProvenance
+from faultpath.report import wording
+from faultpath.report.figures.plane import correlation_picture, map_picture
+from faultpath.report.frame import render
+from faultpath.store import make_folder, write_text
+from faultpath.tables import MISSING, Entry, Line, Table, line
+from faultpath.tables.html import html
+from faultpath.tables.markdown import block
+from faultpath.tables.terminal import drawn
+from faultpath.version import __version__
+
+
+def tables(record: MapRecord) -> tuple[Table, ...]:
+    """Return the paths of the fault, and how large an error changes the verdict on each."""
+    return _paths(record), _flips(record)
+
+
+def _paths(record: MapRecord) -> Table:
+    asked = record.question
+    of = {point.errors: point for point in record.points}
+    sizes = sorted({x or y for x, y in of if x == y or not x or not y})
+    places: tuple[Callable[[float], tuple[float, float]], ...] = (
+        lambda size: (size, 0.0),
+        lambda size: (0.0, size),
+        lambda size: (size, size),
+    )
+    return Table(
+        name="paths",
+        title=f"{asked.repair} minus {asked.baseline}, pp",
+        corner="Error",
+        columns=(*(f"{name} alone" for name in asked.against), "shared"),
+        lines=tuple(
+            line(asked.said(size), *(_difference(of.get(place(size))) for place in places))
+            for size in sizes
+        ),
+        notes=(
+            f"{wording.counted(record.scenes, 'scene')} of {asked.library}, "
+            f"{wording.seeds(asked.seeds)}. Bold: decided. Intervals hold at all "
+            f"{len(record.points)} pairs of errors at once.",
+        ),
+    )
+
+
+def _difference(point: MapPoint | None) -> Entry:
+    if point is None:
+        return Entry(text=MISSING)
+    ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
+    text = f"{wording.signed(point.difference)} {ends}"
+    return Entry(text=text, detected=point.sign != 0)
+
+
+def _flips(record: MapRecord) -> Table:
+    return Table(
+        name="flips",
+        title="Smallest error that turns the verdict",
+        corner="Path",
+        columns=("Error", "Estimate", "Before it is decided", "After it is decided"),
+        lines=tuple(_flip(record, flip) for flip in record.flips),
+        notes=(
+            "Before: largest error up to which the verdict under correct inputs is decided. After: "
+            "smallest error at which the other one is. The turn lies between them.",
+        ),
+    )
+
+
+def _flip(record: MapRecord, flip: Flip) -> Line:
+    asked = record.question
+    sizes = (flip.estimate, flip.until, flip.first)
+    path = SHARED if flip.path == SHARED else f"{flip.path} alone"
+    texts = (MISSING if size is None else wording.typeset(asked.said(size)) for size in sizes)
+    return line(path, "above 0" if flip.direction > 0 else "below 0", *texts)
+
+
+def every_point(record: MapRecord) -> Table:
+    """Return all pairs of errors with what was seen there."""
+    asked = record.question
+    ahead = {1: asked.repair, -1: asked.baseline, 0: MISSING}
+    return Table(
+        name="points",
+        title="Every pair of errors flown",
+        corner=asked.against[0],
+        columns=(asked.against[1], asked.baseline, asked.repair, "Difference", "Won:lost", "Ahead"),
+        lines=tuple(
+            line(
+                asked.said(point.errors[0]),
+                asked.said(point.errors[1]),
+                wording.plain(point.baseline_percent),
+                wording.plain(point.repair_percent),
+                _difference(point),
+                f"{point.won}:{point.lost}",
+                ahead[point.sign],
+            )
+            for point in record.points
+        ),
+    )
+
+
+def shown(record: MapRecord) -> RenderableType:
+    """Return the record for a terminal."""
+    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
+    parts += map(Text, record.sentences)
+    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
+    for table in tables(record):
+        parts += [Text(""), drawn(table, one_line=True), *map(Text, table.notes)]
+    return Group(*parts)
+
+
+def page(record: MapRecord, provenance: RunProvenance) -> str:
+    """Return the map as one page that opens without a network."""
+    return render(
+        "map.html.j2",
+        ("tokens.css", "svg.css", "page.css"),
+        (),
+        record=record,
+        asked=record.question,
+        provenance=provenance,
+        version=__version__,
+        sentences=[wording.typeset(each) for each in record.sentences],
+        headline=wording.typeset(record.headline),
+        map=Markup(map_picture(record).render()),
+        curve=Markup(correlation_picture(record).render()),
+        tables=[Markup(html(table)) for table in tables(record)],
+        points=Markup(html(every_point(record))),
+        w=wording,
+    )
+
+
+def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+    """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
+    make_folder(folder)
+    made = dict(_files(record, provenance))
+    for name, text in made.items():
+        write_text(folder / name, text, folder)
+    return [folder / name for name in made]
+
+
+def _files(record: MapRecord, provenance: RunProvenance) -> Iterator[tuple[str, str]]:
+    yield "report.html", page(record, provenance)
+    yield "map.svg", map_picture(record).render(standalone=True) + "\n"
+    yield "correlation.svg", correlation_picture(record).render(standalone=True) + "\n"
+    yield "table.md", "\n\n".join(map(block, (*tables(record), every_point(record)))) + "\n"

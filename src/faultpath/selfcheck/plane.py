@@ -1,0 +1,153 @@
+"""How often a map of equal arms announces anything, and holds the true break-even correlation.
+
+A scene bears errors up to a size of its own: the baseline succeeds while the two errors differ by
+less, as they compensate each other, the repair while the first error alone is less.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from faultpath.plane.grow import next_points
+from faultpath.plane.joint import Errors, Expected
+from faultpath.plane.lattice import COARSE, UNITS, Point, lattice, surface_weights
+from faultpath.plane.surface import Combined, Differences, simultaneous
+from faultpath.selfcheck.model import Measured
+from faultpath.statistics.inputs import Floats
+from faultpath.streams import generator
+
+EQUAL_MAPS, CORRELATION = "equal maps", "break-even correlation"
+MODULES = ("first", "second")
+POINTS = 81
+SPREAD, BEARS, COST = 0.4, 0.6, 0.1
+"""Spread of both errors, typical size that a scene bears, share that the repair never solves; of
+the largest error of the map and as a fraction."""
+
+
+def grown(scenes: "Scenes") -> Differences:
+    """Return the points that a map of these scenes flies, with what it sees there."""
+    points = list(lattice(COARSE))
+    while True:
+        found = scenes.differences(points)
+        new = next_points(found, MODULES, POINTS, "selfcheck")
+        if not new:
+            return found
+        points += new
+
+
+@dataclass(frozen=True)
+class Scenes:
+    """Sizes that scenes bear with the baseline and with the repair, `[scenes]`."""
+
+    baseline: Floats
+    repair: Floats
+    equal: bool
+    """Whether the repair is the baseline, but for luck."""
+
+    @classmethod
+    def draw(cls, stream: np.random.Generator, scenes: int, alike: float, equal: bool) -> "Scenes":
+        """Draw scenes, a share `alike` of which bears the same in both."""
+        bears = BEARS * np.sqrt(2.0 * stream.exponential(size=(2, scenes)))
+        bears[1] = np.where(stream.random(scenes) < alike, bears[0], bears[1])
+        bears[1] = np.where(stream.random(scenes) < COST * (not equal), -1.0, bears[1])
+        return cls(bears[0], bears[1], equal)
+
+    def differences(self, points: Sequence[Point]) -> Differences:
+        """Return what is seen at points."""
+        x, y = np.array(points, dtype=np.float64).T[:, :, np.newaxis] / UNITS
+        apart = np.abs(x - y)
+        repair = (apart if self.equal else np.abs(x)) < self.repair
+        baseline = apart < self.baseline
+        return Differences(
+            tuple(points),
+            repair[:, :, np.newaxis].astype(np.float64),
+            baseline[:, :, np.newaxis].astype(np.float64),
+        )
+
+
+def truth(points: Sequence[Point]) -> Floats:
+    """Return the true difference at points, a fraction."""
+    x, y = np.array(points, dtype=np.float64).T / UNITS
+    return (1.0 - COST) * np.exp(-0.5 * (x / BEARS) ** 2) - np.exp(-0.5 * ((x - y) / BEARS) ** 2)
+
+
+def true_correlation() -> float:
+    """Return the correlation at which both arms are expected to do equally well."""
+    ratio = (SPREAD / BEARS) ** 2
+    return 1.0 - ((1.0 + ratio) / (1.0 - COST) ** 2 - 1.0) / (2.0 * ratio)
+
+
+@dataclass(frozen=True)
+class EqualMaps:
+    """Maps of arms that are equal everywhere."""
+
+    scenes: int
+    alike: float
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return the share of maps that announce anything, of a place or of a correlation."""
+        stream = generator("selfcheck", repr(self), 0)
+        errors = Errors((0.0, 0.0), (SPREAD, SPREAD))
+        announced = 0
+        for _ in range(self.runs):
+            found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=True))
+            weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
+            z = simultaneous(weights, found, "selfcheck")
+            said = Combined.of(weights, found).signs(z).any()
+            announced += bool(said or not Expected.over(errors, found, "").undecided(_LOOKS).all())
+        setting = {"scenes": self.scenes, "alike": self.alike}
+        return Measured(EQUAL_MAPS, setting, announced / self.runs, self.runs)
+
+
+@dataclass(frozen=True)
+class CorrelationCoverage:
+    """Coverage of the set of correlations at which it is not decided who does better."""
+
+    scenes: int
+    alike: float
+    straight: bool
+    """Whether the truth is that of the map, straight between its points; else of all errors."""
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return how often the true break-even correlation is in the set."""
+        stream = generator("selfcheck", repr(self), 0)
+        errors = Errors((0.0, 0.0), (SPREAD, SPREAD))
+        covered = 0
+        for _ in range(self.runs):
+            found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=False))
+            expected = Expected.over(errors, found, "selfcheck")
+            true = _of_the_map(expected) if self.straight else true_correlation()
+            covered += bool(expected.undecided(np.array([true]))[0])
+        setting = {"scenes": self.scenes, "alike": self.alike, "straight": int(self.straight)}
+        return Measured(CORRELATION, setting, covered / self.runs, self.runs)
+
+
+_LOOKS = np.linspace(-1.0, 1.0, 41)
+
+
+def _of_the_map(expected: Expected) -> float:
+    """Return where the true expectation of the interpolated surface is 0."""
+    heights = expected.surface @ truth(expected.found.points)
+    low, high = -1.0, 1.0
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        above = float(expected.errors.weights(middle) @ heights) > 0.0
+        low, high = (middle, high) if above else (low, middle)
+    return 0.5 * (low + high)
+
+
+def equal_maps_grid(runs: int) -> Iterator[EqualMaps]:
+    """Yield the grid of equal arms."""
+    for scenes in (10, 25, 100):
+        for alike in (0.0, 0.7):
+            yield EqualMaps(scenes, alike, runs)
+
+
+def correlation_grid(runs: int) -> Iterator[CorrelationCoverage]:
+    """Yield the grid of the break-even correlation."""
+    for scenes in (10, 25, 100):
+        for straight in (True, False):
+            yield CorrelationCoverage(scenes, 0.5, straight, runs)
