@@ -126,12 +126,12 @@ def _flipped(asked: MapQuestion, flip: Flip) -> str:
     if flip.start and flip.until is not None:
         reach = "at every size of the map"
         if abs(flip.until) < asked.up_to:
-            reach = f"up to {asked.said(_cut(flip.until, out=False))}" if flip.until else "at 0"
+            reach = f"up to {asked.said(cut(flip.until, out=False))}" if flip.until else "at 0"
         clauses.append(f"{_winner(asked, flip.start)} is ahead {reach}")
     if flip.first is not None and flip.last is not None:
-        reach = f"from {asked.said(_cut(flip.first, out=True))} on"
+        reach = f"from {asked.said(cut(flip.first, out=True))} on"
         if abs(flip.last) < asked.up_to:
-            ends = _cut(flip.first, out=True), _cut(flip.last, out=False)
+            ends = cut(flip.first, out=True), cut(flip.last, out=False)
             reach = f"between {asked.said(ends[0])} and {asked.said(ends[1])}"
         clauses.append(f"{_winner(asked, flip.turned)} is ahead {reach}")
     elif not flip.start or abs(flip.until or 0.0) < asked.up_to:
@@ -139,7 +139,7 @@ def _flipped(asked: MapQuestion, flip: Flip) -> str:
     return f"{where}: {', '.join(clauses)}."
 
 
-def _cut(size: float, out: bool) -> float:
+def cut(size: float, out: bool) -> float:
     """Return a size at three digits, rounded away from 0 or towards it: never to claim more."""
     if not size:
         return size

@@ -7,8 +7,10 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from faultpath.plane.asked import MapQuestion
 from faultpath.plane.lattice import SHARED
 from faultpath.plane.model import Flip, MapPoint, MapRecord
+from faultpath.plane.words import cut
 from faultpath.record import RunProvenance
 from faultpath.report import wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
@@ -41,7 +43,7 @@ def _paths(record: MapRecord) -> Table:
         corner="Error",
         columns=(*(f"{name} alone" for name in asked.against), "shared"),
         lines=tuple(
-            line(asked.said(size), *(_difference(of.get(place(size))) for place in places))
+            line(_said(asked, size), *(_difference(of.get(place(size))) for place in places))
             for size in sizes
         ),
         notes=(
@@ -76,10 +78,16 @@ def _flips(record: MapRecord) -> Table:
 
 def _flip(record: MapRecord, flip: Flip) -> Line:
     asked = record.question
-    sizes = (flip.estimate, flip.until, flip.first)
     path = SHARED if flip.path == SHARED else f"{flip.path} alone"
-    texts = (MISSING if size is None else wording.typeset(asked.said(size)) for size in sizes)
+    # As in the sentences, nothing is rounded so that it would claim more.
+    until = None if flip.until is None else cut(flip.until, out=False)
+    first = None if flip.first is None else cut(flip.first, out=True)
+    texts = (_said(asked, size) for size in (flip.estimate, until, first))
     return line(path, "above 0" if flip.direction > 0 else "below 0", *texts)
+
+
+def _said(asked: MapQuestion, size: float | None) -> str:
+    return MISSING if size is None else wording.typeset(asked.said(size))
 
 
 def every_point(record: MapRecord) -> Table:
@@ -93,8 +101,8 @@ def every_point(record: MapRecord) -> Table:
         columns=(asked.against[1], asked.baseline, asked.repair, "Difference", "Won:lost", "Ahead"),
         lines=tuple(
             line(
-                asked.said(point.errors[0]),
-                asked.said(point.errors[1]),
+                _said(asked, point.errors[0]),
+                _said(asked, point.errors[1]),
                 wording.plain(point.baseline_percent),
                 wording.plain(point.repair_percent),
                 _difference(point),

@@ -146,11 +146,10 @@ def correlation_picture(record: MapRecord) -> Svg:
     upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
     lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
     svg.polygon([*upper, *reversed(lower)], "fan")
-    svg.polyline([(x(e.correlation), y(e.value)) for e in joint.curve], "curve")
-    for region in joint.regions:
-        side = "repair" if region.sign > 0 else "baseline"
-        inside = [e for e in joint.curve if region.low <= e.correlation <= region.high]
-        svg.polyline([(x(e.correlation), y(e.value)) for e in inside], f"curve {side}")
+    sides = {1: "curve repair", -1: "curve baseline", 0: "curve"}
+    for one, two in pairwise(joint.curve):
+        side = sides[one.sign if one.sign == two.sign else 0]
+        svg.line((x(one.correlation), y(one.value)), (x(two.correlation), y(two.value)), side)
     for low, high in joint.undecided:
         svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
     for at in joint.estimates:

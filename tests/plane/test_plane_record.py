@@ -1,0 +1,159 @@
+"""Joint errors, break-even correlation, turning sizes, and that nothing undecided is said."""
+
+import re
+
+import numpy as np
+import pytest
+from plane_toys import alike, grown, question, record, reversal
+
+from faultpath.plane.decide import decided
+from faultpath.plane.joint import Errors, Expected
+from faultpath.plane.lattice import COARSE, SHOWN, UNITS, lattice
+from faultpath.plane.surface import Differences
+from faultpath.plane.words import cut
+
+X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
+DECIDES = re.compile(r"(new|old) (is|does|is expected)")
+
+
+@pytest.mark.parametrize("correlation", [-1.0, -0.4, 0.0, 0.6, 1.0])
+def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlation: float) -> None:
+    errors = Errors((0.1, -0.2), (0.15, 0.1))
+    weights = errors.weights(correlation)
+    assert weights.sum() == pytest.approx(1)
+    assert weights @ X == pytest.approx(0.1, abs=1e-6)
+    assert weights @ Y == pytest.approx(-0.2, abs=1e-6)
+    assert weights @ (X * Y) == pytest.approx(correlation * 0.015 - 0.02, abs=2e-4)
+    assert errors.outside(correlation) == 0
+
+
+def test_exchanging_the_modules_exchanges_the_errors() -> None:
+    one, two = Errors((0.1, -0.2), (0.3, 0.2)), Errors((-0.2, 0.1), (0.2, 0.3))
+    side = 2 * UNITS // SHOWN + 1
+    for correlation in (-0.7, 0.3, 1.0):
+        turned = two.weights(correlation).reshape(side, side).T
+        np.testing.assert_allclose(one.weights(correlation).reshape(side, side), turned, atol=1e-12)
+
+
+def test_what_lies_beyond_the_map_is_counted_at_its_edge() -> None:
+    errors = Errors((0.0, 0.0), (0.5, 0.5))
+    assert errors.outside(1.0) == pytest.approx(0.0455, abs=0.01)
+    assert errors.weights(0.0)[X == 1.0].sum() > 0.02
+
+
+def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
+    found = grown(reversal(100))
+    made = record(reversal(100), spreads=(0.16, 0.16))
+    (estimate,) = made.joint.estimates
+    ((low, high),) = made.joint.undecided
+    assert -1 < low < estimate < high < 1
+    assert [region.sign for region in made.joint.regions] == [1, -1]
+    expected = Expected.over(Errors((0.0, 0.0), (0.4, 0.4)), found, "carts-1")
+    assert expected.at([estimate]).means[0] == pytest.approx(0, abs=0.1)
+    assert "new does better with a correlation of the two errors up to" in made.headline
+    assert "old does better with a correlation of the two errors from" in made.headline
+    stated = [float(each) for each in re.findall(r"-?\d\.\d+", made.headline)]
+    assert stated[0] <= low
+    assert stated[1] >= high
+
+
+def test_swapping_the_arms_swaps_the_record() -> None:
+    found = grown(reversal(60))
+    one = decided(question(), found)
+    two = decided(question(), Differences(found.points, found.baseline, found.repair))
+    assert [p.sign for p in one.points] == [-p.sign for p in two.points]
+    assert [r.sign for r in one.joint.regions] == [-r.sign for r in two.joint.regions]
+    np.testing.assert_allclose(one.joint.undecided, two.joint.undecided)
+    assert [(f.until, f.first, -f.start) for f in one.flips] == [
+        (f.until, f.first, f.start) for f in two.flips
+    ]
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4])
+def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
+    made = record(reversal(scenes))
+    assert made.headline.startswith(f"Too few scenes to decide anything: {scenes}")
+    assert not DECIDES.search(" ".join((made.headline, *made.sentences)))
+    assert not any(point.sign for point in made.points)
+    assert made.joint.regions == ()
+    assert made.joint.undecided == ((-1.0, 1.0),)
+
+
+def test_nothing_is_said_to_be_decided_of_ties() -> None:
+    made = record(alike(40))
+    assert made.headline == (
+        "At no correlation of the two errors is it decided which of old and new does better."
+    )
+    said = " ".join(made.sentences)
+    assert "old is ahead at 0 and new at 0; at" in said
+    assert said.count("nothing is decided") == 6
+    assert not DECIDES.search(said.replace("old is ahead at 0 and new at 0", ""))
+    assert [flip.estimate for flip in made.flips] == [None] * 6
+
+
+def test_every_claim_of_a_path_is_one_of_its_points() -> None:
+    made = record(reversal(100))
+    of = {point.errors: point for point in made.points}
+    observer = next(f for f in made.flips if (f.path, f.direction) == ("observer", 1))
+    assert (observer.start, observer.turned) == (-1, 1)
+    assert observer.until is not None
+    assert observer.first is not None
+    assert observer.estimate is not None
+    assert 0 < observer.until < observer.estimate < observer.first <= 0.4
+    for (x, y), point in of.items():
+        if y == 0 and 0 <= x <= observer.until:
+            assert point.sign == -1
+        if y == 0 and observer.first <= x <= (observer.last or 0):
+            assert point.sign == 1
+    shared = next(f for f in made.flips if (f.path, f.direction) == ("shared", -1))
+    assert (shared.until, shared.estimate, shared.first) == (-0.4, None, None)
+    said = " ".join(made.sentences)
+    assert "With both wrong alike, error below 0: old is ahead at every size of the map." in said
+    assert "Sharing the error reverses the verdict at" in said
+
+
+def test_a_verdict_that_is_not_decided_under_correct_inputs_is_not_said_to_turn() -> None:
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        scenes = np.arange(60)
+        return scenes >= 0, scenes >= 3 + 40 * (abs(x) > 0.2)
+
+    made = record(seen)
+    first = next(f for f in made.flips if (f.path, f.direction) == ("observer", 1))
+    assert (first.start, first.until, first.turned) == (0, None, 1)
+    assert first.estimate is None
+    (said,) = (
+        s for s in made.sentences if s.startswith("With the observer alone wrong, error above")
+    )
+    assert re.fullmatch(r".*: new is ahead from \+[\d.]+ % on\.", said)
+
+
+def test_sizes_are_rounded_so_that_they_claim_less() -> None:
+    assert cut(0.12345, out=True) == pytest.approx(0.124)
+    assert cut(-0.12345, out=True) == pytest.approx(-0.124)
+    assert cut(0.12345, out=False) == pytest.approx(0.123)
+    assert cut(0.3, out=True) == pytest.approx(0.3)
+    assert cut(0.0, out=True) == 0.0
+
+
+def test_the_distribution_is_told_with_what_lies_beyond_the_map() -> None:
+    said = " ".join(record(reversal(20), others=("logger",)).sentences)
+    assert "at the observer with standard deviation 20 %" in said
+    assert re.search(r"Up to \d+ % of them lie beyond the map", said)
+    assert "Without error: logger." in said
+    inside = record(reversal(20), spreads=(0.08, 0.08), means=(0.1, 0.0), correlation=0.5)
+    assert "mean +10 %" in " ".join(inside.sentences)
+    assert "beyond the map" not in " ".join(inside.sentences)
+    assert any(s.startswith("With a correlation of 0.5") for s in inside.sentences)
+
+
+def test_what_finer_points_showed_beside_what_was_foretold_is_told() -> None:
+    def straight(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        scenes = (np.arange(100) + 0.5) / 100
+        return scenes < 0.5 + 0.4 * x, scenes < 0.5
+
+    made = record(straight)
+    assert made.foretold > 0
+    assert made.missed_pp is not None
+    assert made.missed_pp < 1
+    assert record(lambda x, y: (np.ones(40), np.zeros(40))).missed_pp is None
+    assert len(record(lambda x, y: (np.ones(40), np.zeros(40))).points) == len(lattice(COARSE))

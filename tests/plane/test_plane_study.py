@@ -1,0 +1,164 @@
+"""What a map flies: two errors at two modules of one source, and mistakes in asking for it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.execution import run_study
+from faultpath.faults import Fault, Scale, parse_fault
+from faultpath.interface import Channel, Interface, Provenance, Source
+from faultpath.plane.asked import places
+from faultpath.plane.decide import conclude
+from faultpath.plane.lattice import COARSE, UNITS, lattice
+from faultpath.plane.study import MapPlan, plan_map
+from faultpath.planning import plan_audit
+from faultpath.trials import SystemSpec, Variant, library_of, load_system
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SPEC = SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create")
+TOY = load_system(SPEC)
+ASKED: dict[str, Any] = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain",
+    "against": ("controller", "observer"),
+    "up_to": 0.4,
+    "scenes": 8,
+}
+
+
+def plan(**given: Any) -> MapPlan:
+    return plan_map(TOY, SPEC, library=library_of(TOY, "carts"), **(ASKED | given))
+
+
+def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
+    """To the arm, so that both would be the same trials."""
+    fault = parse_fault("gain:scale=0.6", TOY.interface, {}, TOY.control_dt_s)
+    audit = plan_audit(
+        TOY,
+        SPEC,
+        baseline="calibrated",
+        repair="blind",
+        fault=fault,
+        fault_text="",
+        library=library_of(TOY, "carts"),
+        scenes=8,
+    )
+    points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
+    names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
+    made = plan()
+    arms = {(row.variant, row.path): row.arm for row in made.study(points).rows}
+    for row in audit.study.rows:
+        assert arms[row.variant, made.path(names[row.path])] == row.arm
+
+
+def test_correct_arms_and_arms_that_no_error_reaches_are_flown_once() -> None:
+    study = plan().study(lattice(COARSE))
+    blind = [arm for arm in study.arms() if arm.variant == "blind"]
+    assert len(study.rows) == 2 * 25
+    assert len(blind) == 5  # it reads the gain at the controller alone
+    assert len(study.arms()) == 30
+
+
+def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
+    rows = plan().study([(8, -16)]).rows
+    struck = {
+        (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr]
+        for row in rows
+        for fault in row.arm.faults
+    }
+    assert struck == {
+        ("calibrated", ("controller.inverse",), 1.1),
+        ("calibrated", ("observer.model",), 0.8),
+        ("blind", ("controller.inverse",), 1.1),
+    }
+
+
+def test_the_toy_turns_at_the_observer_and_not_when_shared(tmp_path: Path) -> None:
+    made = plan(scenes=40, points=25)
+    points = [*lattice(COARSE)]
+    done = run_study(made.study(points), tmp_path, workers=0, recheck=False)
+    record = conclude(made, points, done.outcomes)
+    flips = {(flip.path, flip.direction): flip for flip in record.flips}
+    assert flips["observer", -1].estimate == pytest.approx(-0.25, abs=0.1)
+    assert flips["shared", -1].first is None
+    assert record.joint.regions[-1].sign == -1
+    assert record.scenes == 40
+
+
+def test_an_offset_is_in_the_unit_of_the_reading() -> None:
+    dock = SystemSpec(name=f"{EXAMPLES / 'dock.py'}:create")
+    system = load_system(dock)
+    made = plan_map(
+        system,
+        dock,
+        baseline="wheels",
+        repair="ranges",
+        fault="range:offset,onset=5",
+        against=("approach", "speedometer"),
+        library=library_of(system, "floors"),
+        up_to=0.5,
+        scenes=4,
+    )
+    assert not made.question.relative
+    assert made.question.said(-0.25) == "-0.25 m"
+    (fault,) = made.study([(0, 16)]).rows[1].arm.faults
+    assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr]
+
+
+def test_readers_that_get_it_without_error_are_named() -> None:
+    reads = ("planner.cost", "planner.limit", "observer.model", "logger.file")
+    interface = Interface(
+        name="paper",
+        sources=(Source(name="scale", unit="kg", provenance=Provenance.MEASURED),),
+        channels=(Channel(name="mass", sources=("scale",), consumers=reads),),
+    )
+    fault = Fault(channel="mass", intervention=Scale(factor=1.1))
+    logged = Variant("logged", "", frozenset(reads))
+    plain = Variant("plain", "", frozenset(reads[:3]))
+    two = ("planner", "observer")
+    assert places(interface, fault, two, (plain, logged)) == (two, ("logger",))
+    assert places(interface, fault, two, (plain, plain)) == (two, ())
+    with pytest.raises(UserError, match="neither 'plain' nor 'plain' has 'logger' read"):
+        places(interface, fault, ("planner", "logger"), (plain, plain))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"fault": "gain:scale=0.6"}, "the map sets the size itself; leave '=0.6' out"),
+        ({"fault": "gain@observer"}, "name the modules with --against"),
+        ({"fault": "gain:noise"}, "errors of both signs"),
+        ({"fault": "gian"}, "did you mean 'gain'"),
+        ({"against": ("controller",)}, "--against needs two modules"),
+        ({"against": ("controller", "controller")}, "--against needs two modules"),
+        ({"against": ("controller", "controller.inverse")}, "share no place"),
+        ({"against": ("controller", "speedometer")}, "unknown consumer"),
+        ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
+        ({"up_to": None}, "say how large errors may be"),
+        ({"up_to": 1.0}, "less than 1"),
+        ({"up_to": 0.0}, "above 0"),
+        ({"up_to": float("nan")}, "above 0"),
+        ({"points": 24}, "begins with 25"),
+        ({"spreads": (0.0,)}, "above 0"),
+        ({"spreads": (0.1, 0.1, 0.1)}, "one for each module"),
+        ({"means": (0.5,)}, "beyond the map"),
+        ({"correlation": 1.5}, "between -1 and 1"),
+        ({"seeds": ()}, "at least one seed"),
+        ({"scenes": 1000}, "choose 1 to 100"),
+        ({"repair": "other"}, "unknown variant"),
+    ],
+)
+def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(UserError) as refused:
+        plan(**given)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_one_number_serves_both_modules() -> None:
+    assert plan(spreads=(0.1,), means=(0.05,)).question.spreads == (0.1, 0.1)
+    assert plan(spreads=(0.1, 0.3)).question.spreads == (0.1, 0.3)
+    assert plan().question.spreads == (0.2, 0.2)
