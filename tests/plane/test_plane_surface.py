@@ -138,14 +138,12 @@ def test_cells_are_cut_where_the_sign_is_not_decided_and_nowhere_else() -> None:
 @pytest.mark.parametrize("limit", [25, 40, 81])
 def test_the_limit_holds_for_all_but_bisections(limit: int) -> None:
     points = lattice(COARSE)
-    while True:
-        new = next_points(differences(reversal(100), points), MODULES, limit, "toy")
-        halves = [point for point in new if point[0] % FINE or point[1] % FINE]
-        if not new or halves:
-            break
+    on_paths = {along(way, size) for way in rays(MODULES).values() for size in range(UNITS + 1)}
+    while new := next_points(differences(reversal(100), points), MODULES, limit, "toy"):
+        assert set(new) <= on_paths or len(points) + len(new) <= limit
         points += new
-        assert len(points) <= limit + 6  # a path may be halved on the lattice first
     assert len(set(points)) == len(points)
+    assert set(points) - on_paths <= {*lattice(COARSE), *lattice(FINE)}
 
 
 def test_the_first_turn_of_a_path_is_bisected_to_one_unit() -> None:
