@@ -19,7 +19,7 @@ from faultpath.errors import UserError
 from faultpath.interface import read_interface
 from faultpath.streams import generator
 from faultpath.taps import Reading, Taps
-from faultpath.trials import Library, Outcome, SceneRef, Status, System, Variant
+from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""
 name: dock
@@ -52,6 +52,14 @@ RANGES = Variant(
 
 class Dock(System):
     name, control_dt_s, interface = "dock", 0.1, INTERFACE
+    metrics = {  # noqa: RUF012 - never changed
+        "terminal_distance_m": Metric(
+            unit="m",
+            better="less",
+            words="terminal distance",
+            title="Distance to the goal at the end",
+        )
+    }
     ends = {Status.TIMEOUT: "stopped short"}  # noqa: RUF012 - never changed
     variants = {"wheels": WHEELS, "ranges": RANGES}  # noqa: RUF012 - never changed
 
@@ -88,11 +96,10 @@ class Dock(System):
                 scene=scene,
                 status=status(distance[i]),
                 time_s=150 * self.control_dt_s,
-                terminal_distance_m=abs(float(distance[i])),
-                min_clearance_m=None,
                 initial_hash=(drawn := hashlib.sha256(draws[i].tobytes()).hexdigest()),
                 disturbance_hash=drawn,
                 planner_noise_hash="none",
+                metrics={"terminal_distance_m": abs(float(distance[i]))},
             )
             for i, scene in enumerate(scenes)
         ]

@@ -17,8 +17,9 @@ import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
 from faultpath.loop import Module, Port
-from faultpath.systems import ComposedSystem, Parts
+from faultpath.systems import ComposedSystem, Measure, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
+from faultpath.trials import Metric
 
 DATA_SHEET_GAIN, DT_S = 100.0, 0.04  # N a unit of command; s a control step
 
@@ -84,9 +85,9 @@ def setup(env, rng):
     return {"motor_gain": gain}
 
 
-def in_place(flown):
-    """Say whether the pole stood to the end and the cart came to rest at the middle of its rail."""
-    return not flown.terminated and abs(flown["encoders"][-25:, 0].mean()) < 0.05
+def offset_m(flown):
+    """Return how far from the middle of its rail the cart came to rest."""
+    return abs(flown["encoders"][-25:, 0].mean())
 
 
 def create():
@@ -96,7 +97,8 @@ def create():
         action="command",
         steps=200,
         setup=setup,
-        succeeded=in_place,
+        succeeded=lambda flown: not flown.terminated and offset_m(flown) <= 0.05,
+        metrics={"offset_m": Measure(Metric(unit="m", better="less"), offset_m)},
     )
     return ComposedSystem(
         "pendulum",

@@ -20,7 +20,7 @@ import numpy as np
 
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.streams import generator
-from faultpath.trials import Library, LoopSystem, SceneRef, Status, System, Wiring
+from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, System, Wiring
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
 
@@ -82,7 +82,7 @@ class Cart(Plant):
             succeeded=~running & (missed < TOLERANCE_M),
             crashed=np.zeros(len(missed), bool),
             time_s=np.full(len(missed), now.step * DT_S),
-            terminal_distance_m=missed,
+            metrics={"terminal_distance_m": missed},
         )
 
     def conditions(self, now):
@@ -137,6 +137,14 @@ class Controller(Module):
 class Toy(LoopSystem):
     name, control_dt_s = "toy", DT_S
     interface = interface_of(FACTS, (Controller(), Observer(calibrated=True), Cart()))
+    metrics = {  # noqa: RUF012 - never changed
+        "terminal_distance_m": Metric(
+            unit="m",
+            better="less",
+            words="terminal distance",
+            title="Distance to the goal at the end",
+        )
+    }
     ends = {Status.TIMEOUT: "missed"}  # noqa: RUF012 - never changed
     wirings = {  # noqa: RUF012 - never changed
         "calibrated": Wiring("The observer reads the gain estimate."),

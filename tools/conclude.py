@@ -62,6 +62,7 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
         update={
             "trained": system.trained,
             "ends": {status.value: words for status, words in system.ends.items()},
+            "metrics": dict(system.metrics),
         }
     )
     paths = [FaultPath.model_validate(path) for path in before["paths"]]

@@ -123,6 +123,7 @@ def plan_audit(
         generalise=generalise,
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
+        metrics=dict(system.metrics),
     )
     study = Study(
         name=f"{spec.name}-{repair}-vs-{baseline}",

@@ -156,7 +156,7 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path, workers):
             assert row.outcome.failed
             assert row.outcome.error == "ValueError: no air in s05"
         else:
-            assert row.outcome.terminal_distance_m == expected.outcome.terminal_distance_m
+            assert row.outcome.metrics == expected.outcome.metrics
     assert len(result.failures) == len(study().arms())
     for failure in result.failures:
         assert failure.scene == "s05"

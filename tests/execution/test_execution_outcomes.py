@@ -28,7 +28,7 @@ class Sloppy(ToySystem):
 
 
 WRONG = {
-    "distance": {"terminal_distance_m": math.nan},
+    "distance": {"metrics": {"distance": math.nan}},
     "status": {"status": "success"},
     "trace": {"trace": np.zeros((3, 2))},
     "object": {"trace": lambda: None},  # would not even cross to the parent

@@ -52,7 +52,7 @@ class Odd(ToySystem):
 
 def _moved(outcomes, by):
     return [
-        replace(o, terminal_distance_m=o.terminal_distance_m + abs(float(by[i])))
+        replace(o, metrics={"distance": o.metrics["distance"] + abs(float(by[i]))})
         for i, o in enumerate(outcomes)
     ]
 

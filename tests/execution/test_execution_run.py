@@ -41,7 +41,7 @@ def test_the_fault_changes_what_it_should(whole):
     table = result.outcomes
 
     def distances(variant: str, path: str) -> list[float | None]:
-        return [r.outcome.terminal_distance_m for r in table.arm(variant, path, 0)]
+        return [r.outcome.metrics["distance"] for r in table.arm(variant, path, 0)]
 
     assert distances("plain", "shared") == distances("plain", "planner")
     assert distances("plain", "shared") != distances("plain", "correct")

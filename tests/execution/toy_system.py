@@ -14,7 +14,7 @@ import numpy as np
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.streams import generator
 from faultpath.taps import Reading, Taps
-from faultpath.trials import Library, SceneRef, System, Variant
+from faultpath.trials import Library, Metric, SceneRef, System, Variant
 from faultpath.trials.outcome import Outcome, Status
 
 STEPS = 12
@@ -25,6 +25,7 @@ class ToySystem(System):
     name = "toy"
     control_dt_s = 0.05
     block_size = 4
+    metrics = {"distance": Metric(unit="m", better="less")}  # noqa: RUF012 - never changed
 
     def __init__(self, **options: str) -> None:
         self._options = options
@@ -74,8 +75,7 @@ class ToySystem(System):
                 scene=scene,
                 status=Status.SUCCESS if abs(position[i]) < 0.15 else Status.TIMEOUT,
                 time_s=STEPS * self.control_dt_s,
-                terminal_distance_m=float(abs(position[i])),
-                min_clearance_m=None,
+                metrics={"distance": float(abs(position[i]))},
                 initial_hash=f"{start[i]:.12f}",
                 disturbance_hash=f"{scene}-{seed}",
                 planner_noise_hash="none",

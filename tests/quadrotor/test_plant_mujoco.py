@@ -191,7 +191,9 @@ def test_an_audit_s_trials_are_their_own_and_of_their_plant(
     for ours, theirs in zip(whole, torch_s, strict=True):
         assert ours.initial_hash != theirs.initial_hash
         assert ours.disturbance_hash == theirs.disturbance_hash
-        assert ours.terminal_distance_m == pytest.approx(theirs.terminal_distance_m, abs=1e-3)
+        assert ours.metrics["terminal_distance_m"] == pytest.approx(
+            theirs.metrics["terminal_distance_m"], abs=1e-3
+        )
     assert system.fingerprint() != other.fingerprint()
     assert system.backend.endswith("MuJoCo")
 

@@ -209,7 +209,7 @@ def test_outcomes_and_fingerprints_tell_platforms_apart():
     here, there = (fly(system, "dki", HELD_OUT[:2])[0] for system in (first, damped))
     for one, other in zip(here, there, strict=True):
         assert one.initial_hash != other.initial_hash, "another vehicle starts"
-        assert one.terminal_distance_m != other.terminal_distance_m
+        assert one.metrics["terminal_distance_m"] != other.metrics["terminal_distance_m"]
     calm = FIRST.model_copy(update={"winds": Winds(means_mps=(0.0, 1.0, 2.0, 3.0))})
     gentle = flown_on(calm, predictor="dki", clearance="true", wind="L2")
     (still,), _ = fly(gentle, "dki", HELD_OUT[:1])
@@ -228,4 +228,4 @@ def test_known_altitudes_pass_a_tap_of_their_own():
     exact, _ = fly(seeing, "dki", HELD_OUT[:2])
     lifted, _ = fly(seeing, "dki", HELD_OUT[:2], [raised])
     for one, other in zip(exact, lifted, strict=True):
-        assert one.terminal_distance_m != other.terminal_distance_m
+        assert one.metrics["terminal_distance_m"] != other.metrics["terminal_distance_m"]

@@ -32,7 +32,7 @@ def test_arrival_is_a_success_at_the_end_of_a_control_step(tmp_path):
     end = _end(tmp_path, None, (0.0, 0.0, 1.5), (0.4, 0.0, 1.5))
     assert end.status is Status.SUCCESS
     assert end.time_s == CONTROL_DT_S
-    assert end.terminal_distance_m <= GOAL_RADIUS_M
+    assert end.metrics["terminal_distance_m"] <= GOAL_RADIUS_M
     assert trace(end).shape == (2, 3)
 
 
@@ -45,8 +45,8 @@ def test_hovering_till_the_end_is_a_timeout(tmp_path):
     end = _end(tmp_path, HOVER, (-3.0, 0.0, 1.5), (3.0, 0.0, 1.5))
     assert end.status is Status.TIMEOUT
     assert end.time_s == pytest.approx(STEPS * CONTROL_DT_S)
-    assert end.terminal_distance_m == pytest.approx(6.0, abs=1e-6)
-    assert end.min_clearance_m == pytest.approx(1.5 - COLLISION_RADIUS_M, abs=1e-6)
+    assert end.metrics["terminal_distance_m"] == pytest.approx(6.0, abs=1e-6)
+    assert end.metrics["min_clearance_m"] == pytest.approx(1.5 - COLLISION_RADIUS_M, abs=1e-6)
     assert trace(end).shape == (STEPS + 1, 3)
     assert np.abs(trace(end) - trace(end)[0]).max() < 1e-6
 
@@ -63,7 +63,7 @@ def test_falling_onto_something_is_a_crash_when_physics_says_so(tmp_path, height
     # The motors first have to stop: two lags of 40 ms delay the fall, drag hardly.
     assert free_fall_s + 0.02 < end.time_s < free_fall_s + 0.1
     assert end.time_s / 0.01 == pytest.approx(round(end.time_s / 0.01))
-    assert -0.05 < end.min_clearance_m <= 0
+    assert -0.05 < end.metrics["min_clearance_m"] <= 0
 
 
 def test_in_free_space_the_obstacle_is_not_there(tmp_path):
@@ -72,7 +72,7 @@ def test_in_free_space_the_obstacle_is_not_there(tmp_path):
     free = _end(tmp_path, FALL, *place, environment="free-space")
     assert free.time_s > 0.45  # the floor is 1.4 m below, not 0.4 m
     hovering = _end(tmp_path, HOVER, *place, environment="free-space")
-    assert hovering.min_clearance_m == pytest.approx(1.4 - COLLISION_RADIUS_M, abs=1e-6)
+    assert hovering.metrics["min_clearance_m"] == pytest.approx(1.4 - COLLISION_RADIUS_M, abs=1e-6)
 
 
 def test_terminal_distance_and_clearance_are_those_of_the_trace():
@@ -84,12 +84,12 @@ def test_terminal_distance_and_clearance_are_those_of_the_trace():
         assert path.dtype == np.float32
         assert path[0] == pytest.approx(scene.start_m, abs=1e-6)
         missed = np.linalg.norm(path[-1] - np.array(scene.goal_m))
-        assert outcome.terminal_distance_m == pytest.approx(missed, abs=1e-5)
+        assert outcome.metrics["terminal_distance_m"] == pytest.approx(missed, abs=1e-5)
         assert len(path) == round(outcome.time_s / CONTROL_DT_S) + 1
         low, high = np.array(scene.bounds.low_m), np.array(scene.bounds.high_m)
         walls = min((path - low).min(), (high - path).min()) - COLLISION_RADIUS_M
-        assert outcome.min_clearance_m <= walls + 1e-5
-        assert outcome.min_clearance_m > 0
+        assert outcome.metrics["min_clearance_m"] <= walls + 1e-5
+        assert outcome.metrics["min_clearance_m"] > 0
 
 
 def test_clearance_in_an_empty_hall_is_the_least_along_the_trace(tmp_path):
@@ -97,7 +97,7 @@ def test_clearance_in_an_empty_hall_is_the_least_along_the_trace(tmp_path):
     end = _end(tmp_path, None, (-3.0, 0.0, 1.5), (3.0, 0.0, 1.5))
     low, high = np.array([-5, -3, 0]), np.array([5, 3, 3])
     along = np.minimum(trace(end) - low, high - trace(end)).min() - COLLISION_RADIUS_M
-    assert along - 0.02 < end.min_clearance_m <= along + 1e-5
+    assert along - 0.02 < end.metrics["min_clearance_m"] <= along + 1e-5
 
 
 def test_a_trial_lasts_twelve_seconds_at_most():

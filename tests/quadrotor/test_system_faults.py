@@ -146,7 +146,9 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     declared = fault(text, system)
     (struck,), taps = fly(system, faults=[declared])
     assert np.isfinite(trace(struck)).all()
-    assert np.isfinite([struck.terminal_distance_m, struck.min_clearance_m]).all()
+    assert np.isfinite(
+        [struck.metrics["terminal_distance_m"], struck.metrics["min_clearance_m"]]
+    ).all()
     assert bits(struck)[-1] != bits(plain)[-1]
     named = {
         (each.channel, consumer)

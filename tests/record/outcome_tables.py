@@ -71,8 +71,9 @@ def rows(
                 scene=f"s{i:03d}",
                 status=status,
                 time_s=0.0 if status is Status.FAILED else 5.0 + 0.01 * i + slower_s,
-                terminal_distance_m=None if status is Status.FAILED else 1.0 + slower_s,
-                min_clearance_m=None if status is Status.FAILED else 0.25,
+                metrics={}
+                if status is Status.FAILED
+                else {"terminal_distance_m": 1.0 + slower_s, "min_clearance_m": 0.25},
                 initial_hash=f"i{i}",
                 disturbance_hash=f"d{i}",
                 planner_noise_hash=f"n{i}-{seed}",

@@ -68,10 +68,8 @@ def test_the_time_is_compared_where_both_arrived():
     (effect,) = record({CORRECT: (40, 20, 5)}, slower_s=1.5).effects
     assert effect.time_s is not None
     assert effect.time_s.value == pytest.approx(1.5)
-    assert effect.terminal_distance_m is not None
-    assert effect.terminal_distance_m.value == pytest.approx(1.5)
-    assert effect.min_clearance_m is not None
-    assert effect.min_clearance_m.value == pytest.approx(0.0)
+    assert effect.metrics["terminal_distance_m"].value == pytest.approx(1.5)
+    assert effect.metrics["min_clearance_m"].value == pytest.approx(0.0)
 
 
 def test_without_a_joint_success_there_is_no_time_to_compare():
@@ -262,7 +260,7 @@ def test_several_seeds_are_averaged_within_each_scene():
     assert effect.success.n_seeds == 2
 
 
-SECONDARY = {"time_s", "joint_successes", "terminal_distance_m", "min_clearance_m"}
+SECONDARY = {"time_s", "joint_successes", "metrics"}
 
 
 def test_seeds_that_change_nothing_are_counted_once():
@@ -333,9 +331,11 @@ def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the
 
 def test_a_secondary_outcome_that_does_not_vary_has_no_interval():
     (effect,) = record({CORRECT: (40, 20, 5)}).effects
-    assert effect.min_clearance_m is not None
-    assert (effect.min_clearance_m.low, effect.min_clearance_m.high) == (None, None)
-    assert "no interval" in effect.min_clearance_m.method
+    assert (effect.metrics["min_clearance_m"].low, effect.metrics["min_clearance_m"].high) == (
+        None,
+        None,
+    )
+    assert "no interval" in effect.metrics["min_clearance_m"].method
 
 
 def aa_audits(n: int, n_seeds: int, audits: int, rate: float) -> float:

@@ -238,7 +238,7 @@ def _outcome(
     }
     if failed:
         error = "RuntimeError: <b>no</b> candidate is finite"
-        return Outcome(_scene(index), Status.FAILED, 0.0, None, None, **hashes, error=error)
+        return Outcome(_scene(index), Status.FAILED, 0.0, **hashes, error=error)
     crash = rng.random() < 0.7
     status = Status.SUCCESS if solved else Status.CRASH if crash else Status.TIMEOUT
     trace = _track(index, status, rng)
@@ -248,8 +248,10 @@ def _outcome(
         scene=_scene(index),
         status=status,
         time_s=time,
-        terminal_distance_m=float(np.linalg.norm(trace[-1] - goal)),
-        min_clearance_m=0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6)),
+        metrics={
+            "terminal_distance_m": float(np.linalg.norm(trace[-1] - goal)),
+            "min_clearance_m": 0.0 if status is Status.CRASH else float(rng.uniform(0.05, 0.6)),
+        },
         struck_steps=len(trace) if struck else 0,
         altered_steps=len(trace) if struck else 0,
         trace=trace,

@@ -155,7 +155,7 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
 
 def test_secondary_outcomes_and_cells_are_shown(source: ReportInput, html: str) -> None:
     for effect in source.record.effects:
-        for estimate in (effect.time_s, effect.terminal_distance_m, effect.min_clearance_m):
+        for estimate in (effect.time_s, *effect.metrics.values()):
             assert estimate is not None
             low, high = estimate.low or 0.0, estimate.high or 0.0
             value = signed(estimate.value, 2)

@@ -30,9 +30,9 @@ def _code(**files: str) -> CodeState:
 def _outcomes() -> tuple[Outcome, ...]:
     trace = np.arange(12, dtype=np.float32).reshape(4, 3)
     return (
-        Outcome("s0", Status.SUCCESS, 2.5, 0.4, -0.125, "i", "d", "p", 3, 2, None, trace),
-        Outcome("s1", Status.FAILED, 0.0, None, None, "", "", "", error="ValueError: ä\n"),
-        Outcome("s2", Status.CRASH, 1.0, 5.0, 0.0, "i", "d", "p", trace=trace[:0]),
+        Outcome("s0", Status.SUCCESS, 2.5, "i", "d", "p", {"offset": -0.125}, 3, 2, None, trace),
+        Outcome("s1", Status.FAILED, 0.0, "", "", "", error="ValueError: ä\n"),
+        Outcome("s2", Status.CRASH, 1.0, "i", "d", "p", {"return": 5.0}, trace=trace[:0]),
     )
 
 

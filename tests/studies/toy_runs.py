@@ -98,8 +98,12 @@ def _outcome(scene: int, seed: int, status: Status) -> Outcome:
         scene=f"s{scene:03d}",
         status=status,
         time_s=0.0 if failed else 3.0 + 0.1 * scene,
-        terminal_distance_m=None if failed else 0.3 if status is Status.SUCCESS else 2.3,
-        min_clearance_m=None if failed else 0.25,
+        metrics={}
+        if failed
+        else {
+            "terminal_distance_m": 0.3 if status is Status.SUCCESS else 2.3,
+            "min_clearance_m": 0.25,
+        },
         initial_hash=f"i{scene}",
         disturbance_hash=f"d{scene}",
         planner_noise_hash=f"n{scene}-{seed}",

@@ -288,3 +288,11 @@ def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_t
     assert run.record.findings == ()
     effects = {effect.path: effect.success.value for effect in run.record.effects}
     assert effects["filter"] > 0 > effects["shared"]
+    metrics = {effect.path: effect.metrics for effect in run.record.effects}
+    assert metrics["filter"]["offset_m"].value < 0 < metrics["shared"]["offset_m"].value
+    assert metrics["shared"]["offset_m"].unit == "m"
+    offsets = run.table().to_pylist()
+    assert {row["status"] == "success" for row in offsets if row["offset_m"] <= 0.05} == {True}
+    assert "offset (m)" in (run.folder / "table.md").read_text()
+    assert "Offset, m" in (run.folder / "report.html").read_text()
+    assert "min_clearance_m" not in run.table().column_names

@@ -9,7 +9,7 @@ import pytest
 from faultpath.trials import Outcome, Status
 from faultpath.trials.outcome import checked
 
-GOOD = Outcome("a", Status.SUCCESS, 2.0, 0.5, None, "i", "d", "none")
+GOOD = Outcome("a", Status.SUCCESS, 2.0, "i", "d", "none", {"rms_m": 0.5})
 
 
 @pytest.mark.parametrize(
@@ -23,9 +23,9 @@ GOOD = Outcome("a", Status.SUCCESS, 2.0, 0.5, None, "i", "d", "none")
         ({"time_s": 10**400}, "time_s is"),
         ({"time_s": 0.0}, "time_s is 0.0: a trial takes at least one control step"),
         ({"time_s": -1.0}, "time_s is -1.0"),
-        ({"terminal_distance_m": math.inf}, "terminal_distance_m is inf"),
-        ({"terminal_distance_m": np.zeros(1)}, "terminal_distance_m is"),
-        ({"min_clearance_m": -math.inf}, "min_clearance_m is -inf"),
+        ({"metrics": {"rms_m": math.inf}}, "rms_m is inf"),
+        ({"metrics": {"rms_m": np.zeros(1)}}, "rms_m is"),
+        ({"metrics": {"rms": 1.0}}, "metric 'rms' (str) is not declared: name it in"),
         ({"initial_hash": ""}, "initial_hash is empty"),
         ({"disturbance_hash": None}, "disturbance_hash is None (NoneType): give text"),
         ({"planner_noise_hash": 7}, "planner_noise_hash is 7 (int)"),
@@ -39,12 +39,12 @@ GOOD = Outcome("a", Status.SUCCESS, 2.0, 0.5, None, "i", "d", "none")
     ],
 )
 def test_a_malformed_outcome_is_a_failed_trial(fields, said):
-    failed = checked(replace(GOOD, **fields))
+    failed = checked(replace(GOOD, **fields), ("rms_m",))
     assert failed.failed
     assert failed.scene == "a"
     assert said in failed.error
     assert failed.error.startswith("malformed outcome: ")
-    assert (failed.terminal_distance_m, failed.trace) == (None, None)
+    assert (failed.metrics, failed.trace) == ({}, None)
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,8 @@ def test_a_malformed_outcome_is_a_failed_trial(fields, said):
         {},
         {"time_s": np.float32(2.0)},
         {"time_s": 2},
-        {"terminal_distance_m": np.float64(0.25), "min_clearance_m": -0.5},
+        {"metrics": {"rms_m": np.float64(0.25)}},
+        {"metrics": {}},
         {"trace": np.zeros((0, 3), np.float32)},
         {"trace": np.ones((4, 3))},
         {"status": Status.FAILED, "time_s": math.nan, "error": "said by the system"},
@@ -61,7 +62,7 @@ def test_a_malformed_outcome_is_a_failed_trial(fields, said):
 )
 def test_a_sound_one_stays_what_it_is(fields):
     given = replace(GOOD, **fields)
-    outcome = checked(given)
+    outcome = checked(given, ("rms_m",))
     assert outcome.status is given.status
     assert type(outcome.time_s) is float
     if given.trace is not None:
@@ -70,7 +71,7 @@ def test_a_sound_one_stays_what_it_is(fields):
     if given.failed:
         assert outcome.error == "said by the system"
     else:
-        assert outcome.terminal_distance_m == given.terminal_distance_m
+        assert outcome.metrics == given.metrics
 
 
 def test_a_failed_trial_always_says_why():

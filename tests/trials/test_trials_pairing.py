@@ -19,8 +19,7 @@ def _outcome(scene: str, seed: int, success: bool, distance: float | None = 1.0)
         scene=scene,
         status=Status.SUCCESS if success else Status.CRASH,
         time_s=2.0 + seed,
-        terminal_distance_m=distance,
-        min_clearance_m=None,
+        metrics={} if distance is None else {"distance": distance},
         initial_hash=f"i-{scene}",
         disturbance_hash=f"d-{scene}",
         planner_noise_hash=f"n-{scene}-{seed}",
@@ -66,7 +65,7 @@ def test_pairs_are_by_scene_and_seed():
     np.testing.assert_array_equal(pairs.second.success, [[0, 0], [1, 1], [0, 1]])
     np.testing.assert_array_equal(pairs.second.crash, ~pairs.second.success)
     np.testing.assert_array_equal(pairs.first.time_s, [[5.0, 7.0]] * 3)
-    assert pairs.first.min_clearance_m is None
+    np.testing.assert_array_equal(pairs.first.metrics["distance"], np.ones((3, 2)))
 
 
 def test_swapping_the_sides_swaps_the_arrays():
@@ -123,11 +122,11 @@ def test_pairs_can_be_cut_to_common_scenes():
     np.testing.assert_array_equal(pairs.second.success, [[1, 1], [0, 1]])
 
 
-def test_one_distance_that_is_missing_takes_the_array_away():
-    table = _altering("repair", "a", 3, terminal_distance_m=None)
+def test_one_metric_that_is_missing_takes_the_array_away():
+    table = _altering("repair", "a", 3, metrics={})
     pairs = pair(table, ONE, TWO)
-    assert pairs.first.terminal_distance_m is None
-    assert pairs.second.terminal_distance_m is not None
+    assert pairs.first.metrics == {}
+    assert list(pairs.second.metrics) == ["distance"]
 
 
 def test_sides_of_different_extent_are_refused():

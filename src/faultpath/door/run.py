@@ -52,8 +52,7 @@ class Run:
 
     def table(self) -> pa.Table:
         """Return the trials as an Arrow table, one row each: variant, path, seed, scene, status,
-        time_s, terminal_distance_m, min_clearance_m (metres, null where there is none), and what
-        the taps did."""
+        time_s, the system's metrics (null where a trial has none), and what the taps did."""
         return self._trials
 
     def trials(self) -> "pandas.DataFrame":

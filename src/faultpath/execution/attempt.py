@@ -155,7 +155,7 @@ def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
             f"{[outcome.scene for outcome in outcomes]}: run() returns one for each, in order"
         )
-    return tuple(checked(outcome) for outcome in outcomes)
+    return tuple(checked(outcome, system.metrics) for outcome in outcomes)
 
 
 def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:

@@ -8,7 +8,7 @@ from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.record.provenance import FlownAgain
 from faultpath.trials.outcome import Outcome
 
-_NUMBERS = ("time_s", "terminal_distance_m", "min_clearance_m", "struck_steps", "altered_steps")
+_NUMBERS = ("time_s", "struck_steps", "altered_steps")
 _HASHES = ("initial_hash", "disturbance_hash", "planner_noise_hash")
 
 
@@ -29,14 +29,15 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
     scene = pairs[0][0].scene
     ends = sum(one.status is not two.status for one, two in pairs)
     parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
-    gaps = {name: max(_gap(a, b, name) for a, b in pairs) for name in (*_NUMBERS, *_HASHES)}
-    parts += [f"{name} by up to {gaps[name]:.3g}" for name in _NUMBERS if gaps[name]]
+    numbers = (_NUMBERS[0], *dict.fromkeys(n for a, _ in pairs for n in a.metrics), *_NUMBERS[1:])
+    gaps = {name: max(_gap(a, b, name) for a, b in pairs) for name in (*numbers, *_HASHES)}
+    parts += [f"{name} by up to {gaps[name]:.3g}" for name in numbers if gaps[name]]
     parts += [f"{name} too" for name in _HASHES if gaps[name]]
     return f"differs in {len(pairs)} of {len(first)}, {scene!r} for one ({', '.join(parts)})"
 
 
 def _gap(one: Outcome, two: Outcome, name: str) -> float:
-    a, b = getattr(one, name), getattr(two, name)
+    a, b = (o.metrics[name] if name in o.metrics else getattr(o, name, None) for o in (one, two))
     if a == b:
         return 0.0
     if isinstance(a, int | float) and isinstance(b, int | float):
@@ -45,7 +46,9 @@ def _gap(one: Outcome, two: Outcome, name: str) -> float:
 
 
 def _same(one: Outcome, two: Outcome) -> bool:
-    if one.status is not two.status or any(_gap(one, two, n) for n in (*_NUMBERS, *_HASHES)):
+    if one.status is not two.status or one.metrics != two.metrics:
+        return False
+    if any(_gap(one, two, name) for name in (*_NUMBERS, *_HASHES)):
         return False
     if one.trace is None or two.trace is None:
         return one.trace is two.trace

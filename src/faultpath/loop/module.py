@@ -93,8 +93,8 @@ class Progress:
     """A trial that neither succeeded nor crashed has timed out."""
     time_s: Array
     """Time at which it ended, or of now."""
-    terminal_distance_m: Array | None = None
-    min_clearance_m: Array | None = None
+    metrics: Mapping[str, Array] = field(default_factory=dict[str, Array])
+    """What else there is to measure, by name, `[B]` each."""
 
 
 class Plant(Part):

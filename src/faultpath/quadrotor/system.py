@@ -35,6 +35,7 @@ from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
+from faultpath.trials.metrics import VEHICLE
 
 
 class Quadrotor(LoopSystem):
@@ -43,6 +44,7 @@ class Quadrotor(LoopSystem):
     name = "quadrotor"
     trained = True
     control_dt_s = CONTROL_DT_S
+    metrics = VEHICLE
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options

@@ -147,7 +147,7 @@ def _effect(
     assert found.counts is not None
     assert found.test is not None
     counts = found.counts.per_seed
-    others = secondary(trials.pairs, resamples)
+    others = secondary(trials.pairs, resamples, about.question.metrics)
     effect = Effect(
         path=path,
         success=_scoped(about, found),
@@ -167,8 +167,7 @@ def _effect(
         minimum_detectable_pp=_detectable(about, found, trials.arms),
         time_s=others.time_s,
         joint_successes=others.joint_successes,
-        terminal_distance_m=others.terminal_distance_m,
-        min_clearance_m=others.min_clearance_m,
+        metrics=others.metrics,
         words="",
     )
     return effect.model_copy(update={"words": words.effect_words(about, effect)})

@@ -1,10 +1,11 @@
 """The decision record: what was asked, what came out, and what it means."""
 
-from typing import Literal
+from typing import Any, Literal, cast
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, model_validator
 
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
+from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
@@ -36,6 +37,8 @@ class Question(_Frozen):
     """Whether the variants hold trained models."""
     ends: dict[str, str] = {}
     """What the system calls its ends, where it is not the status itself."""
+    metrics: dict[MetricName, Metric] = VEHICLE
+    """What its trials measure. Records that do not say speak of a vehicle."""
 
 
 class StruckTap(_Frozen):
@@ -115,9 +118,19 @@ class Effect(_Frozen):
     time_s: Estimate | None
     """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
     joint_successes: int
-    terminal_distance_m: Estimate | None
-    min_clearance_m: Estimate | None
+    metrics: dict[str, Estimate]
+    """Of each metric that all trials have."""
     words: str
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_a_vehicle(cls, given: Any) -> Any:
+        """Take in records in which the metrics of a vehicle were fields."""
+        if not isinstance(given, dict) or "metrics" in given:
+            return cast("Any", given)
+        fields = cast("dict[str, Any]", given)
+        metrics = {name: value for name in VEHICLE if (value := fields.get(name)) is not None}
+        return {k: v for k, v in fields.items() if k not in VEHICLE} | {"metrics": metrics}
 
     @property
     def detected(self) -> bool:

@@ -1,8 +1,10 @@
-"""Secondary outcomes of a path: time, distance and clearance. Nothing is decided from them."""
+"""Secondary outcomes of a path: time and metrics. Nothing is decided from them."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from faultpath.statistics import Estimate, Resamples, fewest_scenes, mean_effect, median_effect
+from faultpath.trials.metrics import Metric
 from faultpath.trials.pairing import Bools, Floats, Pairs
 
 MIN_SCENES = fewest_scenes(1)
@@ -15,19 +17,21 @@ class Secondary(NamedTuple):
     time_s: Estimate | None
     """On jointly successful scenes; `None` without one."""
     joint_successes: int
-    terminal_distance_m: Estimate | None
-    min_clearance_m: Estimate | None
+    metrics: dict[str, Estimate]
 
 
-def secondary(pairs: Pairs, resamples: Resamples) -> Secondary:
+def secondary(pairs: Pairs, resamples: Resamples, metrics: Mapping[str, Metric]) -> Secondary:
     """Return the secondary outcomes of paired trials."""
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
     return Secondary(
         time_s=_time(pairs, joint, resamples),
         joint_successes=int(joint.sum()),
-        terminal_distance_m=_mean(first.terminal_distance_m, second.terminal_distance_m, resamples),
-        min_clearance_m=_mean(first.min_clearance_m, second.min_clearance_m, resamples),
+        metrics={
+            name: _mean(first.metrics[name], second.metrics[name], resamples, metric.unit)
+            for name, metric in metrics.items()
+            if name in first.metrics and name in second.metrics
+        },
     )
 
 
@@ -38,10 +42,8 @@ def _time(pairs: Pairs, joint: Bools, resamples: Resamples) -> Estimate | None:
     return _honest(effect.estimate(), "median")
 
 
-def _mean(first: Floats | None, second: Floats | None, resamples: Resamples) -> Estimate | None:
-    if first is None or second is None:
-        return None
-    return _honest(mean_effect(first, second, resamples, "m").estimate(), "mean")
+def _mean(first: Floats, second: Floats, resamples: Resamples, unit: str) -> Estimate:
+    return _honest(mean_effect(first, second, resamples, unit).estimate(), "mean")
 
 
 def _honest(estimate: Estimate, what: str) -> Estimate:

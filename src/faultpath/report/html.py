@@ -132,13 +132,16 @@ def _secondary(record: DecisionRecord) -> list[Markup]:
     titles = _path_titles(record)
     named = [(titles.get(effect.path, effect.path), effect) for effect in record.effects]
     time = [(title, effect.time_s) for title, effect in named]
-    distance = [(title, effect.terminal_distance_m) for title, effect in named]
-    clearance = [(title, effect.min_clearance_m) for title, effect in named]
-    panels = (
-        ("Time on joint successes", "s", time, "less"),
-        ("Distance to the goal at the end", "m", distance, "less"),
-        ("Least clearance", "m", clearance, "more"),
+    metrics = (
+        (
+            each.headed(name),
+            each.unit,
+            [(title, effect.metrics.get(name)) for title, effect in named],
+            each.better,
+        )
+        for name, each in record.question.metrics.items()
     )
+    panels = (("Time on joint successes", "s", time, "less"), *metrics)
     return [
         Markup(secondary_panel(name, unit, rows, good))
         for name, unit, rows, good in panels

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report import wording
-from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
 from faultpath.tables.markdown import block
@@ -79,11 +78,6 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
     "break-even": ("Break-even, %", _Of.break_even),
 }
 """Label and entry of all that a record says of a path; labels left empty are the record's own."""
-_SECONDARY: tuple[tuple[str, Callable[[Effect], Estimate | None]], ...] = (
-    ("time on joint successes (s)", lambda effect: effect.time_s),
-    ("terminal distance (m)", lambda effect: effect.terminal_distance_m),
-    ("least clearance (m)", lambda effect: effect.min_clearance_m),
-)
 
 
 def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
@@ -166,8 +160,11 @@ def _title(record: DecisionRecord, effect: Effect) -> str:
 
 def _secondary(record: DecisionRecord) -> list[Line]:
     asked, lines = record.question, list[Line]()
-    for label, pick in _SECONDARY:
-        estimates = [pick(effect) for effect in record.effects]
+    shown = {"time on joint successes (s)": [effect.time_s for effect in record.effects]}
+    for name, metric in asked.metrics.items():
+        label = f"{metric.said(name)} ({metric.unit})"
+        shown[label] = [effect.metrics.get(name) for effect in record.effects]
+    for label, estimates in shown.items():
         if any(estimates):
             title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
             values = ("" if e is None else wording.signed(e.value, 2) for e in estimates)

@@ -28,6 +28,8 @@ Track: TypeAlias = NDArray[np.float32]
 """Positions at control steps, `[T, 3]`, metres."""
 
 PARTING_M = 0.5
+_DISTANCE = "terminal_distance_m"
+"""The metric that ranks scenes, where a system has it."""
 _MOST = 6
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
@@ -126,9 +128,9 @@ def _order(showing: Showing) -> tuple[int, float, int, int]:
 
 def _distance_gap(pair: Pair) -> float:
     ends = [
-        trial.terminal_distance_m
+        distance
         for trial in (pair.baseline, pair.repair)
-        if trial is not None and trial.terminal_distance_m is not None
+        if trial is not None and (distance := trial.metrics.get(_DISTANCE)) is not None
     ]
     return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
 
@@ -185,7 +187,7 @@ def _arm(asked: Question, trial: Outcome | None, track: Track) -> dict[str, Any]
         "status": trial.status.value,
         "ended": wording.ended(asked, trial.status),
         "time_s": trial.time_s,
-        "terminal_distance_m": trial.terminal_distance_m,
+        _DISTANCE: trial.metrics.get(_DISTANCE),
         # `[x, y, z, x, y, z, ...]`
         "track_cm": np.rint(100.0 * held).astype(int).ravel().tolist(),
     }

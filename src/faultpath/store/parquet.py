@@ -47,6 +47,15 @@ def read_table(data: bytes) -> pa.Table:
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
+def numbers_in(data: bytes) -> list[str]:
+    """Return the columns of a Parquet file that hold numbers; `Unreadable` for anything else."""
+    try:
+        schema = pq.read_schema(pa.BufferReader(data))
+    except (pa.ArrowException, OSError) as error:
+        raise Unreadable(str(error)) from error
+    return [field.name for field in schema if field.type == NUMBER]
+
+
 def decode(
     data: bytes, schema: Schema, may_lack: Collection[str] = ()
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:

@@ -1,6 +1,6 @@
 """Outcomes and traces as Parquet: one schema for the shards, one for the assembled tables."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
@@ -10,8 +10,20 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from faultpath.errors import UserError
-from faultpath.store.parquet import INTEGER, NUMBER, NUMBERS, TEXT, Row, Unreadable, decode, encode
+from faultpath.store.parquet import (
+    INTEGER,
+    NUMBER,
+    NUMBERS,
+    TEXT,
+    Row,
+    Schema,
+    Unreadable,
+    decode,
+    encode,
+    numbers_in,
+)
 from faultpath.taps import TapCount
+from faultpath.trials.metrics import VEHICLE
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.table import OutcomeTable, TrialRow
 
@@ -20,11 +32,8 @@ _Read = TypeVar("_Read")
 
 _ADDRESS = {"variant": TEXT, "path": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
+_END = {"status": TEXT, "time_s": NUMBER}
 _RESULT = {
-    "status": TEXT,
-    "time_s": NUMBER,
-    "terminal_distance_m": NUMBER,
-    "min_clearance_m": NUMBER,
     "struck_steps": INTEGER,
     "altered_steps": INTEGER,
     "initial_hash": TEXT,
@@ -33,9 +42,7 @@ _RESULT = {
     "error": TEXT,
 }
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
-_MAY_LACK = ("time_s", "terminal_distance_m", "min_clearance_m", "error", *_TRACE)
-_SHARD = {"scene": TEXT, **_RESULT, **_TRACE}
-_OUTCOMES = {**_ADDRESS, **_PLACE, **_RESULT}
+_MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
 _KEY = "faultpath.key"
 """Under which name a shard's metadata keeps the key of its unit."""
@@ -65,12 +72,14 @@ class Shard:
 def encode_shard(key: str, shard: Shard) -> bytes:
     """Return one block, traces included, with the key of its unit inside."""
     notes = {_KEY: key, _TAPS: _COUNTS.dump_json(shard.taps).decode()}
-    return encode(_SHARD, map(_told, shard.outcomes), notes)
+    schema = _shard(_metrics(shard.outcomes))
+    return encode(schema, ({**dict.fromkeys(schema), **_told(o)} for o in shard.outcomes), notes)
 
 
 def decode_shard(data: bytes, key: str) -> Shard:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
-    rows, notes = decode(data, _SHARD, _MAY_LACK)
+    names = _metrics_in(data)
+    rows, notes = decode(data, _shard(names), (*_MAY_LACK, *names))
     if _TAPS not in notes:
         raise Unreadable("it is of an earlier version, which kept no receipts of the taps")
     if notes.get(_KEY) != key:
@@ -79,17 +88,19 @@ def decode_shard(data: bytes, key: str) -> Shard:
         taps = _COUNTS.validate_json(notes[_TAPS])
     except ValidationError as error:
         raise Unreadable("its receipts of the taps cannot be read") from error
-    return Shard(tuple(_outcome(row, _trace(row)) for row in rows), taps)
+    return Shard(tuple(_outcome(row, _trace(row), names) for row in rows), taps)
 
 
 def encode_outcomes(table: OutcomeTable) -> bytes:
     """Return the table without its traces."""
-    return encode(_OUTCOMES, map(_flat, table.rows))
+    schema = _outcomes(_metrics(row.outcome for row in table.rows))
+    return encode(schema, (_flat(row, schema) for row in table.rows))
 
 
 def encode_traces(table: OutcomeTable) -> bytes:
     """Return the traces of the trials that have one."""
-    return encode(_TRACES, (_flat(row) for row in table.rows if row.outcome.trace is not None))
+    flown = (row for row in table.rows if row.outcome.trace is not None)
+    return encode(_TRACES, (_flat(row, _TRACES) for row in flown))
 
 
 def read_outcomes(path: Path) -> OutcomeTable:
@@ -104,9 +115,10 @@ def read_traces(path: Path) -> dict[TrialAddress, Trace]:
 
 def decode_outcomes(data: bytes) -> OutcomeTable:
     """Return an assembled outcome table (without traces); `Unreadable` when it is not one."""
-    rows, _ = decode(data, _OUTCOMES, _MAY_LACK)
+    names = _metrics_in(data)
+    rows, _ = decode(data, _outcomes(names), (*_MAY_LACK, *names))
     at = ("variant", "path", "seed", *_PLACE)
-    placed = (({name: row[name] for name in at}, _outcome(row, None)) for row in rows)
+    placed = (({name: row[name] for name in at}, _outcome(row, None, names)) for row in rows)
     return OutcomeTable(tuple(TrialRow(**place, outcome=outcome) for place, outcome in placed))
 
 
@@ -140,13 +152,32 @@ def _read(path: Path, decoded: Callable[[bytes], _Read]) -> _Read:
         raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
 
 
-def _flat(row: TrialRow) -> Row:
-    return {**vars(row), **_told(row.outcome)}
+def _shard(metrics: Iterable[str]) -> Schema:
+    return {"scene": TEXT, **_END, **dict.fromkeys(metrics, NUMBER), **_RESULT, **_TRACE}
+
+
+def _outcomes(metrics: Iterable[str]) -> Schema:
+    return {**_ADDRESS, **_PLACE, **_END, **dict.fromkeys(metrics, NUMBER), **_RESULT}
+
+
+def _metrics(outcomes: Iterable[Outcome]) -> list[str]:
+    """Return the columns of metrics: those of a vehicle first, then the others as they come."""
+    found = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
+    vehicle = VEHICLE if any(name in VEHICLE for name in found) else ()
+    return list(dict.fromkeys((*vehicle, *found)))
+
+
+def _metrics_in(data: bytes) -> list[str]:
+    return [name for name in numbers_in(data) if name not in _END]
+
+
+def _flat(row: TrialRow, schema: Schema) -> Row:
+    return {**dict.fromkeys(schema), **vars(row), **_told(row.outcome)}
 
 
 def _told(outcome: Outcome) -> Row:
     axes = (None,) * 3 if outcome.trace is None else np.asarray(outcome.trace, np.float32).T
-    return {**vars(outcome), **dict(zip(_TRACE, axes, strict=True))}
+    return {**outcome.metrics, **vars(outcome), **dict(zip(_TRACE, axes, strict=True))}
 
 
 def _trace(row: Row) -> Trace | None:
@@ -156,10 +187,11 @@ def _trace(row: Row) -> Trace | None:
     return np.stack(present, axis=1) if len(present) == len(_TRACE) else None
 
 
-def _outcome(row: Mapping[str, Any], trace: Trace | None) -> Outcome:
-    fields = {name: row[name] for name in _RESULT}
+def _outcome(row: Mapping[str, Any], trace: Trace | None, metrics: Iterable[str]) -> Outcome:
+    fields = {name: row[name] for name in (*_END, *_RESULT)}
+    found = {name: row[name] for name in metrics if row[name] is not None}
     try:
         status = Status(fields.pop("status"))
     except ValueError as error:
         raise Unreadable(str(error)) from error
-    return Outcome(scene=row["scene"], status=status, trace=trace, **fields)
+    return Outcome(scene=row["scene"], status=status, trace=trace, metrics=found, **fields)

@@ -68,6 +68,7 @@ class ComposedSystem(LoopSystem):
         scenes: Mapping[str, Sequence[int]] = SCENES,
     ) -> None:
         self.name, self.control_dt_s = name, plant.dt_s
+        self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
         self._plant, self._parts, self._scenes = plant, dict(variants), dict(scenes)
         self._facts = _Facts(name, plant, self._parts, units, dict(channels or {}))
         self._wirings = {

@@ -13,7 +13,7 @@ from faultpath.arrays import HostArray, to_numpy
 from faultpath.errors import SystemMistake
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.text import unknown
-from faultpath.trials import SceneRef
+from faultpath.trials import Metric, SceneRef
 
 SCENE = "seed/"
 """A scene is the seed of its reset."""
@@ -96,6 +96,18 @@ class Worlds(ABC):
         return
 
 
+@dataclass(frozen=True)
+class Measure:
+    """A metric of a system of episodes, and how it is taken from one."""
+
+    metric: Metric
+    of: Callable[[Episode], float]
+
+
+RETURN = {"return": Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)}
+"""The sum of an episode's rewards."""
+
+
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
 """Where in the observation a source stands: a key, an index or slice, several in turn, or a
 function of the batch's observation that returns an array `[B, ...]`."""
@@ -121,8 +133,15 @@ class _Flown:
     crashed: HostArray
     steps: HostArray
     """Those that each scene has made."""
+    metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
+
+    def episode(self, i: int, terminated: bool, info: Mapping[str, Any], dt_s: float) -> Episode:
+        """Return what a scene that has just ended went through."""
+        signals = {name: np.stack([each[i] for each in log]) for name, log in self.log.items()}
+        rewards = np.array([each[i] for each in self.rewards])
+        return Episode(signals, rewards, terminated, info, dt_s)
 
 
 class EpisodePlant(Plant):
@@ -145,8 +164,9 @@ class EpisodePlant(Plant):
         steps: int,
         dt_s: float,
         succeeded: Callable[[Episode], bool],
+        metrics: Mapping[str, Measure] | None = None,
     ) -> None:
-        self.dt_s, self.steps = dt_s, steps
+        self.dt_s, self.steps, self.metrics = dt_s, steps, dict(metrics or {})
         self.reads = frozenset({Port(action, "actuator")})
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
@@ -185,7 +205,8 @@ class EpisodePlant(Plant):
         sensed = self._sensed(worlds)
         no = np.zeros((3, n), bool)
         log = {name: [value] for name, value in sensed.items()}
-        return _Flown(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), log, [])
+        metrics = {name: np.full(n, np.nan) for name in self.metrics}
+        return _Flown(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, [])
 
     @override
     def sense(self, state: _Flown) -> dict[str, HostArray]:
@@ -209,17 +230,18 @@ class EpisodePlant(Plant):
         ended = was & (terminated | np.asarray(done.truncated, bool) | (now.steps == self.steps))
         succeeded, crashed = now.succeeded.copy(), now.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
-            succeeded[i] = self._judged(now, i, bool(terminated[i]), done.info(i))
+            episode = now.episode(i, bool(terminated[i]), done.info(i), self.dt_s)
+            succeeded[i] = self._judged(episode)
+            for name, measure in self.metrics.items():
+                now.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
         now.running, now.succeeded, now.crashed = was & ~ended, succeeded, crashed
         if not now.running.any():
             now.worlds.close()
         return now
 
-    def _judged(self, now: _Flown, i: int, terminated: bool, info: Mapping[str, Any]) -> bool:
-        signals = {name: np.stack([each[i] for each in log]) for name, log in now.log.items()}
-        rewards = np.array([each[i] for each in now.rewards])
-        said: Any = self._succeeded(Episode(signals, rewards, terminated, info, self.dt_s))
+    def _judged(self, episode: Episode) -> bool:
+        said: Any = self._succeeded(episode)
         if type(said) not in (bool, np.bool_):
             raise SystemMistake(
                 f"`succeeded` returned {said!r:.80} of an episode: it must return true or false"
@@ -229,7 +251,7 @@ class EpisodePlant(Plant):
     @override
     def progress(self, state: _Flown) -> Progress:
         time_s = state.steps * self.dt_s
-        return Progress(state.running, state.succeeded, state.crashed, time_s)
+        return Progress(state.running, state.succeeded, state.crashed, time_s, state.metrics)
 
     @override
     def conditions(self, state: _Flown) -> tuple[Sequence[str], Sequence[str]]:

@@ -13,6 +13,7 @@ from faultpath.systems.episodes import (
     Episode,
     EpisodePlant,
     Look,
+    Measure,
     Stepped,
     Worlds,
     hashed,
@@ -34,6 +35,7 @@ class FunctionPlant(EpisodePlant):
         steps: Control steps of an episode.
         dt_s: Length of a control step, s.
         succeeded: Says of each finished episode whether it was a success.
+        metrics: What else is measured of each finished episode, by name.
         over: `over(state)` says whether the scene ends before its time; without it none does.
     """
 
@@ -47,11 +49,17 @@ class FunctionPlant(EpisodePlant):
         steps: int,
         dt_s: float,
         succeeded: Callable[[Episode], bool],
+        metrics: Mapping[str, Measure] | None = None,
         over: Callable[[Any], bool] | None = None,
     ) -> None:
         self._start, self._step, self._over = start, step, over
         super().__init__(
-            observes=observes, action=action, steps=steps, dt_s=dt_s, succeeded=succeeded
+            observes=observes,
+            action=action,
+            steps=steps,
+            dt_s=dt_s,
+            succeeded=succeeded,
+            metrics=metrics,
         )
 
     @override

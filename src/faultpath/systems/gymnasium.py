@@ -20,9 +20,11 @@ from faultpath.errors import SystemMistake
 from faultpath.loop import Batch
 from faultpath.streams import generator
 from faultpath.systems.episodes import (
+    RETURN,
     Episode,
     EpisodePlant,
     Look,
+    Measure,
     Stepped,
     Worlds,
     hashed,
@@ -43,6 +45,7 @@ class GymnasiumPlant(EpisodePlant):
         action: Channel from which the environment is moved, at the place `actuator`; a reading has
             the action's shape, or is a number where the action is one.
         succeeded: Says of each finished episode whether it was a success.
+        metrics: What else is measured of each finished episode, by name, beside its `return`.
         steps: Control steps of an episode; default the time limit of the environment.
         dt_s: Length of a control step, s; default the `dt` of the environment.
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
@@ -59,6 +62,7 @@ class GymnasiumPlant(EpisodePlant):
         observes: Mapping[str, Look],
         action: str,
         succeeded: Callable[[Episode], bool],
+        metrics: Mapping[str, Measure] | None = None,
         steps: int | None = None,
         dt_s: float | None = None,
         setup: Setup | None = None,
@@ -83,6 +87,7 @@ class GymnasiumPlant(EpisodePlant):
             steps=int(steps or 0),
             dt_s=float(dt_s or 0),
             succeeded=succeeded,
+            metrics=RETURN | dict(metrics or {}),
         )
 
     @override

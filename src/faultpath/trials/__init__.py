@@ -5,6 +5,7 @@ from faultpath.trials.checks import library_of
 from faultpath.trials.declared import FloorPlan, Library, Pillar, Prism, SceneRef, Variant
 from faultpath.trials.deliveries import Deliveries, RowDeliveries
 from faultpath.trials.looped import LoopSystem, Wiring
+from faultpath.trials.metrics import Metric
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
@@ -19,6 +20,7 @@ __all__ = [
     "FloorPlan",
     "Library",
     "LoopSystem",
+    "Metric",
     "Offered",
     "Option",
     "Outcome",

@@ -1,6 +1,8 @@
 """What a user's system must be like, so that nothing fails halfway for want of it."""
 
+import re
 from collections.abc import Mapping
+from dataclasses import fields
 from numbers import Integral, Real
 from typing import Any, TypeVar, cast
 
@@ -8,9 +10,17 @@ from faultpath.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.taps.tap import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
+from faultpath.trials.metrics import Metric
+from faultpath.trials.outcome import Outcome
 from faultpath.trials.system import System
 
 _Kind = TypeVar("_Kind")
+
+COLUMNS = frozenset(
+    {"variant", "path", "seed", "scene", "scene_index", "topology", "x_m", "y_m", "z_m"}
+    | {f.name for f in fields(Outcome)}
+)
+"""Names that the table of outcomes has already."""
 
 
 def library_of(system: System, name: str) -> Library:
@@ -53,6 +63,7 @@ def check_system(system: System, name: str) -> None:
         raise SystemMistake(
             f"{said}: `interface` is {shown(interface)}: give what `read_interface` returns"
         )
+    _check_metrics(system.metrics, said)
     variants = _declared(system, "variants", said)
     if not isinstance(variants, Mapping) or not variants:
         raise SystemMistake(f"{said}: `variants` is {shown(variants)}: map names to variants")
@@ -66,6 +77,21 @@ def check_system(system: System, name: str) -> None:
             wire(interface, variant.bindings, variant.consumers, variant.privileged, 0)
         except UserError as error:
             raise SystemMistake(f"{said}: variant '{key}': {error}") from None
+
+
+def _check_metrics(found: Any, said: str) -> None:
+    if not isinstance(found, Mapping):
+        raise SystemMistake(f"{said}: `metrics` is {shown(found)}: map names to metrics")
+    for name, metric in cast("Mapping[Any, Any]", found).items():
+        if not isinstance(metric, Metric):
+            raise SystemMistake(
+                f"{said}: metric {shown(name)} is {shown(metric)}: give a Metric, with its unit"
+            )
+        if not re.fullmatch(r"[a-z][a-z0-9_]*", str(name)) or name in COLUMNS:
+            raise SystemMistake(
+                f"{said}: a metric is called {shown(name)}: take small letters, digits and '_', "
+                "and no name that the table of outcomes has already"
+            )
 
 
 def _declared(system: System, attribute: str, said: str) -> Any:

@@ -116,10 +116,7 @@ def _outcomes(
     succeeded, crashed, times = (
         to_numpy(part) for part in (end.succeeded, end.crashed, end.time_s)
     )
-    terminal, nearest = (
-        None if part is None else to_numpy(part)
-        for part in (end.terminal_distance_m, end.min_clearance_m)
-    )
+    metrics = {name: to_numpy(values) for name, values in end.metrics.items()}
     traces = _traces(path)
     outcomes: list[Outcome] = []
     for i, scene in enumerate(batch.scenes):
@@ -131,11 +128,10 @@ def _outcomes(
                 scene=scene,
                 status=Status.CRASH if crashed[i] else status,
                 time_s=time_s,
-                terminal_distance_m=None if terminal is None else float(terminal[i]),
-                min_clearance_m=None if nearest is None else float(nearest[i]),
                 initial_hash=initial[i],
                 disturbance_hash=disturbed[i],
                 planner_noise_hash=noise[i],
+                metrics={name: float(values[i]) for name, values in metrics.items()},
                 trace=None if traces is None else traces[:instants, i].astype(np.float32),
             )
         )

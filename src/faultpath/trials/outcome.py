@@ -1,7 +1,8 @@
 """What one trial leaves behind."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 from numbers import Real
 from typing import Any
@@ -33,11 +34,11 @@ class Outcome:
     status: Status
     time_s: float
     """Time at which the trial ended, above zero: the time to the goal for a success."""
-    terminal_distance_m: float | None
-    min_clearance_m: float | None
     initial_hash: str
     disturbance_hash: str
     planner_noise_hash: str
+    metrics: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
+    """What else there is to measure, by name, as the system's `metrics` declare it."""
     struck_steps: int = 0
     """Control steps at which a fault was in force at some tap that delivered."""
     altered_steps: int = 0
@@ -54,20 +55,21 @@ class Outcome:
 
 def failed_outcome(scene: str, error: str) -> Outcome:
     """Return the outcome of a trial in which the program failed."""
-    return Outcome(scene, Status.FAILED, 0.0, None, None, "", "", "", error=_text(error))
+    return Outcome(scene, Status.FAILED, 0.0, "", "", "", error=_text(error))
 
 
-def checked(outcome: Outcome) -> Outcome:
+def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
     """Return what a system said of one trial, with plain numbers and a trace in float32.
 
     Where it says something that cannot be (a number that is not finite, a status that is none, a
-    trace that is no `[T, 3]`), the trial is failed and its error says what.
+    metric that is not among the declared `metrics`, a trace that is no `[T, 3]`), the trial is
+    failed and its error says what.
     """
     try:
         if outcome.status is Status.FAILED:
             said = outcome.error or "the system said that it failed"
             return failed_outcome(outcome.scene, str(said))
-        return _sound(outcome)
+        return _sound(outcome, metrics)
     except _Malformed as error:
         return failed_outcome(outcome.scene, f"malformed outcome: {error}")
 
@@ -79,7 +81,7 @@ class _Malformed(Exception):
     pass
 
 
-def _sound(outcome: Outcome) -> Outcome:
+def _sound(outcome: Outcome, metrics: Collection[str]) -> Outcome:
     if not isinstance(outcome.status, Status):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise _Malformed(f"status is {_shown(outcome.status)}: give a faultpath.trials.Status")
     time_s = _number("time_s", outcome.time_s)
@@ -89,11 +91,10 @@ def _sound(outcome: Outcome) -> Outcome:
         scene=outcome.scene,
         status=outcome.status,
         time_s=time_s,
-        terminal_distance_m=_optional("terminal_distance_m", outcome.terminal_distance_m),
-        min_clearance_m=_optional("min_clearance_m", outcome.min_clearance_m),
         initial_hash=_hash("initial_hash", outcome.initial_hash),
         disturbance_hash=_hash("disturbance_hash", outcome.disturbance_hash),
         planner_noise_hash=_hash("planner_noise_hash", outcome.planner_noise_hash),
+        metrics=_measured(outcome.metrics, metrics),
         error=None if outcome.error is None else _text(outcome.error),
         trace=None if outcome.trace is None else _path(outcome.trace),
     )
@@ -115,8 +116,14 @@ def _number(name: str, value: Any) -> float:
     return number
 
 
-def _optional(name: str, value: Any) -> float | None:
-    return None if value is None else _number(name, value)
+def _measured(given: Mapping[str, Any], declared: Collection[str]) -> dict[str, float | None]:
+    """Return the metrics that have a value."""
+    for name in given:
+        if name not in declared:
+            raise _Malformed(
+                f"metric {_shown(name)} is not declared: name it in the system's `metrics`"
+            )
+    return {name: _number(name, value) for name, value in given.items() if value is not None}
 
 
 def _hash(name: str, value: Any) -> str:

@@ -1,8 +1,8 @@
 """Two arms over the same scenes; a pair that did not meet the same conditions is void."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,21 +38,22 @@ class Side:
 
 @dataclass(frozen=True)
 class Trials:
-    """The trials of one side; every array is `[scenes, seeds]`.
-
-    `terminal_distance_m` and `min_clearance_m` are `None` when any of the trials has none.
-    """
+    """The trials of one side; every array is `[scenes, seeds]`."""
 
     success: Bools
     crash: Bools
     time_s: Floats
-    terminal_distance_m: Floats | None
-    min_clearance_m: Floats | None
+    metrics: Mapping[str, Floats]
+    """Those that all of the trials have."""
 
     def only(self, keep: Bools) -> "Trials":
         """Return the scenes where `keep` `[scenes]` is true."""
-        kept: dict[str, Any] = {k: None if a is None else a[keep] for k, a in vars(self).items()}
-        return Trials(**kept)
+        return Trials(
+            self.success[keep],
+            self.crash[keep],
+            self.time_s[keep],
+            {name: values[keep] for name, values in self.metrics.items()},
+        )
 
 
 @dataclass(frozen=True)
@@ -214,12 +215,9 @@ def _trials(arms: Sequence[Sequence[TrialRow]], keep: Bools) -> Trials:
         success=_flags(arms, Status.SUCCESS)[keep],
         crash=_flags(arms, Status.CRASH)[keep],
         time_s=np.array([[o.time_s for o in arm] for arm in outcomes], dtype=np.float64).T,
-        terminal_distance_m=_optional([[o.terminal_distance_m for o in arm] for arm in outcomes]),
-        min_clearance_m=_optional([[o.min_clearance_m for o in arm] for arm in outcomes]),
+        metrics={
+            name: np.array(values, dtype=np.float64).T
+            for name in dict.fromkeys(name for arm in outcomes for o in arm for name in o.metrics)
+            if None not in chain(*(values := [[o.metrics.get(name) for o in a] for a in outcomes]))
+        },
     )
-
-
-def _optional(values: list[list[float | None]]) -> Floats | None:
-    if any(value is None for arm in values for value in arm):
-        return None
-    return np.array(values, dtype=np.float64).T

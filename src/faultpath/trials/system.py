@@ -9,6 +9,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.taps import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
+from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status
 
 
@@ -27,6 +28,8 @@ class System(ABC):
     """Whether several worker processes are faster than one; not where a GPU does the work."""
     trained: bool = False
     """Whether variants hold trained models: results then speak of these models, as trained."""
+    metrics: Mapping[str, Metric] = MappingProxyType({})
+    """What its outcomes measure beside status and time, by name."""
     ends: Mapping[Status, str] = MappingProxyType({})
     """What a trial's end is called where it is not the status itself, for example `missed`."""
 

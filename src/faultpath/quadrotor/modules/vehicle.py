@@ -16,6 +16,7 @@ from faultpath.quadrotor.predictors import Physics
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Query
+from faultpath.trials.metrics import VEHICLE
 
 LOOK_EVERY = 10
 """Control steps between two looks at whether any trial still runs, where a look waits for the
@@ -107,8 +108,7 @@ class VehiclePlant(Plant):
             succeeded=now.succeeded[:count],
             crashed=now.crashed[:count],
             time_s=now.time_s[:count],
-            terminal_distance_m=now.terminal_distance_m[:count],
-            min_clearance_m=now.min_clearance_m[:count],
+            metrics={name: getattr(now, name)[:count] for name in VEHICLE},
         )
 
     def over(self, state: Flying, step: int) -> bool:

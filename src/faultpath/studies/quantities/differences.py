@@ -44,7 +44,9 @@ succeeded = ended(lambda trials: trials.success)
 
 def terminal_distance(pairs: Pairs, resamples: Resamples) -> Contrast:
     """Return the mean difference in distance to the goal at the end, m, over all paired scenes."""
-    first, second = pairs.first.terminal_distance_m, pairs.second.terminal_distance_m
+    first, second = (
+        side.metrics.get("terminal_distance_m") for side in (pairs.first, pairs.second)
+    )
     if first is None or second is None:
         raise NotRun("a trial without a terminal distance")
     return mean_effect(first, second, resamples, "m")
