@@ -1,41 +1,58 @@
 """`faultpath selfcheck`: does the installed code keep what it promises?"""
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from faultpath.cli.options import path
 from faultpath.cli.verbs import Verbs
 
+if TYPE_CHECKING:
+    from faultpath.selfcheck import Report
+    from faultpath.selfcheck.run import Progress
+
 BROKEN = 1
 
 app = Verbs(help="Check that the installed code keeps what it promises.")
 
 
-@app.callback()
-def checks() -> None:
-    """Keep `statistics` a command of its own."""
+Quick = Annotated[bool, typer.Option("--quick", help="A small part, in seconds, with wide limits.")]
+Out = Annotated[
+    Path | None, typer.Option(parser=path, help="File to write the numbers to, as JSON.")
+]
+Processes = Annotated[int | None, typer.Option(min=1, help="Processes; default one per core.")]
 
 
 @app.command("statistics")
-def statistics(
-    quick: Annotated[
-        bool, typer.Option("--quick", help="A small part, in seconds, with wide limits.")
-    ] = False,
-    out: Annotated[
-        Path | None, typer.Option(parser=path, help="File to write the numbers to, as JSON.")
-    ] = None,
-    processes: Annotated[
-        int | None, typer.Option(min=1, help="Processes; default one per core.")
-    ] = None,
-) -> int:
+def statistics(quick: Quick = False, out: Out = None, processes: Processes = None) -> int:
     """Simulate audits with a known truth: coverage of the intervals, power at the reported
     detectable difference, false announcements. Exits with 1 where a promise is not kept."""
+    from faultpath.selfcheck import check_statistics
+
+    return _checked(check_statistics, quick, out, processes)
+
+
+@app.command("map")
+def reversal_map(quick: Quick = False, out: Out = None, processes: Processes = None) -> int:
+    """Simulate reversal maps with a known truth: false announcements, coverage of the break-even
+    correlation. Exits with 1 where a promise is not kept."""
+    from faultpath.selfcheck import check_map
+
+    return _checked(check_map, quick, out, processes)
+
+
+def _checked(
+    check: "Callable[[str, int, Progress], Report]",
+    quick: bool,
+    out: Path | None,
+    processes: int | None,
+) -> int:
     import os
 
     from faultpath.door.display import Display, Now, SafeConsole
-    from faultpath.selfcheck import check_statistics, failures
+    from faultpath.selfcheck import failures
     from faultpath.selfcheck.words import show
     from faultpath.store import check_writable, write_text
 
@@ -47,9 +64,7 @@ def statistics(
         def note(done: int, total: int, seconds: float | None) -> None:
             simulating(Now(done, total, f"{done}/{total} settings", seconds))
 
-        report = check_statistics(
-            "quick" if quick else "full", processes or os.cpu_count() or 1, note
-        )
+        report = check("quick" if quick else "full", processes or os.cpu_count() or 1, note)
     show(report, console)
     if out is not None:
         write_text(out, report.text())

@@ -2,12 +2,13 @@
 
 from faultpath.selfcheck.model import Report
 from faultpath.selfcheck.promises import failures
-from faultpath.selfcheck.run import PROFILES, check_statistics
+from faultpath.selfcheck.run import PROFILES, check_map, check_statistics
 from faultpath.selfcheck.words import page
 
 __all__ = [
     "PROFILES",
     "Report",
+    "check_map",
     "check_statistics",
     "failures",
     "page",

@@ -6,6 +6,7 @@ less, as they compensate each other, the repair while the first error alone is l
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -23,6 +24,10 @@ POINTS = 81
 SPREAD, BEARS, COST = 0.4, 0.6, 0.1
 """Spread of both errors, typical size that a scene bears, share that the repair never solves; of
 the largest error of the map and as a fraction."""
+
+
+_ERRORS = Errors((0.0, 0.0), (SPREAD, SPREAD))
+_LOOKS = np.linspace(-1.0, 1.0, 41)
 
 
 def grown(scenes: "Scenes") -> Differences:
@@ -84,21 +89,26 @@ class EqualMaps:
 
     scenes: int
     alike: float
+    of: str
+    """What is announced: of a `place` on the map, or of a `correlation`."""
     runs: int
 
     def measure(self) -> Measured:
-        """Return the share of maps that announce anything, of a place or of a correlation."""
+        """Return the share of maps that announce anything."""
         stream = generator("selfcheck", repr(self), 0)
-        errors = Errors((0.0, 0.0), (SPREAD, SPREAD))
         announced = 0
         for _ in range(self.runs):
             found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=True))
-            weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
-            z = simultaneous(weights, found, "selfcheck")
-            said = Combined.of(weights, found).signs(z).any()
-            announced += bool(said or not Expected.over(errors, found, "").undecided(_LOOKS).all())
-        setting = {"scenes": self.scenes, "alike": self.alike}
+            announced += self._announces(found)
+        setting = {"scenes": self.scenes, "alike": self.alike, "of": self.of}
         return Measured(EQUAL_MAPS, setting, announced / self.runs, self.runs)
+
+    def _announces(self, found: Differences) -> bool:
+        if self.of == "correlation":
+            return not Expected.over(_ERRORS, found, "selfcheck").undecided(_LOOKS).all()
+        weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
+        z = simultaneous(weights, found, "selfcheck")
+        return bool(Combined.of(weights, found).signs(z).any())
 
 
 @dataclass(frozen=True)
@@ -114,18 +124,14 @@ class CorrelationCoverage:
     def measure(self) -> Measured:
         """Return how often the true break-even correlation is in the set."""
         stream = generator("selfcheck", repr(self), 0)
-        errors = Errors((0.0, 0.0), (SPREAD, SPREAD))
         covered = 0
         for _ in range(self.runs):
             found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=False))
-            expected = Expected.over(errors, found, "selfcheck")
+            expected = Expected.over(_ERRORS, found, "selfcheck")
             true = _of_the_map(expected) if self.straight else true_correlation()
             covered += bool(expected.undecided(np.array([true]))[0])
         setting = {"scenes": self.scenes, "alike": self.alike, "straight": int(self.straight)}
         return Measured(CORRELATION, setting, covered / self.runs, self.runs)
-
-
-_LOOKS = np.linspace(-1.0, 1.0, 41)
 
 
 def _of_the_map(expected: Expected) -> float:
@@ -139,15 +145,9 @@ def _of_the_map(expected: Expected) -> float:
     return 0.5 * (low + high)
 
 
-def equal_maps_grid(runs: int) -> Iterator[EqualMaps]:
-    """Yield the grid of equal arms."""
-    for scenes in (10, 25, 100):
-        for alike in (0.0, 0.7):
-            yield EqualMaps(scenes, alike, runs)
-
-
-def correlation_grid(runs: int) -> Iterator[CorrelationCoverage]:
-    """Yield the grid of the break-even correlation."""
-    for scenes in (10, 25, 100):
-        for straight in (True, False):
-            yield CorrelationCoverage(scenes, 0.5, straight, runs)
+def map_grid(scenes: Sequence[int], runs: int) -> Iterator[EqualMaps | CorrelationCoverage]:
+    """Yield the grid: what equal arms announce, then coverage."""
+    for n, alike, of in product(scenes, (0.0, 0.7), ("place", "correlation")):
+        yield EqualMaps(n, alike, of, runs)
+    for n, alike, straight in product(scenes, (0.0, 0.7), (True, False)):
+        yield CorrelationCoverage(n, alike, straight, runs)

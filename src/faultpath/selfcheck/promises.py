@@ -8,6 +8,7 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
 
 
 @dataclass(frozen=True)
@@ -62,13 +63,16 @@ PROMISES = (
         most=0.05,
         concerns=lambda cell: cell["generalise"] == "models",
     ),
+    Promise(EQUAL_MAPS, "a map of equal arms announces anything", most=0.05),
+    Promise(CORRELATION, "the set of correlations covers the true one", least=0.93),
 )
 
 
 def failures(report: Report) -> list[str]:
     """Return one sentence for each setting that breaks a promise."""
     said: list[str] = []
-    for promise in PROMISES:
+    names = {section.name for section in report.sections}
+    for promise in (each for each in PROMISES if each.section in names):
         for cell in report.section(promise.section).cells():
             if promise.concerns(cell) and promise.broken(cell):
                 setting = ", ".join(f"{name} {value}" for name, value in list(cell.items())[:-2])

@@ -11,6 +11,7 @@ from faultpath.selfcheck.audits import equal_grid, reversal_grid, training_grid
 from faultpath.selfcheck.coverage import break_even_grid, interval_grid, models_grid
 from faultpath.selfcheck.detection import detection_grid
 from faultpath.selfcheck.model import Measured, Report, Section
+from faultpath.selfcheck.plane import map_grid
 from faultpath.selfcheck.populations import SCENES
 from faultpath.work import local, run_all
 
@@ -66,8 +67,19 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
     """
     if profile not in PROFILES:
         raise UserError(f"there is no profile {profile!r}: choose {' or '.join(PROFILES)}.")
+    return _simulated(profile, PROFILES[profile].tasks(), processes, progress)
+
+
+def check_map(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
+    """Simulate reversal maps as `check_statistics` does audits; ``profile`` is full or quick."""
+    tasks = map_grid((25,), 10) if profile == "quick" else map_grid((10, 25, 50, 100), 400)
+    return _simulated(profile, list(tasks), processes, progress)
+
+
+def _simulated(
+    profile: str, tasks: Sequence[Task], processes: int, progress: Progress | None
+) -> Report:
     start = time.perf_counter()
-    tasks = PROFILES[profile].tasks()
     # The slow ones stand at the end; mixed, the time left can be told from what is done.
     order = sorted(range(len(tasks)), key=lambda i: (i * 7919) % len(tasks))
     found: dict[int, Measured] = {}

@@ -11,6 +11,7 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
 from faultpath.tables import Table, line
 from faultpath.tables.markdown import grid
 from faultpath.tables.terminal import drawn
@@ -213,12 +214,39 @@ TABLES = (
             ),
         ),
     ),
+    Shown(
+        EQUAL_MAPS,
+        "Maps of equal arms",
+        "Share of reversal maps that announce anything, where the arms are equal at every pair of "
+        "errors: at a place on the map, or at a correlation of the errors. Scenes alike: share "
+        "that ends the same in both arms. Promised: at most .05 each.",
+        _each(
+            ("of a", "scenes", "scenes alike", "announce"),
+            lambda c: (str(c["of"]), str(c["scenes"]), f"{float(c['alike']):g}"),
+        ),
+    ),
+    Shown(
+        CORRELATION,
+        "Break-even correlation",
+        "Coverage of the set of correlations at which it is not decided who does better: of the "
+        "true one of the surface that is straight between the points, and of the true one of the "
+        "errors themselves. Promised: at least .93.",
+        _each(
+            ("truth", "scenes", "scenes alike", "coverage"),
+            lambda c: (
+                "of the surface" if c["straight"] else "of the errors",
+                str(c["scenes"]),
+                f"{float(c['alike']):g}",
+            ),
+        ),
+    ),
 )
 
 
 def tables(report: Report) -> list[Table]:
     """Return all tables of a report."""
-    return [shown.table(report) for shown in TABLES]
+    names = {section.name for section in report.sections}
+    return [shown.table(report) for shown in TABLES if shown.section in names]
 
 
 def page(report: Report, broken: Sequence[str]) -> str:
