@@ -23,12 +23,13 @@ from typing import Any
 
 import blocks
 import learning_blocks
+import map_blocks
 import paper_blocks
 import platform_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images
 
-from faultpath.door.saved import MADE_FROM
+from faultpath.door.saved import MADE_FROM, MAP
 from faultpath.selfcheck import Report, failures, page
 
 sys.path.insert(0, str(ROOT))
@@ -40,6 +41,7 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "learning": learning_blocks.KIND,
+    "map": map_blocks.KIND,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
     "platform": platform_blocks.fill,
@@ -62,6 +64,7 @@ def statistics_check() -> Mapping[Path, str]:
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     statistics_check,
     learning_blocks.pictures,
+    map_blocks.pictures,
     performance.files,
 )
 """What makes whole files, by their path."""
@@ -157,6 +160,9 @@ def take(what: str) -> None:
     name, separator, folder = what.partition("=")
     if not separator or not name:
         raise Wrong(f"--take {what}: give NAME=FOLDER of a finished run")
+    if (Path(folder) / MAP).is_file():
+        map_blocks.take(name, Path(folder))
+        return
     copied(TAKEN, Path(folder), REFERENCE / name)
     run = load(name)
     if run is not None and run.provenance.dirty:

@@ -30,7 +30,7 @@ _ERRORS = Errors((0.0, 0.0), (SPREAD, SPREAD))
 _LOOKS = np.linspace(-1.0, 1.0, 41)
 
 
-def grown(scenes: "Scenes") -> Differences:
+def grown(scenes: "Scenes | Waves") -> Differences:
     """Return the points that a map of these scenes flies, with what it sees there."""
     points = list(lattice(COARSE))
     while True:
@@ -71,6 +71,29 @@ class Scenes:
         )
 
 
+@dataclass(frozen=True)
+class Waves:
+    """Scenes that end as a plane wave of errors has it, another one in each arm: places of the map
+    depend on each other as little as they may."""
+
+    sides: Floats
+    """Of the wave vectors and the phases, `[arms, scenes, 3]`."""
+
+    @classmethod
+    def draw(cls, stream: np.random.Generator, scenes: int) -> "Waves":
+        """Draw scenes."""
+        drawn = stream.normal(size=(2, scenes, 3)) * 8.0
+        drawn[..., 2] = stream.uniform(0.0, 2.0 * np.pi, size=(2, scenes))
+        return cls(drawn)
+
+    def differences(self, points: Sequence[Point]) -> Differences:
+        """Return what is seen at points."""
+        place = np.concatenate([np.array(points) / UNITS, np.ones((len(points), 1))], axis=1)
+        ends = np.cos(np.einsum("pk,ask->aps", place, self.sides)) > 0.0
+        repair, baseline = ends[..., np.newaxis].astype(np.float64)
+        return Differences(tuple(points), repair, baseline)
+
+
 def truth(points: Sequence[Point]) -> Floats:
     """Return the true difference at points, a fraction."""
     x, y = np.array(points, dtype=np.float64).T / UNITS
@@ -88,7 +111,8 @@ class EqualMaps:
     """Maps of arms that are equal everywhere."""
 
     scenes: int
-    alike: float
+    alike: float | None
+    """Share of scenes that end alike in both arms; `None`: they are `Waves`."""
     of: str
     """What is announced: of a `place` on the map, or of a `correlation`."""
     runs: int
@@ -98,9 +122,17 @@ class EqualMaps:
         stream = generator("selfcheck", repr(self), 0)
         announced = 0
         for _ in range(self.runs):
-            found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=True))
+            found = grown(
+                Waves.draw(stream, self.scenes)
+                if self.alike is None
+                else Scenes.draw(stream, self.scenes, self.alike, equal=True)
+            )
             announced += self._announces(found)
-        setting = {"scenes": self.scenes, "alike": self.alike, "of": self.of}
+        setting = {
+            "scenes": self.scenes,
+            "alike": "waves" if self.alike is None else self.alike,
+            "of": self.of,
+        }
         return Measured(EQUAL_MAPS, setting, announced / self.runs, self.runs)
 
     def _announces(self, found: Differences) -> bool:
@@ -147,7 +179,7 @@ def _of_the_map(expected: Expected) -> float:
 
 def map_grid(scenes: Sequence[int], runs: int) -> Iterator[EqualMaps | CorrelationCoverage]:
     """Yield the grid: what equal arms announce, then coverage."""
-    for n, alike, of in product(scenes, (0.0, 0.7), ("place", "correlation")):
+    for n, alike, of in product(scenes, (0.0, 0.7, None), ("place", "correlation")):
         yield EqualMaps(n, alike, of, runs)
     for n, alike, straight in product(scenes, (0.0, 0.7), (True, False)):
         yield CorrelationCoverage(n, alike, straight, runs)

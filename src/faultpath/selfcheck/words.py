@@ -219,10 +219,11 @@ TABLES = (
         "Maps of equal arms",
         "Share of reversal maps that announce anything, where the arms are equal at every pair of "
         "errors: at a place on the map, or at a correlation of the errors. Scenes alike: share "
-        "that ends the same in both arms. Promised: at most .05 each.",
+        "that ends the same in both arms; waves: scenes in which places of the map depend on each "
+        "other little. Promised: at most .05 each.",
         _each(
             ("of a", "scenes", "scenes alike", "announce"),
-            lambda c: (str(c["of"]), str(c["scenes"]), f"{float(c['alike']):g}"),
+            lambda c: (str(c["of"]), str(c["scenes"]), str(c["alike"])),
         ),
     ),
     Shown(
