@@ -90,6 +90,22 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--errors": ("0.1", "x", "1,1"),
         },
     ),
+    "map": (
+        [TOY],
+        {
+            "--baseline": ("calibrated", "nobody"),
+            "--repair": ("blind", "calibrated"),
+            "--fault": ("gain", "gain:offset", "gain:noise", "gain:scale=2", "gian", ","),
+            "--against": ("controller,observer", "observer", "observer,nobody", ","),
+            "--up-to": ("0.2", "2", "-1", "nan"),
+            "--spread": ("0.1", "0.1,0.2", "x", "0", "inf"),
+            "--points": ("25", "3"),
+            "--library": ("carts",),
+            "--scenes": ("1",),
+            "--workers": ("0",),
+            "--out": ("m", "folder", "text.txt"),
+        },
+    ),
     "probe": ([TOY], {"--variants": ("a,b",), "--seeds": ("0",), "--out": ("probe",)}),
     "claims": ([], {"--run": ("folder", "text.txt"), "--profile": ("x",), "--device": ("cuda",)}),
     "reproduce": (["table-99"], {"--profile": ("x", "quick"), "--out": ("r",), "--device": ("x",)}),
@@ -122,7 +138,7 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
         for _ in range(rng.randint(0, 2)):
             name = rng.choice([*options, "system", "more", "less"] if options else ["system"])
             if name == "system" and words:
-                words[0] = rng.choice(SYSTEMS if verb in ("audit", "interface") else JUNK)
+                words[0] = rng.choice(SYSTEMS if verb in ("audit", "interface", "map") else JUNK)
             elif name == "more":
                 given[rng.choice(("--set", "--wind", "--device", "--nothing"))] = rng.choice(JUNK)
             elif name == "less":

@@ -11,6 +11,7 @@ from cli_runs import TOY
 HEAVY = {"jinja2", "mujoco", "numpy", "pyarrow", "scipy", "torch"}
 
 AUDIT = ["--baseline", "a", "--repair", "b", "--fault", "gain:scale=2"]
+MAP = ["--baseline", "calibrated", "--repair", "blind", "--fault", "gain", "--against", "observer"]
 
 MAY_LOAD = {
     "help": (["--help"], set[str]()),
@@ -21,6 +22,7 @@ MAY_LOAD = {
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
+    "no such map": (["map", TOY, *MAP], {"numpy"}),
     "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
     "interface": (["interface", TOY], {"jinja2", "numpy", "pyarrow"}),
     "quadrotor": (["interface", "quadrotor"], {"jinja2", "numpy", "pyarrow", "torch"}),

@@ -96,8 +96,10 @@ def test_one_file_is_not_written_twice(tmp_path: Path):
 
 
 AUDIT = "--baseline calibrated --repair blind --fault gain:scale=0.6 --library carts --scenes 2"
+MAP = AUDIT.replace(":scale=0.6", " --against controller,observer --up-to 0.4")
 COMMANDS = {
     "audit": ["audit", TOY, *AUDIT.split(), "--workers", 0],
+    "map": ["map", TOY, *MAP.split(), "--workers", 0],
     "reproduce": ["reproduce", "table-1", "--workers", 0],
     "probe": ["probe", "quadrotor", "--variants", "wm-a,wm-a+dcc", "--scenes", 1],
     "train": ["train", "quadrotor", "wm-a"],

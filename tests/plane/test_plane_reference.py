@@ -1,0 +1,53 @@
+"""The reference map of the documents is what its trials give."""
+
+from pathlib import Path
+
+import pytest
+
+from faultpath.plane.decide import conclude
+from faultpath.plane.lattice import UNITS
+from faultpath.plane.model import MapRecord
+from faultpath.plane.study import plan_map
+from faultpath.store import read_outcomes
+from faultpath.trials import SystemSpec, library_of, load_system
+
+ROOT = Path(__file__).resolve().parents[2]
+MAPS = sorted(path.parent for path in (ROOT / "docs" / "reference").glob("*/map.json"))
+
+
+@pytest.mark.parametrize("folder", MAPS, ids=lambda path: path.name)
+def test_a_reference_map_follows_from_its_outcomes(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    record = MapRecord.model_validate_json((folder / "map.json").read_bytes())
+    asked = record.question
+    spec = SystemSpec(name=asked.system, options=asked.options)
+    system = load_system(spec)
+    plan = plan_map(
+        system,
+        spec,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        against=asked.against,
+        library=library_of(system, asked.library),
+        up_to=asked.up_to,
+        points=asked.points,
+        means=asked.means,
+        spreads=asked.spreads,
+        correlation=asked.correlation,
+        scenes=asked.n_scenes,
+        seeds=asked.seeds,
+    )
+    assert plan.question == asked
+    points = [
+        (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))
+        for x, y in (point.errors for point in record.points)
+    ]
+    table = read_outcomes(folder / "outcomes.parquet")
+    again = conclude(plan, points, table, record.findings)
+    assert again.sentences == record.sentences
+    assert again.headline == record.headline
+    for one, two in zip(again.points, record.points, strict=True):
+        assert one.model_dump() == pytest.approx(two.model_dump(), abs=1e-6)
