@@ -13,6 +13,7 @@ does. Repair `nominal`: the filter uses the data sheet's, so a bad calibration c
         --fault motor_gain:scale=0.8
 """
 
+# --- model ---
 import numpy as np
 from scipy.linalg import expm, solve_discrete_are
 
@@ -45,6 +46,7 @@ COST = solve_discrete_are(A[:4, :4], B[:4, None], np.diag([20.0, 50.0, 1.0, 1.0]
 FEEDBACK = B[:4] @ COST @ A[:4, :4] / (1e-3 + B[:4] @ COST @ B[:4])
 
 
+# --- modules ---
 class Filter(Module):
     name, writes = "filter", ("state",)
     reads_past = frozenset({Port("command", "executed")})
@@ -77,6 +79,7 @@ class Regulator(Module):
         return {"command": np.clip(force / inputs["motor_gain", "inverse"], -3.0, 3.0)}, memory
 
 
+# --- scenes ---
 def setup(env, rng):
     """Give each scene its own motor, and a force that pulls at the cart."""
     world = env.unwrapped
@@ -90,6 +93,7 @@ def offset_m(flown):
     return abs(flown["encoders"][-25:, 0].mean())
 
 
+# --- system ---
 def create():
     plant = GymnasiumPlant(
         "InvertedPendulum-v5",

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from faultpath.door.reproduced import ReproductionRun
     from faultpath.door.reproduction import reproduce
     from faultpath.door.run import Run, open_run
+    from faultpath.door.sizes import audits
     from faultpath.door.systems import load_system
     from faultpath.errors import Stopped, UserError
     from faultpath.trials.system import System
@@ -28,6 +29,7 @@ __all__ = [
     "UserError",
     "__version__",
     "audit",
+    "audits",
     "load_system",
     "open_run",
     "reproduce",
@@ -41,6 +43,7 @@ _HOMES = {
     "System": "faultpath.trials.system",
     "UserError": "faultpath.errors",
     "audit": "faultpath.door.audit",
+    "audits": "faultpath.door.sizes",
     "load_system": "faultpath.door.systems",
     "open_run": "faultpath.door.run",
     "reproduce": "faultpath.door.reproduction",

@@ -27,7 +27,8 @@ def command(
     fault: Annotated[
         str,
         typer.Option(
-            help="`calibration=+0.1`, `mass:scale=1.1`, `wind:delay=5@predictor,onset=20`, ..."
+            help="`calibration=+0.1`, `wind:delay=5@predictor,onset=20`, ...; several sizes, as in "
+            "`mass:scale=0.9,1.1`, are an audit each."
         ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
@@ -61,11 +62,11 @@ def command(
     alone, and under the shared fault."""
     drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
-    from faultpath.door.audit import audit
     from faultpath.door.display import Display, SafeConsole
+    from faultpath.door.sizes import audits
 
     console = SafeConsole()
-    run = audit(
+    runs = audits(
         system,
         baseline=baseline,
         repair=repair,
@@ -82,8 +83,16 @@ def command(
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
+    from faultpath.report.sizes import by_size
     from faultpath.report.terminal import decision
+    from faultpath.tables.terminal import drawn
 
-    console.print(decision(run.record))
-    console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    return FAILED_TRIALS if run.failed else 0
+    for run in runs:
+        if len(runs) > 1:
+            console.print(f"\nFault {run.record.question.fault}", markup=False)
+        console.print(decision(run.record))
+        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
+    if len(runs) > 1:
+        console.print()
+        console.print(drawn(by_size([run.record for run in runs])))
+    return FAILED_TRIALS if any(run.failed for run in runs) else 0

@@ -13,6 +13,7 @@ from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose, worker_count
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
+from faultpath.faults.sizes import each_size
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.record import Generalise
@@ -42,6 +43,7 @@ def audit(
     workers: int | None = None,
     time_limit_s: float | None = None,
     progress: bool | Display = True,
+    after: str | PathLike[str] | None = None,
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -68,6 +70,7 @@ def audit(
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.
+        after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -75,6 +78,8 @@ def audit(
     """
     given = dict(locals())
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
+    if len(each_size(fault)) > 1:
+        raise UserError(f"fault '{fault}' has several sizes: audit each with faultpath.audits.")
     drawn = checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
     limit = patience(str(system), time_limit_s) if called else nullcontext()
@@ -107,7 +112,8 @@ def audit(
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
-    carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s)
+    held = None if after is None or chosen.own else Path(after)
+    carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s, held)
     run = Run(place, *read_run(place))
     run.report()
     return run

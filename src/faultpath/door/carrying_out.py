@@ -31,8 +31,11 @@ def carry_out(
     workers: int,
     told: Display,
     time_limit_s: float | None,
+    after: Path | None = None,
 ) -> None:
     """Run, decide and write what the run folder's pages are made from.
+
+    Trials that the run in the folder `after` has of the same arms are taken over.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
@@ -42,7 +45,7 @@ def carry_out(
         told.say(f"Computing with {system.backend}.")
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(system, audit, folder, workers, told, time_limit_s)
+    result = _run(system, audit, folder, workers, told, time_limit_s, after)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
@@ -59,6 +62,7 @@ def _run(
     workers: int,
     told: Display,
     time_limit_s: float | None,
+    after: Path | None,
 ) -> RunResult:
     with told.progress("Running") as show:
 
@@ -75,6 +79,7 @@ def _run(
                 notice=told.say,
                 system=system,
                 time_limit_s=time_limit_s,
+                after=after,
             )
         except Interrupted as stop:
             raise Stopped(

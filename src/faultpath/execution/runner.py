@@ -93,6 +93,7 @@ def run_study(
     executor: Executor | None = None,
     time_limit_s: float | None = None,
     recheck: bool = True,
+    after: Path | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -104,7 +105,8 @@ def run_study(
     place of `workers` processes and keeps its own for the next study. `time_limit_s` is how long a
     worker may take over one block (or one scene, when a block failed) before it is stopped, in
     seconds; by default many times as long as the slowest block so far took. `recheck` flies a few
-    scenes of one block again and tells what differs; see `RunResult.findings`.
+    scenes of one block again and tells what differs; see `RunResult.findings`. What the run in the
+    folder `after` holds of the same units, flown by the same code, is taken over.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -131,6 +133,8 @@ def run_study(
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
+            if after is not None:
+                run.take_over(RunFolder(after), [unit.key for unit in units])
             schedule = _keep_finished(standing, run, notice)
             report(standing.progress())
             again = Rechecks(units, run)

@@ -2,7 +2,8 @@
 
 import hashlib
 import os
-from collections.abc import Generator, Sequence
+import shutil
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
@@ -106,6 +107,15 @@ class RunFolder:
                 found.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
         return min(found, key=_failed, default=None)
+
+    def take_over(self, other: "RunFolder", keys: Iterable[str]) -> None:
+        """Copy the blocks that another run has and this one has not, with the times of theirs."""
+        try:
+            for key in keys:
+                for shard in () if self._of(key) else other._of(key):
+                    shutil.copy2(shard, self.shards / shard.name)
+        except OSError as error:
+            raise self._unwritable(error) from error
 
     def save_failure(self, key: str, text: str) -> None:
         """Store what is known about the failed trials of a block; without any, forget the last."""

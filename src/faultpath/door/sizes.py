@@ -1,0 +1,41 @@
+"""`faultpath.audits`: one audit for each size of a fault, in which no trial flies twice."""
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from faultpath.door.audit import audit
+from faultpath.door.run import Run
+from faultpath.faults.sizes import each_size
+from faultpath.trials import System
+
+
+def audits(
+    system: str | PathLike[str] | System,
+    *,
+    fault: str,
+    folder: str | PathLike[str] | None = None,
+    **asked: Any,
+) -> tuple[Run, ...]:
+    """Audit a repair under each size of a fault.
+
+    The arms that the sizes have in common, those under correct inputs for one, fly once. Each size
+    is an audit with a record of its own: what is decided holds within a size, and no correction is
+    made for their number.
+
+    Args:
+        system: As for `audit`.
+        fault: With its sizes one after the other: `gain:scale=0.8,0.9,1.1`.
+        folder: In which each size gets a folder of its own; by default as for `audit`.
+        asked: What else `audit` takes.
+
+    Raises:
+        UserError: As `audit`, and for a size given twice.
+    """
+    runs: list[Run] = []
+    texts = each_size(fault)
+    for number, text in enumerate(texts, 1):
+        place = folder if folder is None or len(texts) == 1 else Path(folder) / f"size-{number}"
+        after = runs[0].folder if runs else None
+        runs.append(audit(system, fault=text, folder=place, after=after, **asked))
+    return tuple(runs)
