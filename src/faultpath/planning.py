@@ -82,16 +82,20 @@ def plan_audit(
     seeds: Sequence[int] = (0,),
     primary: str | None = None,
     generalise: Generalise = "scenes",
+    metric: str = "",
+    thresholds: Sequence[float] = (),
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
 
     `scenes` takes the first N of the library. `primary` is the path that leads the headline;
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
-    trained models too. Raises `UserError` for an unknown variant, a
-    repair that is its own baseline, a number of scenes that the library does not have, no seed,
-    a fault that reaches neither variant, a primary path that does not exist, or newly trained
-    models of a system that trains none or from one seed.
+    trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
+
+    Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
+    of scenes that the library does not have, no seed, a fault that reaches neither variant, a
+    primary path that does not exist, or newly trained models of a system that trains none or from
+    one seed.
     """
     variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
@@ -124,6 +128,8 @@ def plan_audit(
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
+        metric=_metric(system, metric, thresholds),
+        thresholds=tuple(sorted(set(thresholds))),
     )
     study = Study(
         name=f"{spec.name}-{repair}-vs-{baseline}",
@@ -133,6 +139,16 @@ def plan_audit(
         rows=tuple(rows),
     )
     return Audit(question, tuple(paths), study)
+
+
+def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
+    if thresholds and not name:
+        raise UserError("thresholds of what? Name a metric of the system beside them.")
+    if name and name not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', name, system.metrics)}")
+    if any(each - each != 0 for each in thresholds):
+        raise UserError("a threshold is not finite: give numbers.")
+    return name
 
 
 def _check_trainings(system: System, seeds: Sequence[int]) -> None:

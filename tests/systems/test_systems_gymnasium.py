@@ -280,6 +280,8 @@ def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_t
         fault="motor_gain:scale=0.8",
         library="training",
         scenes=20,
+        metric="offset_m",
+        thresholds=(0.05, 0.02),
         workers=0,
         folder=tmp_path / "run",
         progress=False,
@@ -293,6 +295,15 @@ def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_t
     assert metrics["shared"]["offset_m"].unit == "m"
     offsets = run.table().to_pylist()
     assert {row["status"] == "success" for row in offsets if row["offset_m"] <= 0.05} == {True}
+    for effect in run.record.effects:
+        narrow, as_it_is = effect.thresholds
+        assert (narrow.threshold, as_it_is.threshold) == (0.02, 0.05)
+        assert narrow.repair_percent <= as_it_is.repair_percent == effect.repair_percent
+        assert as_it_is.baseline_percent == effect.baseline_percent
+        assert as_it_is.difference.value == effect.success.value
+    assert "success if offset ≤ 0.02 m" in (run.folder / "table.md").read_text()
+    assert "success if offset ≤ 0.02 m" in (run.folder / "report.html").read_text()
+    assert "metrics use every pair" in (run.folder / "report.html").read_text()
     assert "offset (m)" in (run.folder / "table.md").read_text()
     assert "Offset, m" in (run.folder / "report.html").read_text()
     assert "min_clearance_m" not in run.table().column_names

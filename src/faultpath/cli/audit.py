@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, numbers, path, settings
+from faultpath.cli.options import SET, TimeLimit, numbers, path, settings, sizes
 
 FAILED_TRIALS = 1
 
@@ -46,6 +46,10 @@ def command(
             help="What intervals speak of: new scenes, or newly trained models too (several seeds)."
         ),
     ] = "scenes",
+    metric: Annotated[str, typer.Option(help="Metric of the system to tell beside success.")] = "",
+    thresholds: Annotated[
+        str | None, typer.Option(help="Of that metric, to tell success anew: 0.02,0.05,0.1.")
+    ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
@@ -76,6 +80,8 @@ def command(
         seeds=drawn,
         primary=primary,
         generalise=generalise,
+        metric=metric,
+        thresholds=() if thresholds is None else sizes(thresholds, "--thresholds"),
         options=options,
         folder=out,
         workers=workers,

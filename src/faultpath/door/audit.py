@@ -44,6 +44,8 @@ def audit(
     time_limit_s: float | None = None,
     progress: bool | Display = True,
     after: str | PathLike[str] | None = None,
+    metric: str = "",
+    thresholds: Sequence[float] = (),
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -70,6 +72,8 @@ def audit(
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.
+        metric: Of the system's own, told beside success.
+        thresholds: Of that metric, at which success is told anew.
         after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
 
     Raises:
@@ -99,6 +103,8 @@ def audit(
         seeds=drawn,
         primary=primary,
         generalise=generalise,
+        metric=metric,
+        thresholds=thresholds,
     )
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
     told = display(progress, "audit", given | said)
@@ -109,6 +115,7 @@ def audit(
     from faultpath.door.saved import read_run
 
     named = [asked.study.name, fault, Path(library).stem]
+    named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)

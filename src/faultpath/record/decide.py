@@ -102,6 +102,7 @@ def decide(
                 *(change.words for change in changes),
                 *breakeven_words.sentences(breaks, effects),
                 *words.barely_acted(asked, paths, cells),
+                *words.saturated(asked, effects),
             ),
             would_change=words.would_change(about, effects),
         ),
@@ -147,7 +148,7 @@ def _effect(
     assert found.counts is not None
     assert found.test is not None
     counts = found.counts.per_seed
-    others = secondary(trials.pairs, resamples, about.question.metrics)
+    others = secondary(trials.pairs, resamples, about.question)
     effect = Effect(
         path=path,
         success=_scoped(about, found),
@@ -168,6 +169,8 @@ def _effect(
         time_s=others.time_s,
         joint_successes=others.joint_successes,
         metrics=others.metrics,
+        metric_means=others.metric_means,
+        thresholds=others.thresholds,
         words="",
     )
     return effect.model_copy(update={"words": words.effect_words(about, effect)})

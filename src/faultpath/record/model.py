@@ -39,6 +39,10 @@ class Question(_Frozen):
     """What the system calls its ends, where it is not the status itself."""
     metrics: dict[MetricName, Metric] = VEHICLE
     """What its trials measure. Records that do not say speak of a vehicle."""
+    metric: str = ""
+    """The metric to tell beside success; empty for none."""
+    thresholds: tuple[float, ...] = ()
+    """Of that metric: at which success is told anew."""
 
 
 class StruckTap(_Frozen):
@@ -86,6 +90,16 @@ class Cell(_Frozen):
     altered_trials: int
 
 
+class AtThreshold(_Frozen):
+    """Success under another rule: the trial did not crash, and its metric is good enough."""
+
+    threshold: float
+    baseline_percent: float
+    repair_percent: float
+    difference: Estimate
+    """Percentage points; secondary, with an interval that stands by itself."""
+
+
 class Effect(_Frozen):
     """The repair minus the baseline on one path, over scenes in which every arm ran."""
 
@@ -120,6 +134,10 @@ class Effect(_Frozen):
     joint_successes: int
     metrics: dict[str, Estimate]
     """Of each metric that all trials have."""
+    metric_means: tuple[float, float] | None = None
+    """Of the question's metric: baseline and repair."""
+    thresholds: tuple[AtThreshold, ...] = ()
+    """For each of the question's thresholds."""
     words: str
 
     @model_validator(mode="before")

@@ -1,11 +1,18 @@
 """Secondary outcomes of a path: time and metrics. Nothing is decided from them."""
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
-from faultpath.statistics import Estimate, Resamples, fewest_scenes, mean_effect, median_effect
-from faultpath.trials.metrics import Metric
-from faultpath.trials.pairing import Bools, Floats, Pairs
+from faultpath.record.family import percent
+from faultpath.record.model import AtThreshold, Question
+from faultpath.statistics import (
+    Estimate,
+    Resamples,
+    fewest_scenes,
+    mean_effect,
+    median_effect,
+    success_effect,
+)
+from faultpath.trials.pairing import Bools, Floats, Pairs, Trials
 
 MIN_SCENES = fewest_scenes(1)
 """Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
@@ -18,9 +25,11 @@ class Secondary(NamedTuple):
     """On jointly successful scenes; `None` without one."""
     joint_successes: int
     metrics: dict[str, Estimate]
+    metric_means: tuple[float, float] | None
+    thresholds: tuple[AtThreshold, ...]
 
 
-def secondary(pairs: Pairs, resamples: Resamples, metrics: Mapping[str, Metric]) -> Secondary:
+def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> Secondary:
     """Return the secondary outcomes of paired trials."""
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
@@ -29,9 +38,37 @@ def secondary(pairs: Pairs, resamples: Resamples, metrics: Mapping[str, Metric])
         joint_successes=int(joint.sum()),
         metrics={
             name: _mean(first.metrics[name], second.metrics[name], resamples, metric.unit)
-            for name, metric in metrics.items()
+            for name, metric in asked.metrics.items()
             if name in first.metrics and name in second.metrics
         },
+        metric_means=_means(pairs, asked.metric),
+        thresholds=tuple(_at(pairs, asked, each, resamples) for each in asked.thresholds)
+        if _means(pairs, asked.metric)
+        else (),
+    )
+
+
+def _means(pairs: Pairs, metric: str) -> tuple[float, float] | None:
+    repair, baseline = (side.metrics.get(metric) for side in (pairs.first, pairs.second))
+    if repair is None or baseline is None:
+        return None
+    return float(baseline.mean()), float(repair.mean())
+
+
+def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -> AtThreshold:
+    """Return success where it means: did not crash, and the metric is good enough."""
+    less = asked.metrics[asked.metric].better == "less"
+
+    def reached(side: Trials) -> Bools:
+        value = side.metrics[asked.metric]
+        return ~side.crash & (value <= threshold if less else value >= threshold)
+
+    repair, baseline = reached(pairs.first), reached(pairs.second)
+    return AtThreshold(
+        threshold=threshold,
+        baseline_percent=percent(baseline),
+        repair_percent=percent(repair),
+        difference=success_effect(repair, baseline, resamples).estimate(),
     )
 
 

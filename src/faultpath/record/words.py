@@ -187,6 +187,24 @@ def barely_acted(
     return tuple(said)
 
 
+def saturated(question: Question, effects: Sequence[Effect]) -> tuple[str, ...]:
+    """Say where success can hardly tell the arms apart, and what the chosen metric shows there."""
+    if not question.metric:
+        return ()
+    metric, said = question.metrics[question.metric], list[str]()
+    for effect in effects:
+        found = effect.metrics.get(question.metric)
+        if effect.extreme and found is not None:
+            ends = f" [{found.low:.3g}, {found.high:.3g}]" if found.low is not None else ""
+            said.append(
+                f"Success is saturated {where(effect.path)}: the {metric.said(question.metric)} of "
+                f"{question.repair} minus that of {question.baseline} is there {found.value:+.3g}"
+                f"{ends} {metric.unit} ({metric.better} is better; secondary, nothing is decided "
+                "from it)."
+            )
+    return tuple(said)
+
+
 def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
     """Say what would change the verdict."""
     tested = [effect for effect in effects if effect.acted]

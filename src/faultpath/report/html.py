@@ -18,9 +18,11 @@ from faultpath.report.interface_wiring import struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
 from faultpath.report.svg import template
 from faultpath.report.tables import SHOWN, by_path, latex_table, markdown_table
+from faultpath.report.thresholds import by_threshold
 from faultpath.report.viewer import viewer_data
 from faultpath.store import make_folder, write_text
 from faultpath.tables.html import html
+from faultpath.trials.metrics import VEHICLE
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 _SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
@@ -125,6 +127,8 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
             for name, title in titles.items()
         ],
         "secondary": _secondary(record),
+        "measured": "distance and clearance" if set(asked.metrics) <= set(VEHICLE) else "metrics",
+        "thresholds": Markup(html(told)) if (told := by_threshold(record)) else "",
     }
 
 

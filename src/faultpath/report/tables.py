@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report import wording
+from faultpath.report.thresholds import by_threshold
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
 from faultpath.tables.markdown import block
@@ -138,7 +139,8 @@ def whole_table(record: DecisionRecord) -> Table:
 
 def markdown_table(record: DecisionRecord) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    return block(whole_table(record))
+    told = by_threshold(record)
+    return "\n\n".join(map(block, filter(None, (whole_table(record), told))))
 
 
 def latex_table(record: DecisionRecord) -> str:

@@ -7,6 +7,7 @@ from rich.text import Text
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
+from faultpath.report.thresholds import by_threshold
 from faultpath.tables import Line, Table, line
 from faultpath.tables.terminal import drawn
 
@@ -24,6 +25,8 @@ def decision(record: DecisionRecord) -> RenderableType:
     parts += [Text(sentence) for sentence in record.verdict.sentences]
     parts += _list("Found in the run", record.findings, "bold red")
     parts += [Text(""), drawn(success, one_line=True), Text(""), drawn(effects, one_line=True)]
+    told = by_threshold(record)
+    parts += [Text(""), drawn(told)] if told else []
     parts += _list("What would change this", record.verdict.would_change, "bold")
     return Group(*parts)
 
