@@ -13,6 +13,7 @@ from faultpath.cli import (
     audit,
     check,
     claims,
+    init,
     interface,
     log,
     map,
@@ -58,6 +59,7 @@ _OF_SYSTEMS = {
 }
 _OTHERS = {
     "claims": claims.command,
+    "init": init.command,
     "log": log.command,
     "report": report.command,
     "reproduce": reproduce.command,

@@ -17,7 +17,11 @@ from faultpath.taps import Reading
 from faultpath.text import unknown
 from faultpath.trials import Library, LoopSystem, Wiring
 
-SCENES: Mapping[str, Sequence[int]] = {"training": range(100), "held-out": range(1000, 1100)}
+SCENES: Mapping[str, Sequence[int]] = {
+    "training": range(100),
+    "selection": range(500, 600),
+    "held-out": range(1000, 1100),
+}
 """The seeds of the libraries that a system has unless it says otherwise."""
 
 

@@ -1,0 +1,60 @@
+"""New systems from templates: a file that flies as it is, and its test."""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import NamedTuple
+
+from faultpath.errors import UserError
+
+
+class _Template(NamedTuple):
+    baseline: str
+    repair: str
+    parameter: str
+    paths: tuple[str, ...]
+
+
+TEMPLATES = {
+    "numpy": _Template(
+        "calibrated", "typical", "gain", ("correct", "controller", "observer", "shared")
+    ),
+    "torch": _Template(
+        "calibrated", "typical", "gain", ("correct", "controller", "observer", "shared")
+    ),
+    "gymnasium": _Template(
+        "told", "typical", "pole_length", ("correct", "controller", "predictor", "shared")
+    ),
+}
+"""By what the system is written with."""
+
+
+def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
+    """Write `NAME.py` and `test_NAME.py` into a folder and return their paths.
+
+    Raises `UserError` for a name that is none in Python or begins with `test_`, an unknown
+    template, and for files that are there.
+    """
+    if not name.isidentifier() or not name.islower() or name.startswith("test_"):
+        raise UserError(
+            f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
+            "as my_rover."
+        )
+    if kind not in TEMPLATES:
+        raise UserError(f"there is no template {kind!r}: choose from {', '.join(TEMPLATES)}.")
+    template, texts = TEMPLATES[kind], files("faultpath.systems") / "templates"
+    system = (texts / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name)
+    test = (texts / "test.py.txt").read_text("utf-8").replace("NAME", name)
+    for word, meant in {
+        "BASELINE": repr(template.baseline),
+        "REPAIR": repr(template.repair),
+        "PARAMETER": template.parameter,
+        "PATHS": repr(list(template.paths)),
+    }.items():
+        test = test.replace(word, meant.replace("'", '"'))
+    places = folder / f"{name}.py", folder / f"test_{name}.py"
+    for place in places:
+        if place.exists():
+            raise UserError(f"{place} is there already: choose another name, or move it away.")
+    for place, text in zip(places, (system, test), strict=True):
+        place.write_text(text, "utf-8")
+    return places

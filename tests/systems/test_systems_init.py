@@ -1,0 +1,39 @@
+"""What `faultpath init` writes flies, and its own test passes."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from faultpath.errors import UserError
+from faultpath.systems.init import TEMPLATES, write_system
+
+
+@pytest.mark.parametrize("kind", TEMPLATES)
+def test_a_new_system_passes_its_own_test(kind, tmp_path):
+    system, test = write_system("my_rover", kind, tmp_path)
+    assert "NAME" not in system.read_text() + test.read_text()
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", test.name],
+        cwd=tmp_path,
+        env=os.environ | {"PYTEST_ADDOPTS": ""},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+    assert "3 passed" in done.stdout
+
+
+def test_what_cannot_be_written_is_said(tmp_path):
+    for name in ("my rover", "Rover", "test_rover", "1st", ""):
+        with pytest.raises(UserError, match="cannot name a system"):
+            write_system(name, "numpy", tmp_path)
+    with pytest.raises(UserError, match="no template 'jax'"):
+        write_system("rover", "jax", tmp_path)
+    write_system("rover", "numpy", tmp_path)
+    (tmp_path / "rover.py").write_text("mine")
+    with pytest.raises(UserError, match=r"rover\.py is there already"):
+        write_system("rover", "torch", tmp_path)
+    assert (tmp_path / "rover.py").read_text() == "mine"
