@@ -47,6 +47,11 @@ FEEDBACK = B[:4] @ COST @ A[:4, :4] / (1e-3 + B[:4] @ COST @ B[:4])
 
 
 # --- modules ---
+def applied(matrix, rows):
+    """Return a matrix times each row; `@` would round otherwise for another number of scenes."""
+    return (matrix * rows[:, None]).sum(axis=-1)
+
+
 class Filter(Module):
     name, writes = "filter", ("state",)
     reads_past = frozenset({Port("command", "executed")})
@@ -61,8 +66,8 @@ class Filter(Module):
         if memory is None:
             memory = np.hstack([seen, np.zeros((len(seen), 3))])
         force = gain * inputs["command", "executed"]
-        state = memory @ A.T + force[:, None] * B
-        state = state + (seen - state[:, :2]) @ INNOVATION.T
+        state = applied(A, memory) + force[:, None] * B
+        state = state + applied(INNOVATION, seen - state[:, :2])
         return {"state": state}, state
 
 
@@ -75,7 +80,7 @@ class Regulator(Module):
 
     def step(self, inputs, memory):
         state = inputs["state", "feedback"]
-        force = -state[:, :4] @ FEEDBACK - state[:, 4]
+        force = -(state[:, :4] * FEEDBACK).sum(axis=-1) - state[:, 4]
         return {"command": np.clip(force / inputs["motor_gain", "inverse"], -3.0, 3.0)}, memory
 
 
