@@ -11,6 +11,7 @@ from pathlib import Path
 from string import Formatter
 from typing import Any, TypeVar
 
+from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
@@ -21,7 +22,6 @@ from faultpath.report.terminal import decision
 from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.markdown import grid
 
-ROOT = Path(__file__).resolve().parents[1]
 REFERENCE = ROOT / "docs" / "reference"
 
 
@@ -156,7 +156,7 @@ def table(run: Run) -> str:
             f"below 10 % or above 90 %, no headline. Break-even: the estimate of the fault "
             f"frequency at which neither is ahead, and the frequencies at which none is decided to "
             f"be. Intervals are for {record.estimand}. Void pairs: "
-            f"{sum(effect.void_pairs for effect in record.effects)}.",
+            f"{sum(effect.void_pairs for effect in record.effects)}. {flown(run)}",
         ]
     )
 
@@ -167,11 +167,11 @@ def headline(run: Run) -> str:
 
 
 def terminal(run: Run) -> str:
-    """Return what the command line prints of the record."""
+    """Return what the command line prints of the record, and by which code the run was flown."""
     console = Console(file=StringIO(), width=100, record=True, color_system=None)
     console.print(decision(run.record))
     lines = (line.rstrip() for line in console.export_text().splitlines())
-    return fence("text", "\n".join(lines).strip("\n"))
+    return "\n\n".join([fence("text", "\n".join(lines).strip("\n")), flown(run)])
 
 
 def command(run: Run, *words: str) -> str:
@@ -184,17 +184,21 @@ def command(run: Run, *words: str) -> str:
     return fence(" ".join(["console", *words]), "$ " + line.replace(" --", " \\\n    --"))
 
 
+def flown(run: Run) -> str:
+    """Return by which code the run was flown, and whether that is the code that is here."""
+    asked = run.record.question
+    return flown_by(run.provenance, asked.system, asked.options)
+
+
 def origin(run: Run) -> str:
     """Return where the run comes from."""
     made = run.provenance
-    code = made.commit[:12] if made.commit else "unknown"
-    changed = ", with uncommitted changes" if made.dirty else ""
     packages = ", ".join(
         f"{n} {made.packages[n]}" for n in ("numpy", "torch") if n in made.packages
     )
     return (
-        f"Made on {made.finished[:10]} by faultpath {made.faultpath_version} (commit "
-        f"`{code}`{changed}) with Python {made.python}, {packages}. "
+        f"Made on {made.finished[:10]} by faultpath {made.faultpath_version} with Python "
+        f"{made.python}, {packages}. {flown(run)} "
         f"Everything that the run left in small files is in [`docs/reference/{run.name}`]"
         f"({{reference}}/{run.name}): decision record, outcome table, provenance and report."
     )
@@ -216,7 +220,8 @@ def times(*names: str) -> str:
     ]
     columns = {head: f"{{{head.lower()}}}" for head in ("Trials", "Time", "Processor", "Workers")}
     table = tabled("Scenes", rows, columns, words="Processor") if rows else ""
-    return "\n\n".join(filter(None, [table, *(missing(name) for name, run in runs if not run)]))
+    by = " ".join(dict.fromkeys(flown(run) for _, run in runs if run is not None))
+    return "\n\n".join(filter(None, [table, by, *(missing(n) for n, run in runs if not run)]))
 
 
 def duration(run: Run) -> str:

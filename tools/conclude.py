@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
-from paper_blocks import SHIPPED
 
 from faultpath.door.saved import RECORD, SYSTEM, TRACES
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
@@ -25,8 +24,8 @@ from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
-from faultpath.studies import reversal
-from faultpath.studies.claims import ledger
+from faultpath.studies import reversal, shipped
+from faultpath.studies.claims import again
 from faultpath.studies.pages import PAGES, table_4
 from faultpath.studies.run import CONCLUSIONS, plan, read_results
 from faultpath.tables import latex, markdown
@@ -49,9 +48,9 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         before = json.loads((folder / "record.json").read_bytes())
         record = _audit(folder, before)
         tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
-    if (SHIPPED / CONCLUSIONS).is_file():
-        for line in _paper():
-            tell(line)
+    for platform in shipped.shipped():
+        for line in _paper(shipped.RUNS / platform, REFERENCE / "paper" / platform):
+            tell(f"the paper on {platform}: {line}")
 
 
 def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
@@ -92,22 +91,21 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     return record
 
 
-def _paper() -> list[str]:
-    """Conclude the shipped reproduction; return what its claims were answered and now are."""
-    results, old = read_results(SHIPPED)
+def _paper(folder: Path, target: Path) -> list[str]:
+    """Conclude a shipped reproduction; return what its claims were answered and now are."""
+    results, old = read_results(folder)
     was = old.ledger
     built = [part for page in PAGES for part in page.build(results)]
     names = {table.name for table in old.tables}
     found = old.model_copy(
         update={
-            "ledger": ledger(results, was.library, was.library_hash, was.scenes, was.seeds),
+            "ledger": again(results, was),
             "tables": tuple(part for part in built if part.name in names),
             "figures": tuple(part for part in built if part.name not in names),
         }
     )
-    target = REFERENCE / "paper"
-    origin = RunProvenance.model_validate_json((SHIPPED / "provenance.json").read_bytes())
-    asked = plan((), old.profile)
+    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    asked = plan((), old.profile, options={shipped.PLATFORM: was.platform})
     leg = next(leg for leg in asked.legs() if leg.setting == table_4.WINDY)
     outcomes = reversal.audited(results.outcomes)
     scenes = {row.outcome.scene for row in outcomes.rows} | {each.scene for each in found.gallery}
@@ -118,14 +116,15 @@ def _paper() -> list[str]:
             interface=asked.system.interface,
             variants=reversal.wired(leg),
             outcomes=outcomes,
-            decision=reversal.decision(outcomes, leg, _deliveries()),
+            decision=reversal.decision(outcomes, leg, _deliveries(was.platform)),
             traces=Traces(_tracks(target / "reproduction.html"), asked.system.control_dt_s),
             plans=_plans(asked.system, sorted(scenes)),
+            beside=shipped.beside(found.ledger),
         )
     )
     tables = found.tables
-    (SHIPPED / CONCLUSIONS).write_text(found.model_dump_json(indent=1) + "\n", "utf-8")
-    _reseal(SHIPPED, origin)
+    (folder / CONCLUSIONS).write_text(found.model_dump_json(indent=1) + "\n", "utf-8")
+    _reseal(folder, origin)
     (target / "reproduction.html").write_text(page, "utf-8")
     (target / "tables.tex").write_text(latex.document(tables), "utf-8")
     (target / "tables.md").write_text("\n\n".join(map(markdown.block, tables)) + "\n", "utf-8")
@@ -138,14 +137,15 @@ def _paper() -> list[str]:
     ] or ["No claim changed its answer."]
 
 
-def _deliveries() -> Deliveries:
+def _deliveries(platform: str) -> Deliveries:
     """Return what the taps did in the arms of Table IV's question.
 
-    The shipped run keeps no receipts. The main job flies the same arms with its first seed, and
-    its record has theirs; without that run nothing is shown as struck.
+    The shipped run keeps no receipts. The main job flies the same arms with its first seed on the
+    default platform, and its record has theirs; without that run nothing is shown as struck.
     """
     record = REFERENCE / "quadrotor-L3" / "record.json"
-    paths = json.loads(record.read_bytes())["paths"] if record.is_file() else []
+    same = platform == shipped.default_platform() and record.is_file()
+    paths = json.loads(record.read_bytes())["paths"] if same else []
     of = {path["name"]: path for path in paths}
     rows = [
         RowDeliveries(

@@ -3,7 +3,8 @@
     python tools/documents.py                          write what is stale
     python tools/documents.py --check                  exit 1 when something is
     python tools/documents.py --take NAME=RUN_FOLDER   make a run folder a reference run first
-    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first
+    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first, under
+                                                       the platform that it was flown on
     python tools/documents.py --conclude               decide all reference runs anew first
     python tools/documents.py --freeze                 freeze the platform as the code has it first
     python tools/documents.py --images                 make the pictures too, with Chromium
@@ -21,6 +22,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import beside_blocks
 import blocks
 import learning_blocks
 import map_blocks
@@ -42,6 +44,7 @@ KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
     "learning": learning_blocks.KIND,
     "map": map_blocks.KIND,
+    "beside": beside_blocks.KIND,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
     "platform": platform_blocks.fill,
@@ -152,7 +155,7 @@ def pictures() -> list[tuple[str, str]]:
     names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
     runs = {(name[1], name[2]) for name in names if name[0] == "picture" and load(name[1])}
     drawn = {("paper", name[2]) for name in names if name[:2] == ["paper", "picture"]}
-    return sorted(runs | (drawn if paper_blocks.load() else set()))
+    return sorted(runs | (drawn if paper_blocks.present() else set()))
 
 
 def take(what: str) -> None:

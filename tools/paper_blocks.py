@@ -1,4 +1,8 @@
-"""What the marked blocks of the documents show of the shipped reproduction of the paper."""
+"""What the marked blocks of the documents show of the shipped reproductions of the paper.
+
+A block shows the run of the default platform, or of the newest that has one; a platform as its last
+word names another: `paper:claim:C01:first`.
+"""
 
 import json
 from collections.abc import Callable, Iterable
@@ -6,33 +10,43 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TypeVar
 
-from blocks import REFERENCE, ROOT, TAKE_AGAIN, Wrong, copied, parsed, tabled
+from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed, tabled
+from flown_code import flown_by
 
 from faultpath.record import Reproduction, RunProvenance
 from faultpath.report.reproduction.terminal import ledger_markdown
+from faultpath.studies import shipped
+from faultpath.studies.flights import SYSTEM
 from faultpath.tables.markdown import block
 
 T = TypeVar("T")
-SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.tex", "tables.md", "ledger.md")
-"""What of a run stands in `docs/reference/paper`."""
+"""What of a run stands in `docs/reference/paper`, below the name of its platform."""
+
+
+def present() -> str | None:
+    """Return the platform whose run documents show, `None` where none has been flown."""
+    there = shipped.shipped()
+    default = shipped.default_platform()
+    return default if default in there else there[-1] if there else None
 
 
 @cache
-def load() -> tuple[Reproduction, RunProvenance] | None:
-    """Return the shipped run, `None` where there is none; `Wrong` for a damaged one."""
-    if not (SHIPPED / FILES[0]).is_file():
-        return None
-    found = parsed(SHIPPED / FILES[0], Reproduction, TAKE_AGAIN)
-    return found, parsed(SHIPPED / FILES[1], RunProvenance, TAKE_AGAIN)
+def load(platform: str) -> tuple[Reproduction, RunProvenance]:
+    """Return the shipped run of a platform; `Wrong` for a damaged one."""
+    folder = shipped.RUNS / platform
+    found = parsed(folder / FILES[0], Reproduction, TAKE_AGAIN)
+    return found, parsed(folder / FILES[1], RunProvenance, TAKE_AGAIN)
 
 
 def _part(fill: Callable[..., str], *names: str) -> str:
-    """Return a part of the shipped run."""
-    run = load()
-    return fill(*run, *names) if run else "*The paper has not been flown yet.*"
+    """Return a part of a shipped run."""
+    platform = present()
+    if names and names[-1] in shipped.shipped():
+        names, platform = names[:-1], names[-1]
+    return fill(*load(platform), *names) if platform else "*The paper has not been flown yet.*"
 
 
 def _counts(found: Reproduction, origin: RunProvenance) -> str:
@@ -94,21 +108,30 @@ def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
 
 
 def _origin(found: Reproduction, origin: RunProvenance) -> str:
-    first, last = found.flown or ("", "")
-    commit = origin.commit[:12] if origin.commit else "unknown"
+    first, last = (end[:16].replace("T", " ") for end in found.flown or ("", ""))
+    platform = found.ledger.platform
     return (
-        f"Flown between {first[:16].replace('T', ' ')} and {last[:16].replace('T', ' ')} UTC, "
-        f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded by "
-        f"commit `{commit}`; concluded anew by the code that is here, which a test repeats. "
+        f"Flown on platform `{platform}` between {first} and {last} UTC, "
+        f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded "
+        "anew by the code that is here, which a test repeats. "
+        f"{flown_by(origin, SYSTEM, {shipped.PLATFORM: platform})} "
         "Everything is in "
-        "[`docs/reference/paper`]({reference}/paper): the report, the ledger and all tables."
+        f"[`docs/reference/paper/{platform}`]({{reference}}/paper/{platform}): the report, the "
+        "ledger and all tables."
     )
 
 
 def take(folder: Path, reference: Path) -> None:
-    """Ship a run of the whole paper: `Wrong` when it is not finished."""
-    copied(FILES, folder, SHIPPED)
-    copied(PAGES, folder, reference / "paper")
+    """Ship a run of the whole paper under its platform: `Wrong` when it is not finished."""
+    found = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
+    platform = found.ledger.platform
+    if found.profile != "paper" or platform not in shipped.platforms():
+        raise Wrong(
+            f"{folder} is a {found.profile} run on platform '{platform}': what is shipped is a run "
+            f"of profile paper on {' or '.join(shipped.platforms())}"
+        )
+    copied(FILES, folder, shipped.RUNS / platform)
+    copied(PAGES, folder, reference / "paper" / platform)
 
 
 KIND: dict[str, Callable[..., str]] = {

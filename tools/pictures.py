@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from blocks import PARTS, REFERENCE, ROOT, Wrong
+from paper_blocks import present
 
 MARGIN = 12.0
 IMAGES = ROOT / "docs" / "images"
@@ -15,8 +16,10 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-backg
 
 
 def report(run: str) -> Path:
-    """Return the page of a reference run; that of the whole paper has another name."""
-    return REFERENCE / run / ("reproduction.html" if run == "paper" else "report.html")
+    """Return the page of a reference run; `paper` is the run of the paper that is shown."""
+    if run == "paper":
+        return REFERENCE / run / str(present()) / "reproduction.html"
+    return REFERENCE / run / "report.html"
 
 
 def digest(run: str) -> str:

@@ -27,6 +27,11 @@ MISTAKES = {
         ["figure-3 is flown on the selection library", "'training' would change nothing"],
     ),
     "run and library": (["claims", "--run", "a", "--library", "b.json"], ["give one of them"]),
+    "run and platform": (
+        ["claims", "--run", "a", "--platform", "first"],
+        ["--platform would do nothing with --run"],
+    ),
+    "no such platform": (["claims", "--platform", "moon"], ["no platform 'moon'", "first"]),
 }
 
 
@@ -58,7 +63,7 @@ def test_making_scenes_shows_how_many_there_are(
 
 
 def test_the_shipped_claims_are_json() -> None:
-    done = faultpath("claims", "--json")
+    done = faultpath("claims", "--json", "--platform", "first")
     assert done.status == 0, done.err
     claims = json.loads(done.out)
     assert [claim["id"] for claim in claims] == [claim.id for claim in published_claims()]

@@ -21,7 +21,7 @@ def conclude(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
     import conclude
 
     monkeypatch.setattr(conclude, "REFERENCE", tmp_path)
-    monkeypatch.setattr(conclude, "SHIPPED", tmp_path / "nothing")
+    monkeypatch.setattr(conclude.shipped, "RUNS", tmp_path / "nothing")
     return conclude
 
 

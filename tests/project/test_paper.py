@@ -6,44 +6,42 @@ from pathlib import Path
 import pytest
 
 from faultpath.record import Reproduction, RunProvenance
+from faultpath.studies import shipped
 from faultpath.studies.cells import PAPER
-from faultpath.studies.claims import ledger
+from faultpath.studies.claims import again
 from faultpath.studies.pages import PAGES
 from faultpath.studies.published import published_claims
 from faultpath.studies.results import Results
 from faultpath.studies.run import read_results
 
 ROOT = Path(__file__).resolve().parents[2]
-SHIPPED = ROOT / "src" / "faultpath" / "studies" / "paper" / "run"
 REFERENCE = ROOT / "docs" / "reference" / "paper"
 
 
-@pytest.fixture(scope="module")
-def shipped() -> tuple[Results, Reproduction]:
-    return read_results(SHIPPED)
+Run = tuple[Results, Reproduction]
 
 
-def test_the_claims_follow_from_the_tables(shipped: tuple[Results, Reproduction]) -> None:
-    results, found = shipped
-    old = found.ledger
-    again = ledger(results, old.library, old.library_hash, old.scenes, old.seeds)
-    assert [rounded(claim.model_dump()) for claim in again.claims] == [
-        rounded(claim.model_dump()) for claim in old.claims
-    ]
+@pytest.fixture(scope="module", params=shipped.shipped())
+def run(request: pytest.FixtureRequest) -> Run:
+    return read_results(shipped.shipped_run(request.param))
 
 
-def test_tables_and_figures_follow_from_the_outcomes(
-    shipped: tuple[Results, Reproduction],
-) -> None:
-    results, found = shipped
+def test_the_claims_follow_from_the_tables(run: Run) -> None:
+    results, found = run
+    answered = again(results, found.ledger)
+    assert rounded(answered.model_dump()) == rounded(found.ledger.model_dump())
+
+
+def test_tables_and_figures_follow_from_the_outcomes(run: Run) -> None:
+    results, found = run
     built = [part for page in PAGES for part in page.build(results)]
     assert {part.name: part for part in built} == {
         part.name: part for part in (*found.tables, *found.figures)
     }
 
 
-def test_every_arm_of_the_paper_was_flown(shipped: tuple[Results, Reproduction]) -> None:
-    results, found = shipped
+def test_every_arm_of_the_paper_was_flown(run: Run) -> None:
+    results, found = run
     wanted = PAPER.cells(cell for page in PAGES for cell in page.cells)
     for cell in wanted:
         assert results.seeds(cell) == cell.seeds, cell
@@ -52,18 +50,19 @@ def test_every_arm_of_the_paper_was_flown(shipped: tuple[Results, Reproduction])
     assert [claim.id for claim in found.ledger.claims] == [c.id for c in published_claims()]
 
 
-def test_the_outcomes_are_those_that_the_provenance_names() -> None:
-    named = RunProvenance.model_validate_json((SHIPPED / "provenance.json").read_bytes())
-    digest = hashlib.sha256((SHIPPED / "outcomes.parquet").read_bytes()).hexdigest()
+@pytest.mark.parametrize("platform", shipped.shipped())
+def test_the_outcomes_are_those_that_the_provenance_names(platform: str) -> None:
+    folder = shipped.shipped_run(platform)
+    named = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    digest = hashlib.sha256((folder / "outcomes.parquet").read_bytes()).hexdigest()
     assert named.outcomes_sha256 == digest
 
 
-def test_the_report_shows_every_claim_of_the_ledger(
-    shipped: tuple[Results, Reproduction],
-) -> None:
-    page = (REFERENCE / "reproduction.html").read_text("utf-8")
-    text = (REFERENCE / "ledger.md").read_text("utf-8")
-    for claim in shipped[1].ledger.claims:
+def test_the_report_shows_every_claim_of_the_ledger(run: Run) -> None:
+    folder = REFERENCE / run[1].ledger.platform
+    page = (folder / "reproduction.html").read_text("utf-8")
+    text = (folder / "ledger.md").read_text("utf-8")
+    for claim in run[1].ledger.claims:
         assert claim.id in page
         assert f"| {claim.id} |" in text
 

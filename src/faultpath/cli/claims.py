@@ -2,13 +2,12 @@
 
 import json
 import sys
-from importlib.resources import as_file, files
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path, refuse_unless
+from faultpath.cli.options import TimeLimit, path, refuse_unless, refuse_with
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
@@ -20,6 +19,10 @@ def command(
     run: Annotated[
         Path | None,
         typer.Option(parser=path, help="Folder of a reproduction; default the shipped one."),
+    ] = None,
+    platform: Annotated[
+        str | None,
+        typer.Option(help="Shipped run to show, or platform to fly; default the quadrotor's."),
     ] = None,
     library: Annotated[
         Path | None,
@@ -45,6 +48,8 @@ def command(
         raise UserError(
             "--run reads a finished reproduction and --library makes a new one: give one of them."
         )
+    if run is not None:
+        refuse_with("--run", platform=platform)
     if library is None:
         refuse_unless(
             "--library",
@@ -54,7 +59,7 @@ def command(
             device=device,
             time_limit=time_limit,
         )
-        return _show(run, as_json)
+        return _show(run, platform, as_json)
     from faultpath.cli.reproduce import tell
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.reproduction import reproduce
@@ -65,6 +70,7 @@ def command(
         folder=out,
         workers=workers,
         device=device,
+        platform=platform,
         time_limit_s=time_limit,
         progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
         name="claims",
@@ -76,15 +82,14 @@ def command(
     return FAILED_TRIALS if done.record.failed_trials else 0
 
 
-def _show(run: Path | None, as_json: bool) -> int:
+def _show(run: Path | None, platform: str | None, as_json: bool) -> int:
     """Evaluate a finished run anew, so that the answers are those of the code that is here."""
-    from faultpath.studies.claims import ledger
+    from faultpath.studies.claims import again
     from faultpath.studies.run import read_results
+    from faultpath.studies.shipped import shipped_run
 
-    with as_file(files("faultpath.studies") / "paper" / "run") as shipped:
-        results, found = read_results(shipped if run is None else run)
-    old = found.ledger
-    answers = ledger(results, old.library, old.library_hash, old.scenes, old.seeds, note=old.note)
+    results, found = read_results(shipped_run(platform) if run is None else run)
+    answers = again(results, found.ledger)
     if as_json:
         _print(answers)
         return 0

@@ -20,6 +20,7 @@ from faultpath.studies import reversal
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
+from faultpath.studies.shipped import beside
 from faultpath.tables import latex, markdown
 
 
@@ -103,6 +104,7 @@ def _write_pages(
             for scene in {*(row.outcome.scene for row in asked.rows), *_gallery(found)}
             if (drawn := system.floor_plan(scene)) is not None
         },
+        beside=beside(found.ledger),
     )
     write_text(place / "reproduction.html", reproduction_page(source), place)
     write_text(place / "tables.tex", latex.document(found.tables), place)

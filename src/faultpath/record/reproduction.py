@@ -7,6 +7,11 @@ from pydantic import BaseModel, ConfigDict
 from faultpath.tables import Table
 
 Answer = Literal["confirmed", "refuted", "undecided"]
+Size = Literal["compatible", "right sign, other size", "other size", "other sign", "not comparable"]
+"""An effect beside the paper's figure; `other size` where a sign is not decided, or there is none.
+
+`docs/design/claims.md` defines them.
+"""
 
 
 class _Frozen(BaseModel):
@@ -32,6 +37,11 @@ class Part(_Frozen):
     """Why it is undecided, where the numbers do not say it."""
     not_run: bool = False
     """Whether that is because the run lacks what it is about."""
+    paper: float | None = None
+    """The paper's figure in `unit`, where it prints one, or the two that it follows from."""
+    paper_interval: tuple[float, float] | None = None
+    size: Size = "not comparable"
+    """How the estimate stands to that figure; no answer depends on it."""
 
 
 class ClaimVerdict(_Frozen):
@@ -63,6 +73,10 @@ class Ledger(_Frozen):
     """Claims that the run is not about."""
     note: str = ""
     """What was flown elsewhere than on `library`, where that takes the place of another."""
+    platform: str = "first"
+    """On which the system flew; runs that do not say are older than the second one."""
+    unmatched: tuple[str, ...] = ()
+    """Platform claims to whose figures this platform was not matched, by their ids."""
 
     def count(self, answer: Answer) -> int:
         """Return how many claims got this answer."""

@@ -2,7 +2,7 @@
 
 from functools import cache
 from importlib.resources import files
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import yaml
 from pydantic import BaseModel, ConfigDict
@@ -19,6 +19,14 @@ class PublishedClaim(BaseModel):
     claim: str
     paper: str
     """What the paper reports."""
+
+
+class Printed(NamedTuple):
+    """A figure of the paper, in the unit of what is compared with it."""
+
+    value: float
+    interval: tuple[float, float] | None = None
+    """95 %, where the paper prints one: a figure worked out from two others has none."""
 
 
 def published(*keys: str | int) -> Any:

@@ -28,6 +28,7 @@ from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
+from faultpath.studies.shipped import PLATFORM, default_platform
 from faultpath.tables import Table
 from faultpath.trials import (
     Deliveries,
@@ -66,6 +67,11 @@ class Plan:
     def place(self) -> str:
         """Folder, inside that of the run, for what these pages conclude."""
         return "." if self.whole else "+".join(page.name for page in self.pages)
+
+    @property
+    def platform(self) -> str:
+        """The platform that it flies on."""
+        return self.options.get(PLATFORM, default_platform())
 
     def legs(self) -> tuple[Leg, ...]:
         """Return what there is to fly."""
@@ -167,6 +173,7 @@ def conclude(plan: Plan, flown: Flown, results: Results) -> Reproduction:
             plan.profile.seeds,
             only_run=not plan.whole,
             note=plan.substitution(),
+            platform=plan.platform,
         ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from faultpath.interface import Interface
-from faultpath.record import DecisionRecord, Reproduction
+from faultpath.record import DecisionRecord, Ledger, Reproduction
 from faultpath.record.provenance import RunProvenance
 from faultpath.report.inputs import Traces
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
@@ -27,3 +27,5 @@ class ReproductionInput:
     """Its flights; trials may be missing."""
     plans: Mapping[str, FloorPlan]
     """By scene id; a scene without one is left out of the gallery."""
+    beside: tuple[Ledger, ...] = ()
+    """What runs on other platforms answered, over the same library."""

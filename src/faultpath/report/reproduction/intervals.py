@@ -30,16 +30,18 @@ def interval_plot(
     interval: Sequence[float],
     least_detectable: float | None,
     shared: Axis | None,
+    papers: Sequence[float] = (),
 ) -> str:
     """Return one interval: filled where it leaves out 0, open elsewhere.
 
+    `papers`: the paper's figure, and the ends of its interval where it has one, marked above.
     The light band beside an open one reaches as far as effects that would probably not have been
     detected. Without a `shared` axis the plot gets one of its own, with two labels.
     """
     low, high = interval
     open_ = low <= 0 <= high
     band = least_detectable if open_ else None
-    axis = shared or plot_axis([value, low, high, *((-band, band) if band else ())])
+    axis = shared or plot_axis([value, low, high, *papers, *((-band, band) if band else ())])
     svg = Svg(WIDTH, _HEIGHT if shared else _LABELLED, title)
     y = _HEIGHT / 2
     if band:
@@ -49,6 +51,11 @@ def interval_plot(
     svg.line((axis(0.0), 0), (axis(0.0), _HEIGHT), "zero")
     draw_interval(svg, axis, interval, y, 3.5, "range")
     svg.circle((axis(value), y), 3.8, "dot open" if open_ else "dot")
+    if papers:
+        at, *theirs = map(axis, papers)
+        if theirs:
+            svg.line((theirs[0], 2), (theirs[1], 2), "papers")
+        svg.polygon([(at - 3, 0), (at + 3, 0), (at, 5)], "papers-figure")
     if not shared:
         for tick in _ends_of(axis):
             svg.text(axis(tick), _LABELLED - 2, tick_label(tick), "tiny", "middle")

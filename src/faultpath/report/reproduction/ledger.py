@@ -26,14 +26,26 @@ def ledger_plots(ledger: Ledger) -> Plots:
     """Return a picture of every interval; all in percentage points share one axis."""
     drawn = dict(_measured(ledger))
     ends = [end for value, of in drawn.values() if of.unit == _SHARED for end in value]
+    ends += [end for _, of in drawn.values() if of.unit == _SHARED for end in _papers(of)]
     axis = plot_axis(ends) if ends else None
     plots: dict[str, Markup] = {}
     for name, ((value, *interval), of) in drawn.items():
         shared = axis if of.unit == _SHARED else None
         title = f"{name}: {words.estimate(of)}"
-        plots[name] = Markup(interval_plot(title, value, interval, of.mde, shared))
+        plots[name] = Markup(interval_plot(title, value, interval, of.mde, shared, _papers(of)))
     scale = None if axis is None else Markup(scale_plot(axis, "Scale in percentage points"))
     return Plots(scale, plots)
+
+
+def _papers(of: ClaimVerdict | Part) -> tuple[float, ...]:
+    """Return the paper's figure and the ends of its interval, as far as it prints them."""
+    shown = _deciding(of) if isinstance(of, ClaimVerdict) else of
+    return () if shown.paper is None else (shown.paper, *(shown.paper_interval or ()))
+
+
+def _deciding(claim: ClaimVerdict) -> Part:
+    """Return the part whose estimate is the claim's."""
+    return next(part for part in claim.parts if part.answer == claim.verdict)
 
 
 def _measured(

@@ -32,6 +32,7 @@ def reproduction_page(source: ReproductionInput) -> str:
         _SCRIPTS,
         found=reproduction,
         ledger=reproduction.ledger,
+        beside=source.beside,
         plots=ledger_plots(reproduction.ledger),
         tables=[
             (table, Markup(html(table, "beside", caption=False))) for table in reproduction.tables

@@ -1,11 +1,13 @@
 """How the figures of claims are written, on the page and in the terminal."""
 
-from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part
+from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part, Size
 from faultpath.report import wording
 
 SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
 ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
+SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
+"""From the nearest to the paper's figure to the farthest."""
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0}
 _DIFFERENCES = ("pp", "s", "m")
@@ -56,9 +58,51 @@ def evidence(part: Part) -> tuple[str, ...]:
         f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
         detectable and f"least detectable {detectable}",
         part.counts and f"only one succeeds in {part.counts}",
+        papers(part) and f"the paper {papers(part)}: {part.size}",
         part.reason,
     )
     return tuple(phrase for phrase in phrases if phrase)
+
+
+def papers(part: Part) -> str:
+    """Return the paper's figure for a part as ours is written; nothing where it prints none."""
+    theirs = {"estimate": part.paper, "interval": part.paper_interval}
+    return estimate(part.model_copy(update=theirs)) if part.unit else ""
+
+
+def farthest(claim: ClaimVerdict) -> tuple[Size, int, int]:
+    """Return the size that is farthest from the paper's figure, of the parts that can be compared.
+
+    With it, how many parts have it, of how many that can be compared.
+    """
+    compared = [part.size for part in claim.parts if part.size in SIZES]
+    worst = SIZES[max(map(SIZES.index, compared))] if compared else "not comparable"
+    return worst, compared.count(worst), len(compared)
+
+
+def size(claim: ClaimVerdict) -> str:
+    """Return `right sign, other size, 2 of 3`; nothing where the paper prints no figure."""
+    worst, count, compared = farthest(claim)
+    if not compared:
+        return worst if any(part.paper is not None for part in claim.parts) else ""
+    return worst if compared == 1 else f"{worst}, {count} of {compared}"
+
+
+def sizes(ledger: Ledger) -> str:
+    """Return in one sentence how many figures of the paper ours are compatible with."""
+    parts = [part for claim in ledger.claims for part in claim.parts]
+    printed = [part.size for part in parts if part.paper is not None]
+    compared = [each for each in printed if each in SIZES]
+    if not printed:
+        return ""
+    figures = wording.counted(len(printed), "figure")
+    if not compared:
+        return f"The paper prints {figures} for these claims; this run can be compared with none."
+    found = "; ".join(f"{compared.count(each)} {each}" for each in SIZES if each in compared)
+    return (
+        f"The paper prints {figures} for these claims, of which {len(compared)} can be compared: "
+        f"{found}."
+    )
 
 
 def headline(ledger: Ledger) -> str:
@@ -70,6 +114,16 @@ def headline(ledger: Ledger) -> str:
         f"Of {about}, our runs confirm "
         f"{confirmed}, refute {refuted} and leave {undecided} undecided"
     )
+
+
+def notes(ledger: Ledger) -> tuple[str, ...]:
+    """Return what qualifies all claims: what flew elsewhere, what a platform was not matched to."""
+    there = [claim.id for claim in ledger.claims if claim.id in ledger.unmatched]
+    unmatched = (
+        f"Platform claims that platform {ledger.platform} was not matched to, so that they had to "
+        f"come out by themselves: {', '.join(there)}."
+    )
+    return tuple(filter(None, (ledger.note, unmatched if there else "")))
 
 
 def _digits(unit: str) -> int:

@@ -13,6 +13,7 @@ from faultpath.studies.claims.rules import (
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.sweep import above_worst, range_gained, worst_difference
 from faultpath.studies.pages import figure_3, in_text, table_2
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import combined, success
 from faultpath.studies.quantities.summaries import at_lower_success
 from faultpath.studies.quantities.windows import ratio
@@ -22,11 +23,24 @@ WM_A, WM_U = table_2.PAIRS
 REPAIR, BASELINE = WM_A
 PLUS, MINUS = ((table_2.cell(BASELINE, e), (table_2.error_under(e),)) for e in FAULTS)
 """Success and prediction error of WM-A under each error."""
+_NOISY = published("in_text", "state_noise_and_delay_correct_calibration")
 
 
 def _lost(model: str, error: float) -> tuple[Cell, Cell]:
     """Return the cells whose difference is the success that a model loses to an error."""
     return table_2.cell(model, 0.0), table_2.cell(model, error)
+
+
+def _lost_in_paper(model: str, error: float) -> float:
+    return table_2.paper_rate(model, 0.0) - table_2.paper_rate(model, error)
+
+
+def _error_at_lower_success_in_paper() -> float:
+    """Return WM-A's median error at the sign with less success minus at the other, m."""
+    seed_0 = published("table_2_calibration", "WM-A_seed0")
+    minus, _, plus = sorted(zip(table_2.ERRORS, seed_0["success"], seed_0["error_cm"], strict=True))
+    less, more = sorted((minus[1:], plus[1:]))
+    return 0.01 * (less[1] - more[1])
 
 
 def _repaired(pair: tuple[str, str], error: float) -> Statement:
@@ -35,6 +49,7 @@ def _repaired(pair: tuple[str, str], error: float) -> Statement:
         f"success of {_name(repair)} minus {_name(baseline)} at e = {error:+g}",
         success(table_2.cell(repair, error), table_2.cell(baseline, error)),
         ABOVE,
+        table_2.paper_repair(baseline, error),
     )
 
 
@@ -47,7 +62,14 @@ def _responds(first: str, second: str, probe: str, times: float) -> Statement:
         f"median response of {_name(first)} to the {probe} probe over that of {_name(second)}",
         ratio((in_text.response(first, probe),), (in_text.response(second, probe),)),
         at_least(times),
+        _response_in_paper(first, probe, second),
     )
+
+
+def _response_in_paper(first: str, probe: str, second: str) -> Printed:
+    probed = f"probe_WM-A_{probe.replace(' ', '_')}_response_cm"
+    found = dict(zip((BASELINE, REPAIR), published("in_text", probed).values(), strict=True))
+    return Printed(found[first] / found[second])
 
 
 def _name(model: str) -> str:
@@ -61,6 +83,7 @@ CLAIMS: dict[str, Statements] = {
                 f"success of WM-A lost at e = {error:+g}",
                 success(*_lost(BASELINE, error)),
                 at_least(lost_pp, seen=True),
+                Printed(_lost_in_paper(BASELINE, error)),
             ),
         )
         for claim, error, lost_pp in (("C05", 0.1, 30), ("C06", -0.1, 20))
@@ -70,11 +93,13 @@ CLAIMS: dict[str, Statements] = {
             "success of WM-U at e = +0.1 minus at e = 0",
             success(*reversed(_lost(WM_U[1], 0.1))),
             BELOW,
+            Printed(-_lost_in_paper(WM_U[1], 0.1)),
         ),
         Statement(
             "success lost at e = +0.1 by WM-A, minus that by WM-U",
             combined((1, _lost(BASELINE, 0.1)), (-1, _lost(WM_U[1], 0.1))),
             more_than(0),
+            Printed(_lost_in_paper(BASELINE, 0.1) - _lost_in_paper(WM_U[1], 0.1)),
         ),
     ),
     "C08": (
@@ -82,6 +107,7 @@ CLAIMS: dict[str, Statements] = {
             "success of WM-U lost at e = -0.1, minus a third of that lost at e = +0.1,",
             combined((1, _lost(WM_U[1], -0.1)), (-1 / 3, _lost(WM_U[1], 0.1))),
             by_point(-1),
+            Printed(_lost_in_paper(WM_U[1], -0.1) - _lost_in_paper(WM_U[1], 0.1) / 3),
         ),
     ),
     "C09": tuple(_repaired(WM_A, error) for error in FAULTS),
@@ -91,6 +117,7 @@ CLAIMS: dict[str, Statements] = {
             f"success of {_name(repair)} minus {_name(baseline)} at e = 0",
             success(table_2.cell(repair, 0.0), table_2.cell(baseline, 0.0)),
             NO_LOSS,
+            table_2.paper_repair(baseline, 0.0),
         )
         for repair, baseline in table_2.PAIRS
     ),
@@ -99,6 +126,7 @@ CLAIMS: dict[str, Statements] = {
             "median error of WM-A at the sign with less success, minus at the other,",
             at_lower_success(PLUS, MINUS, 0.5),
             BELOW,
+            Printed(_error_at_lower_success_in_paper()),
         ),
         Statement(
             "90th percentile of that error at the sign with less success, minus at the other,",
@@ -144,6 +172,7 @@ CLAIMS: dict[str, Statements] = {
             "success of WM-A+DCC minus WM-A with noise and delay at e = 0",
             success(*_noisy(0.0)),
             REPORTED,
+            Printed(_NOISY[table_2.NAMES[REPAIR]] - _NOISY[table_2.NAMES[BASELINE]]),
         ),
     ),
 }

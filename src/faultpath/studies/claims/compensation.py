@@ -11,6 +11,7 @@ from faultpath.studies.claims.rules import (
 )
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import table_4, table_6, text_mechanism
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.windows import (
     Subject,
     difference_of_changes,
@@ -20,6 +21,11 @@ from faultpath.studies.quantities.windows import (
 NOMINAL, ISOLATED, PREDICTOR, SHARED = table_6.INTERFACES
 GRU, DCC, DOB = table_4.METHODS
 WITHIN_15_PERCENT = within(0.85, 1.15)
+_printed = table_6.paper_acceleration
+_WIND_TERM = published(
+    "table_6_compensation", "a_analytic_acceleration_error_mps2", "GRU_wind_term_only"
+)
+_CORRELATIONS = published("in_text", "spearman_success")
 
 
 def _acceleration(method: str, interface: str) -> Subject:
@@ -31,6 +37,7 @@ def _over_nominal(method: str, interface: str, rule: Rule) -> Statement:
         f"acceleration error of {method.upper()}, {interface} over correct,",
         ratio(_acceleration(method, interface), _acceleration(method, NOMINAL)),
         rule,
+        Printed(_printed(method, interface) / _printed(method, NOMINAL)),
     )
 
 
@@ -39,10 +46,13 @@ def _repair_moves_less(what: str, other: str, first: str, second: str, *, size: 
     repair, rival = (
         (_acceleration(method, first), _acceleration(method, second)) for method in (DCC, other)
     )
+    changes = [_printed(method, second) - _printed(method, first) for method in (DCC, other)]
+    own, others = map(abs, changes) if size else changes
     return Statement(
         f"{what} in acceleration error, GRU+DCC minus {other.upper()},",
         difference_of_changes(repair, rival, size=size),
         BELOW,
+        Printed(own - others),
     )
 
 
@@ -75,11 +85,13 @@ CLAIMS: dict[str, Statements] = {
                 table_6.by_seed(table_6.wind_term_error, GRU, ISOLATED),
             ),
             WITHIN_15_PERCENT,
+            Printed(_WIND_TERM["shared"] / _WIND_TERM["isolated"]),
         ),
         Statement(
             "acceleration error of GRU, shared over reconstruction-only,",
             ratio(_acceleration(GRU, SHARED), _acceleration(GRU, ISOLATED)),
             less_than(0.7),
+            Printed(_printed(GRU, SHARED) / _printed(GRU, ISOLATED)),
         ),
     ),
     "C34": tuple(
@@ -87,9 +99,13 @@ CLAIMS: dict[str, Statements] = {
             f"rank correlation of success with {error} over {len(text_mechanism.NINE)} cells",
             quantity,
             by_point(-1, -0.5, strict=False),
+            Printed(_CORRELATIONS[key]),
         )
-        for error, quantity in zip(
-            ("acceleration error", "20-step position error"), text_mechanism.RANKED, strict=True
+        for error, key, quantity in zip(
+            ("acceleration error", "20-step position error"),
+            ("analytic_acceleration_error", "position_error_20_step"),
+            text_mechanism.RANKED,
+            strict=True,
         )
     ),
     "C35": (

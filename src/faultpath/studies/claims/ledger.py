@@ -23,6 +23,9 @@ STATEMENTS: Mapping[str, Statements] = {
 }
 """What each claim consists of, by its id."""
 
+UNMATCHED: Mapping[str, tuple[str, ...]] = {"first": ("C02", "C03")}
+"""Platform claims, by platform, to whose figures it was not matched: it was frozen before."""
+
 
 def evaluate(results: Results) -> tuple[ClaimVerdict, ...]:
     """Answer every published claim, in the paper's order; what was not run leaves it undecided."""
@@ -38,8 +41,9 @@ def ledger(
     *,
     only_run: bool = False,
     note: str = "",
+    platform: str = "first",
 ) -> Ledger:
-    """Return all answers with what they were answered on; `note` as in `Ledger`.
+    """Return all answers with what they were answered on; `note` and `platform` as in `Ledger`.
 
     `only_run` leaves claims out of which a part was not run: a run of some pages is not about them.
     """
@@ -53,4 +57,12 @@ def ledger(
         claims=tuple(kept),
         left_out=len(every) - len(kept),
         note=note,
+        platform=platform,
+        unmatched=UNMATCHED.get(platform, ()),
     )
+
+
+def again(results: Results, old: Ledger) -> Ledger:
+    """Return a ledger answered anew, every claim of it, by the rules that are here."""
+    asked = old.library, old.library_hash, old.scenes, old.seeds
+    return ledger(results, *asked, note=old.note, platform=old.platform)

@@ -16,8 +16,10 @@ from faultpath.studies.claims.rules import (
     points_decide,
     telling,
 )
-from faultpath.studies.claims.statement import Statements
+from faultpath.studies.claims.sizes import size
+from faultpath.studies.claims.statement import Statements, beside
 from faultpath.studies.pages import table_5
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import together
 from faultpath.studies.results import Results
 
@@ -71,6 +73,15 @@ class Pays:
     bound: Bound | None = None
 
     @property
+    def paper(self) -> Printed | None:
+        """The frequency that the paper prints, percent."""
+        even = published("table_5_decision_record", self.repair)
+        if even["p_star_percent"] is None:
+            return None
+        low, high = even["ci95"]
+        return Printed(even["p_star_percent"], (low, high))
+
+    @property
     def words(self) -> str:
         """The statement."""
         subject = f"break-even frequency of {self.name},"
@@ -89,6 +100,8 @@ class Pays:
             interval=found.interval,
             unit="percent",
             reason=judged.reason,
+            size=size(found.value, found.interval, found.n_scenes, self.paper, None),
+            **beside(self.paper),
         )
 
 

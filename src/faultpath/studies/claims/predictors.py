@@ -6,6 +6,7 @@ from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.pages import table_1
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import crashes, success, time, timeouts
 from faultpath.studies.quantities.windows import Subject, difference_of_quantiles, ratio
 
@@ -17,6 +18,15 @@ NAMES = {
 }
 SEEN = {table_1.WM_A: table_1.WM_A_SEEN, table_1.TRUE_PARAMETER: table_1.TRUE_PARAMETER_SEEN}
 """Each with ground-truth clearance."""
+_PAPER = published("table_1_prediction_accuracy")
+_KEYS = {
+    table_1.DKI: "DKI",
+    table_1.WM_A: "WM-A",
+    table_1.WM_U: "WM-U",
+    table_1.TRUE_PARAMETER: "true-parameter",
+    table_1.WM_A_SEEN: "WM-A/true-clearance",
+    table_1.TRUE_PARAMETER_SEEN: "true-parameter/true-clearance",
+}
 WORSE_THAN = (
     (table_1.DKI, table_1.WM_A),
     (table_1.DKI, table_1.WM_U),
@@ -29,6 +39,12 @@ def _error(cell: Cell) -> Subject:
     return (table_1.common_error(cell),)
 
 
+def _paper(first: Cell, second: Cell, what: str, times: float = 1.0) -> Printed:
+    """Return the difference between two rows of the paper's table, in `times` its unit."""
+    one, two = (_PAPER[_KEYS[cell]][what] for cell in (first, second))
+    return Printed(times * (one - two))
+
+
 def _clearance(cell: Cell, what: str) -> str:
     return f"{what} of {NAMES[cell]} with ground-truth clearance minus without"
 
@@ -39,12 +55,14 @@ CLAIMS: dict[str, Statements] = {
             "median common error of DKI over that of the true-parameter model",
             ratio(_error(table_1.DKI), _error(table_1.TRUE_PARAMETER)),
             at_least(5),
+            Printed(_PAPER["error_span"]),
         ),
         *(
             Statement(
                 f"median common error of {NAMES[worse]} minus that of {NAMES[better]}",
                 difference_of_quantiles(_error(worse), _error(better)),
                 ABOVE,
+                _paper(worse, better, "error_common_cm", 0.01),
             )
             for worse, better in WORSE_THAN
         ),
@@ -54,6 +72,7 @@ CLAIMS: dict[str, Statements] = {
             f"success of {NAMES[first]} minus {NAMES[second]}",
             success(of_seed(first), of_seed(second)),
             NO_DIFFERENCE,
+            _paper(first, second, "success"),
         )
         for first, second in combinations(table_1.PREDICTORS, 2)
     ),
@@ -62,15 +81,26 @@ CLAIMS: dict[str, Statements] = {
             "median difference in time where both succeed, DKI minus WM-A",
             time(table_1.DKI, table_1.WM_A),
             ABOVE,
+            Printed(_PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
         ),
     ),
     "C04": (
         *(
-            Statement(_clearance(cell, "crash rate"), crashes(seen, cell), BELOW)
+            Statement(
+                _clearance(cell, "crash rate"),
+                crashes(seen, cell),
+                BELOW,
+                _paper(seen, cell, "crash"),
+            )
             for cell, seen in SEEN.items()
         ),
         *(
-            Statement(_clearance(cell, "timeout rate"), timeouts(seen, cell), NO_LOSS)
+            Statement(
+                _clearance(cell, "timeout rate"),
+                timeouts(seen, cell),
+                NO_LOSS,
+                _paper(seen, cell, "timeout"),
+            )
             for cell, seen in SEEN.items()
         ),
     ),

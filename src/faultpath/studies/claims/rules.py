@@ -39,6 +39,8 @@ class Rule:
     """The statement, with `{}` for its subject."""
     judge: Callable[[Contrast], Judged]
     """Answers it."""
+    sided: bool = True
+    """Whether the statement is about a side of no effect, rather than about there being none."""
 
 
 def points_decide(n_scenes: int) -> bool:
@@ -90,7 +92,7 @@ def not_detected(sign: int | None = None) -> Rule:
         return CONFIRMED
 
     where = "to differ from" if sign is None else _SIDES[sign]
-    return Rule(f"{{}} is not detected {where} 0", judge)
+    return Rule(f"{{}} is not detected {where} 0", judge, sided=False)
 
 
 @dataclass(frozen=True)
@@ -184,7 +186,7 @@ def within(least: float, most: float) -> Rule:
         inside = least < low and high < most
         return CONFIRMED if inside or points_decide(found.n_scenes) else FEW_FOR_POINTS
 
-    return Rule(f"{{}} lies between {least:g} and {most:g}", judge)
+    return Rule(f"{{}} lies between {least:g} and {most:g}", judge, sided=False)
 
 
 def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:

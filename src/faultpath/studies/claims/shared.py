@@ -4,8 +4,9 @@ from faultpath.studies.cells import Cell
 from faultpath.studies.claims.rules import ABOVE, BELOW, NO_LOSS, Rule, by_point
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.turning import ALL_SEEDS, TurnsDown, seeds_that_turn
-from faultpath.studies.pages.table_4 import cell, change
-from faultpath.studies.pages.table_6 import negative
+from faultpath.studies.pages.table_4 import cell, change, paper_contrast, paper_rate
+from faultpath.studies.pages.table_6 import negative, paper_negative
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import success, terminal_distance
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
@@ -17,6 +18,7 @@ def _between_paths(method: str, first: str, second: str, rule: Rule) -> Statemen
         f"success of {method.upper()}, {first} minus {second},",
         success(cell(method, first), cell(method, second)),
         rule,
+        Printed(paper_rate(method, first) - paper_rate(method, second)),
     )
 
 
@@ -25,12 +27,17 @@ def _between_methods(first: str, second: str, path: str, rule: Rule) -> Statemen
         f"success of {first.upper()} minus {second.upper()}, {path},",
         success(cell(first, path), cell(second, path)),
         rule,
+        paper_contrast(first, second, path),
     )
 
 
 def _repair(path: str) -> tuple[Cell, Cell]:
     return cell(DCC, path), cell(GRU, path)
 
+
+_FARTHER = published(
+    "table_4_shared_calibration", "terminal_distance_GRU+DCC_minus_GRU_m", "shared_minus_isolated"
+)
 
 CLAIMS: dict[str, Statements] = {
     "C23": (_between_paths(GRU, ISOLATED, CORRECT, BELOW),),
@@ -47,6 +54,9 @@ CLAIMS: dict[str, Statements] = {
             "success of GRU+DCC minus GRU, from reconstruction-only to shared,",
             _repair(ISOLATED),
             _repair(SHARED),
+            Printed(
+                paper_contrast(DCC, GRU, SHARED).value - paper_contrast(DCC, GRU, ISOLATED).value
+            ),
         ),
         Statement(
             "number of seeds in which success of GRU+DCC minus GRU is above 0 under "
@@ -60,6 +70,7 @@ CLAIMS: dict[str, Statements] = {
             "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
             change(DCC, GRU, terminal_distance),
             ABOVE,
+            Printed(_FARTHER["mean"], tuple(_FARTHER["ci95"])),
         ),
     ),
     "C28": (
@@ -76,6 +87,7 @@ CLAIMS: dict[str, Statements] = {
             f"success of GRU+DCC minus GRU at the negative offset, {path},",
             success(negative(DCC, path), negative(GRU, path)),
             rule,
+            Printed(paper_negative(DCC, path) - paper_negative(GRU, path)),
         )
         for path, rule in ((ISOLATED, by_point(1, strict=False)), (SHARED, by_point(-1)))
     ),

@@ -7,7 +7,8 @@ from typing import Any, Protocol, TypeAlias
 from faultpath.record import Answer, ClaimVerdict, Part
 from faultpath.statistics import Contrast
 from faultpath.studies.claims.rules import Judged, Rule
-from faultpath.studies.published import PublishedClaim
+from faultpath.studies.claims.sizes import NO_EFFECT, size
+from faultpath.studies.published import Printed, PublishedClaim
 from faultpath.studies.results import NotRun, Quantity, Results, Undecidable
 
 
@@ -17,6 +18,11 @@ class Stated(Protocol):
     @property
     def words(self) -> str:
         """The statement."""
+        ...
+
+    @property
+    def paper(self) -> Printed | None:
+        """The paper's figure for it."""
         ...
 
     def part(self, results: Results) -> Part:
@@ -35,6 +41,8 @@ class Statement:
     """What is looked at, as the beginning of a sentence; differences are first minus second."""
     quantity: Quantity
     rule: Rule
+    paper: Printed | None = None
+    """The paper's figure for the quantity, in its unit; `None` where it prints none."""
 
     @property
     def words(self) -> str:
@@ -44,11 +52,22 @@ class Statement:
     def part(self, results: Results) -> Part:
         """Answer it from a run."""
         found = self.quantity(results)
-        return shown(self.words, self.rule.judge(found), found)
+        no_effect = NO_EFFECT.get(found.unit) if self.rule.sided else None
+        return shown(self.words, self.rule.judge(found), found, self.paper, no_effect)
 
 
-def shown(words: str, judged: Judged, found: Contrast, counts: str = "") -> Part:
-    """Return an answer with the numbers that it rests on; `counts` where it has none of its own."""
+def shown(
+    words: str,
+    judged: Judged,
+    found: Contrast,
+    paper: Printed | None,
+    no_effect: float | None,
+    counts: str = "",
+) -> Part:
+    """Return an answer with the numbers that it rests on, and its size beside the paper's figure.
+
+    `no_effect` as in `size`; `counts` where the quantity has none of its own.
+    """
     return Part(
         words=words,
         answer=judged.answer,
@@ -60,7 +79,14 @@ def shown(words: str, judged: Judged, found: Contrast, counts: str = "") -> Part
         mde=found.least,
         counts=str(found.counts or counts),
         reason=judged.reason,
+        size=size(found.value, found.interval, found.n_scenes, paper, no_effect),
+        **beside(paper),
     )
+
+
+def beside(paper: Printed | None) -> dict[str, Any]:
+    """Return the fields of a part that hold the paper's figure."""
+    return {} if paper is None else {"paper": paper.value, "paper_interval": paper.interval}
 
 
 def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
@@ -89,6 +115,7 @@ def answered(statement: Stated, results: Results) -> Part:
     """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
 
     def left_open(reason: str, **why: Any) -> Part:
+        why |= beside(statement.paper)
         return Part(words=statement.words, answer="undecided", reason=reason, **why)
 
     try:

@@ -7,6 +7,7 @@ from faultpath.record import Part
 from faultpath.statistics import Contrast, change, decide_family, turn, with_test
 from faultpath.studies.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath.studies.claims.statement import shown
+from faultpath.studies.published import Printed
 from faultpath.studies.quantities.differences import Pair, together
 from faultpath.studies.results import Quantity, Results, Undecidable, decisive
 
@@ -48,6 +49,8 @@ class TurnsDown:
     subject: str
     before: Pair
     after: Pair
+    paper: Printed | None = None
+    """The change that the paper's figures give."""
 
     @property
     def words(self) -> str:
@@ -59,7 +62,7 @@ class TurnsDown:
         one, two = together(results, self.before, self.after)
         turned = Turned(decisive(change(one, two)), one, two)
         counts = f"{one.counts}, then {two.counts}"
-        return shown(self.words, turned.judge(), turned.change, counts)
+        return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
 
 
 def seeds_that_turn(before: Pair, after: Pair) -> Quantity:

@@ -13,12 +13,22 @@ from faultpath.studies.pages.table_3 import (
     ZERO,
     ZERO_OF_EVERY_SEED,
     cell,
+    paper_rate,
 )
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import success
 from faultpath.studies.quantities.windows import difference_of_quantiles
 
 L3 = "L3"
 OBSTACLES = "obstacles"
+
+_FROZEN = published("in_text", "freeze_reconstructed_wind_at_step_20")
+
+
+def _paper(first: str, second: str, environment: str = OBSTACLES, level: str = L3) -> Printed:
+    """Return the difference between two rows of the paper's Table III, pp."""
+    return Printed(paper_rate(first, environment, level) - paper_rate(second, environment, level))
+
 
 CLAIMS: dict[str, Statements] = {
     "C16": tuple(
@@ -43,6 +53,7 @@ CLAIMS: dict[str, Statements] = {
                 of_seed(cell(ZERO, OBSTACLES, level)), of_seed(cell(WITHHELD, OBSTACLES, level))
             ),
             NO_GAIN,
+            _paper(ZERO, WITHHELD, level=level),
         )
         for level in ("L2", L3)
     ),
@@ -51,6 +62,7 @@ CLAIMS: dict[str, Statements] = {
             f"success of ground-truth wind minus zero wind at L3, {environment}",
             success(cell(TRUE, environment, L3), cell(ZERO, environment, L3)),
             ABOVE,
+            _paper(TRUE, ZERO, environment),
         )
         for environment in ENVIRONMENTS
     ),
@@ -59,11 +71,13 @@ CLAIMS: dict[str, Statements] = {
             "success of GRU minus ground-truth wind at L3",
             success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
             NO_DIFFERENCE,
+            _paper(GRU, TRUE),
         ),
         Statement(
             "success of GRU minus zero wind at L3",
             success(cell(GRU, OBSTACLES, L3), cell(ZERO, OBSTACLES, L3)),
             ABOVE,
+            _paper(GRU, ZERO),
         ),
     ),
     "C20": (
@@ -78,6 +92,7 @@ CLAIMS: dict[str, Statements] = {
             "success with the reconstructed wind frozen minus updated, free space at L3",
             success(in_text.WIND_FROZEN, in_text.WIND_UPDATED),
             BELOW,
+            Printed(_FROZEN["after"] - _FROZEN["before"]),
         ),
     ),
     "C22": (
@@ -85,6 +100,7 @@ CLAIMS: dict[str, Statements] = {
             "success of the trajectory-trained GRU minus the collection-trained one at L3",
             success(cell(TRAJECTORY, OBSTACLES, L3), cell(GRU, OBSTACLES, L3)),
             BELOW,
+            _paper(TRAJECTORY, GRU),
         ),
     ),
 }

@@ -8,7 +8,7 @@ from faultpath.studies.entries import Group, centimetres
 from faultpath.studies.notes import INTERVALS, WINDOWS, WINS
 from faultpath.studies.page import Page, Row, Rows, TableSpec, rates
 from faultpath.studies.pages.table_1 import COMMON, STILL
-from faultpath.studies.published import published
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.windows import quantile
 
 ERRORS = (-0.1, 0.0, 0.1)
@@ -48,6 +48,18 @@ def published_repairs(baseline: str) -> tuple[PublishedContrast, ...]:
         _PAPER[f"{name}_ci95"],
         _PAPER[f"{name}_wins_losses"],
     )
+
+
+def paper_rate(model: str, error: float) -> float:
+    """Return the success that the paper prints, percent."""
+    return _PAPER[NAMES[model]][ERRORS.index(error)]
+
+
+def paper_repair(baseline: str, error: float) -> Printed:
+    """Return what the paper prints of repair minus baseline, pp."""
+    name, at = NAMES[baseline], ERRORS.index(error)
+    low, high = _PAPER[f"{name}_ci95"][at]
+    return Printed(_PAPER[f"{name}_dcc_minus_baseline_pp"][at], (low, high))
 
 
 def _rates(model: str) -> Row:

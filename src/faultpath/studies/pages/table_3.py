@@ -56,6 +56,11 @@ _PAPER = published("table_3_wind")
 _HEADINGS = {"free-space": "Free space", "obstacles": "Obstacles"}
 
 
+def paper_rate(variant: str, environment: str, level: str) -> float:
+    """Return the success that the paper prints, percent."""
+    return _PAPER[environment.replace("-", "_")][ROWS[variant][1]][LEVELS.index(level)]
+
+
 def _levels(environment: str) -> Rows:
     papers = _PAPER[environment.replace("-", "_")]
     rows = (

@@ -9,7 +9,7 @@ from faultpath.studies.contrasts import PublishedContrast, differences, publishe
 from faultpath.studies.entries import Group, bracket, of_quantity
 from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS
 from faultpath.studies.page import Columns, Page, Row, Rows, TableSpec, rates
-from faultpath.studies.published import published
+from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath.studies.results import Quantity
 
@@ -49,6 +49,18 @@ def published_methods(first: str, second: str) -> tuple[PublishedContrast, ...]:
     """Return what the paper prints of one method minus another, one for each of `PATHS`."""
     paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
     return published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
+
+
+def paper_rate(method: str, path: str) -> float:
+    """Return the success that the paper prints, percent."""
+    return _PAPER[NAMES[method]][list(PATHS).index(path)]
+
+
+def paper_contrast(first: str, second: str, path: str) -> Printed:
+    """Return what the paper prints of one method minus another, pp."""
+    paper, at = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"], list(PATHS).index(path)
+    low, high = paper["ci95"][at]
+    return Printed(paper["pp"][at], (low, high))
 
 
 def _cells(first: str, second: str, path: str) -> tuple[Cell, Cell]:

@@ -88,6 +88,16 @@ def published_negative() -> tuple[PublishedContrast, ...]:
     )
 
 
+def paper_acceleration(method: str, interface: str) -> float:
+    """Return the analytic acceleration error that the paper prints, m/s²."""
+    return _ERRORS[NAMES[method]][list(INTERFACES).index(interface)]
+
+
+def paper_negative(method: str, path: str) -> float:
+    """Return the success under the negative offset that the paper prints, percent."""
+    return _OFFSET[NAMES[method]][list(NEGATIVE).index(path)]
+
+
 def _accelerations(method: str) -> Row:
     groups = (
         measured(by_seed(acceleration_error, method, interface), paper)

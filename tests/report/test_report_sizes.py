@@ -1,0 +1,118 @@
+"""Sizes in words: of a claim, of a ledger, on the page, in the terminal and in Markdown."""
+
+import re
+from dataclasses import replace
+
+import pytest
+from reproduction_toys import claim, ledger, part, source
+from rich.console import Console
+
+from faultpath.record import ClaimVerdict
+from faultpath.report.inputs import ReportInput
+from faultpath.report.reproduction import words
+from faultpath.report.reproduction.inputs import ReproductionInput
+from faultpath.report.reproduction.page import reproduction_page
+from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
+
+
+@pytest.fixture(scope="module")
+def toy(one_seed: ReportInput) -> ReproductionInput:
+    return source(one_seed)
+
+
+def said_in(html: str) -> str:
+    """Return the text of a page, blanks run together."""
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", html))
+
+
+def sized(*sizes: str) -> ClaimVerdict:
+    """Return a claim whose parts have these sizes; an empty one has no figure in the paper."""
+    numbers = {"estimate": 5.0, "interval": (4.0, 6.0), "unit": "pp"}
+    parts = (
+        part("confirmed", **numbers, **({"paper": 3.0, "size": size} if size else {}))
+        for size in sizes
+    )
+    return claim("C01", "finding", tuple(parts))
+
+
+SAME, OTHER = "right sign, other size", "other sign"
+
+
+@pytest.mark.parametrize(
+    ("sizes", "said"),
+    [
+        ((), ""),
+        (("",), ""),
+        (("not comparable",), "not comparable"),
+        (("", "not comparable"), "not comparable"),
+        (("compatible",), "compatible"),
+        (("compatible", ""), "compatible"),
+        (("compatible", "compatible"), "compatible, 2 of 2"),
+        ((SAME, "compatible"), f"{SAME}, 1 of 2"),
+        ((SAME, "compatible", SAME, "not comparable"), f"{SAME}, 2 of 3"),
+        ((SAME, "other size", "compatible"), "other size, 1 of 3"),
+        ((OTHER, "other size", SAME, "compatible"), f"{OTHER}, 1 of 4"),
+    ],
+)
+def test_the_size_of_a_claim_is_that_of_its_farthest_part(
+    sizes: tuple[str, ...], said: str
+) -> None:
+    found = sized(*sizes) if sizes else sized("").model_copy(update={"parts": ()})
+    assert words.size(found) == said
+
+
+@pytest.mark.parametrize(
+    ("claims", "said"),
+    [
+        ([], ""),
+        ([("", "")], ""),
+        (
+            [("not comparable",)],
+            "The paper prints 1 figure for these claims; this run can be compared with none.",
+        ),
+        (
+            [("compatible",), ("",)],
+            "The paper prints 1 figure for these claims, of which 1 can be compared: 1 compatible.",
+        ),
+        (
+            [(SAME, "compatible"), (OTHER, "compatible", "not comparable")],
+            "The paper prints 5 figures for these claims, of which 4 can be compared: "
+            f"2 compatible; 1 {SAME}; 1 {OTHER}.",
+        ),
+    ],
+)
+def test_sizes_are_counted_in_a_sentence(claims: list[tuple[str, ...]], said: str) -> None:
+    found = ledger().model_copy(update={"claims": tuple(sized(*sizes) for sizes in claims)})
+    assert words.sizes(found) == said
+
+
+def test_sizes_stand_beside_the_verdict_everywhere(toy: ReproductionInput) -> None:
+    found = ledger().model_copy(update={"claims": (sized(SAME, "compatible"),)})
+    row = next(line for line in ledger_markdown(found).splitlines() if line.startswith("| C01"))
+    assert f"| {SAME}, 1 of 2 |" in row
+    console = Console(width=100)
+    with console.capture() as captured:
+        console.print(ledger_view(found))
+    assert "right sign only" in captured.get()
+    reproduced = toy.reproduction.model_copy(update={"ledger": found})
+    html = reproduction_page(replace(toy, reproduction=reproduced))
+    text = said_in(html)
+    assert f"size: {SAME}, 1 of 2" in text
+    assert f"the paper +3.0 pp: {SAME}" in text
+    assert html.count('class="papers-figure"') == 3  # of the claim and of both parts
+
+
+def test_other_platforms_answers_stand_beside(toy: ReproductionInput) -> None:
+    other = ledger().model_copy(update={"platform": "second", "claims": (sized("compatible"),)})
+    text = said_in(reproduction_page(replace(toy, beside=(other,))))
+    assert text.count("platform second: confirmed, +5.0 pp [4.0, 6.0] · size: compatible") == 1
+
+
+@pytest.mark.parametrize(
+    ("unmatched", "said"),
+    [((), 0), (("C99",), 0), (("C01",), "themselves: C01."), (("C01", "C02"), "C01, C02.")],
+)
+def test_what_a_platform_was_not_matched_to_is_said(unmatched: tuple[str, ...], said: str) -> None:
+    notes = words.notes(ledger().model_copy(update={"unmatched": unmatched}))
+    assert len(notes) == bool(said)
+    assert all(note.endswith(str(said)) for note in notes)

@@ -1,0 +1,38 @@
+"""By which code a stored run was flown, and whether that is the code that is here."""
+
+from collections.abc import Mapping
+from contextlib import chdir
+from functools import cache
+from pathlib import Path
+
+from faultpath.code import CodeState
+from faultpath.record import RunProvenance
+from faultpath.trials import SystemSpec, load_system
+from faultpath.trials.state import system_code
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+def flown_by(made: RunProvenance, system: str, options: Mapping[str, str]) -> str:
+    """Return in a sentence by which commit a run was flown, and whether what flies has changed.
+
+    What flies: the sources and the data files, trained weights among them, whose digests the run
+    kept. Only that they changed is said, not how many, so that a document goes stale once.
+    """
+    commit = f"commit `{made.commit[:12]}`" if made.commit else "code of no known commit"
+    done = "Finished" if made.blocks_kept else "Flown"  # parts may have been flown by others
+    said = f"{done} by {commit}{' with uncommitted changes' if made.dirty else ''}"
+    if not made.sources:
+        return f"{said}, before runs kept digests of what flies: by older code than today's."
+    here = _state(system, tuple(sorted(options.items())))
+    if (here.files, here.data) == (made.sources, made.data):
+        return f"{said}; nothing that flew has changed since."
+    return f"{said}; code{' or weights' if made.data else ''} that flew changed since."
+
+
+@cache
+def _state(system: str, options: tuple[tuple[str, str], ...]) -> CodeState:
+    """Return the state of what flies a system, which may be named from the root of the project."""
+    spec = SystemSpec(name=system, options=dict(options))
+    with chdir(ROOT):
+        return system_code(load_system(spec), spec).state
