@@ -13,10 +13,14 @@ from faultpath.record import (
     Generalise,
     Path,
     Question,
+    StopRule,
+    StopWhen,
     StruckTap,
     decide,
     primary_path,
+    stops,
 )
+from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
 from faultpath.trials import (
@@ -30,6 +34,12 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
+
+LOOK = 5
+"""Scenes from one look to the next of a sequential audit, where the system flies as many at once:
+fewer save few trials and cost much for systems that fly their scenes together."""
+_ORDER_SEED = 0
+"""One order for each library, so that nobody can choose among several."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +63,10 @@ class Audit:
             for path in self.paths
         ]
         return decide(asked, paths, table, findings=deliveries.findings)
+
+    def stops(self, table: OutcomeTable) -> bool:
+        """Return whether a sequential audit ends with these trials."""
+        return stops(self.question, self.paths, table)
 
 
 def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
@@ -84,6 +98,8 @@ def plan_audit(
     generalise: Generalise = "scenes",
     metric: str = "",
     thresholds: Sequence[float] = (),
+    stop_when: StopWhen | None = None,
+    margin_pp: float | None = None,
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
@@ -91,16 +107,18 @@ def plan_audit(
     `scenes` takes the first N of the library. `primary` is the path that leads the headline;
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
     trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
+    `stop_when` makes the audit sequential: scenes come in a random order, and `scenes` is the most
+    that it takes; `margin_pp` is what counts as no difference then.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
     of scenes that the library does not have, no seed, a fault that reaches neither variant, a
-    primary path that does not exist, or newly trained models of a system that trains none or from
-    one seed.
+    primary path that does not exist, newly trained models of a system that trains none, from one
+    seed or in a sequential audit, or a margin that is none.
     """
     variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
         raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
-    chosen = scenes_of(library, scenes)
+    chosen = scenes_of(library, scenes, in_order=stop_when is None)
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")
     strikes = _strikes(system.interface, fault, variants)
@@ -112,7 +130,15 @@ def plan_audit(
         for seed in seeds
     ]
     if generalise == "models":
-        _check_trainings(system, seeds)
+        _check_trainings(system, seeds, stop_when)
+    study = Study(
+        name=f"{spec.name}-{repair}-vs-{baseline}",
+        system=spec,
+        library=library.name,
+        scenes=chosen,
+        rows=tuple(rows),
+        look=min(LOOK, system.block_size) if stop_when else 0,
+    )
     question = Question(
         system=spec.name,
         options=spec.options,
@@ -130,13 +156,7 @@ def plan_audit(
         metrics=dict(system.metrics),
         metric=_metric(system, metric, thresholds),
         thresholds=tuple(sorted(set(thresholds))),
-    )
-    study = Study(
-        name=f"{spec.name}-{repair}-vs-{baseline}",
-        system=spec,
-        library=library.name,
-        scenes=chosen,
-        rows=tuple(rows),
+        stop=_stop_rule(stop_when, margin_pp, study),
     )
     return Audit(question, tuple(paths), study)
 
@@ -151,7 +171,30 @@ def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
     return name
 
 
-def _check_trainings(system: System, seeds: Sequence[int]) -> None:
+def _stop_rule(when: StopWhen | None, margin_pp: float | None, study: Study) -> StopRule | None:
+    if margin_pp is not None and not (when and 0.0 < margin_pp < 100.0):
+        raise UserError(
+            f"a margin of {margin_pp:g} pp says when a sequential audit counts a difference as "
+            "none: give it with --stop-when, between 0 and 100."
+        )
+    if when is None:
+        return None
+    return StopRule(
+        when=when,
+        margin_pp=margin_pp,
+        order=study.scenes,
+        order_seed=_ORDER_SEED,
+        look=study.look,
+        trials=len(study.arms()),
+    )
+
+
+def _check_trainings(system: System, seeds: Sequence[int], stop_when: StopWhen | None) -> None:
+    if stop_when:
+        raise UserError(
+            "no test of newly trained models holds wherever one stops: leave --stop-when or "
+            "--generalise models out."
+        )
     if not system.trained:
         raise UserError(
             f"{system.name} has no trained models to generalise to: leave --generalise models out."
@@ -171,14 +214,20 @@ def variant_of(system: System, name: str) -> Variant:
     return system.variants[name]
 
 
-def scenes_of(library: Library, count: int | None) -> tuple[str, ...]:
-    """Return the first scenes of a library; `UserError` for a number that it has not got."""
+def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tuple[str, ...]:
+    """Return the first scenes of a library, in its order or the random one of sequential audits;
+    `UserError` for a number that it has not got."""
     available = len(library.scenes)
     if count is not None and not 1 <= count <= available:
         raise UserError(
             f"cannot run {count} scenes of library '{library.name}': choose 1 to {available}."
         )
-    return tuple(scene.id for scene in library.scenes[:count])
+    scenes = library.scenes
+    if not in_order:
+        stream = generator("scene order", library.content_hash, _ORDER_SEED)
+        drawn: list[int] = stream.permutation(available).tolist()
+        scenes = tuple(scenes[place] for place in drawn)
+    return tuple(scene.id for scene in scenes[:count])
 
 
 def _strikes(

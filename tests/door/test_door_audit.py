@@ -12,6 +12,7 @@ from rich.console import Console
 
 import faultpath
 from faultpath.door.display import Display
+from faultpath.report.terminal import decision
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "examples" / "toy.py"
@@ -223,3 +224,69 @@ def test_the_command_line_leaves_the_same_record(run, tmp_path):
     subprocess.run([sys.executable, "-c", code, *line], check=True, capture_output=True)
     record = json.loads((tmp_path / "cli" / "record.json").read_text())
     assert record == json.loads((run.folder / "record.json").read_text())
+
+
+SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory) -> faultpath.Run:
+    place = tmp_path_factory.mktemp("early") / "run"
+    return faultpath.audit(TOY, folder=place, workers=0, **SEQUENTIAL)
+
+
+def test_a_sequential_audit_stops_and_says_so(early):
+    record = early.record
+    assert record.stopped is not None
+    assert record.stopped.reached
+    assert record.stopped.scenes < 60
+    assert record.stopped.scenes % record.question.stop.look == 0
+    assert early.table().num_rows == record.stopped.scenes * 2 * 4
+    flown = set(early.table()["scene"].to_pylist())
+    assert flown == set(record.question.stop.order[: record.stopped.scenes])
+    assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
+    assert "ahead" in record.verdict.headline
+    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.verdict.sentences)
+
+
+def test_nothing_of_a_sequential_audit_is_shown_as_if_its_number_of_scenes_were_fixed(early):
+    early.report()
+    shown = [(early.folder / name).read_text() for name in ("report.html", "table.md", "table.tex")]
+    console = Console(file=io.StringIO(), width=120)
+    console.print(decision(early.record))
+    for page in (*shown, console.file.getvalue()):
+        for fixed in ("Holm", "80 % power", "McNemar", "mid-p", "Tango", "bootstrap"):
+            assert fixed not in page
+        assert "sequential" in page
+    assert "bets on the mean" in shown[0]
+
+
+def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
+    again = faultpath.audit(TOY, folder=early.folder, workers=0, **SEQUENTIAL)
+    assert again.record == early.record
+    assert again.provenance.blocks_computed == 0
+    other = faultpath.audit(TOY, folder=tmp_path / "two", workers=2, **SEQUENTIAL)
+    assert other.record == early.record
+    assert faultpath.open_run(early.folder).record == early.record
+
+
+def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
+    asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
+    record = faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **asked).record
+    assert (record.stopped.scenes, record.stopped.reached) == (6, False)
+    assert record.verdict.headline.startswith("Too few scenes to decide")
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"stop_when": None, "margin_pp": 5.0}, "give it with --stop-when"),
+        ({"margin_pp": 0.0}, "between 0 and 100"),
+        ({"margin_pp": "5"}, "give a number of percentage points"),
+        ({"stop_when": "soon"}, "choose decided or all-decided"),
+        ({"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
+    ],
+)
+def test_a_rule_that_cannot_be_is_refused(changed, words, tmp_path):
+    with pytest.raises(faultpath.UserError, match=words):
+        faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **{**SEQUENTIAL, **changed})

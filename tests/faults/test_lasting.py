@@ -14,8 +14,10 @@ from faultpath.faults import (
     Freeze,
     Intermittence,
     Moment,
+    Noise,
     Phases,
     Scale,
+    Sequence,
 )
 
 SCENES = tuple(f"scene-{i}" for i in range(4000))
@@ -81,6 +83,27 @@ def test_correlated_uniform_numbers_stay_uniform() -> None:
 def test_a_fault_that_draws_nothing_has_no_loading() -> None:
     with pytest.raises(ValueError, match="scale takes no loading; leave it out"):
         Fault(channel="mass", intervention=Scale(factor=1.1), loading=0.5)
+    still = Sequence(parts=(Scale(factor=1.1), Scale(factor=0.9)))
+    with pytest.raises(ValueError, match="sequence takes no loading; leave it out"):
+        Fault(channel="mass", intervention=still, loading=0.5)
+
+
+def test_parts_of_a_sequence_are_correlated_each_with_its_like_and_not_with_the_others() -> None:
+    parts = Sequence(parts=(Scale(factor=1.0), Bias(std=0.1), Noise(std=0.1)))
+    one, two = (
+        Fault(channel=channel, intervention=parts, cause="weather", loading=0.5**0.5)
+        for channel in ("mass", "thrust")
+    )
+    draws = [fault.draws(SCENES, 0) for fault in (one, two)]
+    for index in (1, 2):
+        drawn = [each.part(index).normal((), 0) for each in draws]
+        assert np.corrcoef(drawn)[0, 1] == pytest.approx(0.5, abs=0.05)
+    across = [draws[0].part(1).normal((), 0), draws[1].part(2).normal((), 0)]
+    assert np.corrcoef(across)[0, 1] == pytest.approx(0.0, abs=0.05)
+    whole = [
+        parts.apply(np.zeros(len(SCENES)), None, Moment(0, 0, DT_S, each))[0] for each in draws
+    ]
+    assert np.corrcoef(whole)[0, 1] == pytest.approx(0.5, abs=0.05)
 
 
 def test_a_coupled_fault_keeps_the_loadings_of_its_parts() -> None:

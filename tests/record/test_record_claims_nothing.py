@@ -7,7 +7,7 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, DecisionRecord, decide
+from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide
 from faultpath.record.model import Change, Effect
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
@@ -87,9 +87,23 @@ SHAPES: dict[str, Callable[[str, int, int], Statuses]] = {
     )
 }
 RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one path idle")
+RULES: dict[str, tuple[StopWhen, float | None, int]] = {
+    "as soon as decided": ("decided", None, 100),
+    "to the last scene": ("decided", 99.0, 0),
+    "all": ("all-decided", None, 0),
+    "all or small": ("all-decided", 50.0, 100),
+}
+"""When sequential audits stop, their margins, and how many scenes they may take; 0 for as many as
+they did."""
 
 
-def run(shape: str, over: tuple[str, ...], n: int, how: str, trained: bool) -> DecisionRecord:
+def stop_rule(when: StopWhen, margin: float | None) -> StopRule:
+    return StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
+
+
+def run(
+    shape: str, over: tuple[str, ...], n: int, how: str, trained: bool, rule: str = ""
+) -> DecisionRecord:
     seeds = (0, 1, 2) if "seeds" in how else (0,)
     out = []
     for seed in seeds:
@@ -102,6 +116,10 @@ def run(shape: str, over: tuple[str, ...], n: int, how: str, trained: bool) -> D
                     ends[0] = Status.FAILED
                 out += rows(variant, path, ends, seed=seed, altered=0 if idle else None)
     asked = question(n, seeds).model_copy(update={"trained": trained})
+    if rule:
+        when, margin, most = RULES[rule]
+        update = {"stop": stop_rule(when, margin), "n_scenes": most or n}
+        asked = asked.model_copy(update=update)
     return decide(asked, paths(*over), OutcomeTable(tuple(out)))
 
 
@@ -120,12 +138,25 @@ def holm(p_values: list[float]) -> list[float]:
     return adjusted
 
 
+def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+    """Return p-values by the shares of all that a sequential audit could have announced."""
+    named = {path.name for path in made.paths}
+    others = len(named) - 1 + (len(named - {CORRECT, SHARED}) if SHARED in named else 0)
+    adjusted: list[float] = []
+    for each in tested:
+        primary = isinstance(each, Effect) and each.path == made.question.primary
+        factor = 1 if not others else 2 if primary else 2 * others
+        adjusted.append(min(1.0, factor * each.p_value))
+    return adjusted
+
+
 def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
     """Return the signs that the numbers allow, of effects and of changes, worked out anew."""
     tested: list[Effect | Change] = [e for e in made.effects if e.acted]
     tested += made.changes
     signs: list[int] = []
-    for each, p in zip(tested, holm([each.p_value for each in tested]), strict=True):
+    adjusted = shared_out(made, tested) if made.stopped else holm([e.p_value for e in tested])
+    for each, p in zip(tested, adjusted, strict=True):
         shown = each.success if isinstance(each, Effect) else each.change
         low, high = shown.low or 0.0, shown.high or 0.0
         signs.append((low > 0) - (high < 0) if p <= 0.05 else 0)
@@ -192,6 +223,55 @@ def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) ->
         made = run(shape, PATHS[over], n, how, trained=n % 3 == 0)
         check(made)
         reads_well(made)
+
+
+def says_how_it_stopped(made: DecisionRecord) -> None:
+    """Check what is said of stopping, and that nothing is shown that needs a fixed number."""
+    held, asked = made.stopped, made.question
+    assert held
+    assert asked.stop
+    told = next(s for s in made.verdict.sentences if s.startswith("This audit was sequential"))
+    most = asked.n_scenes
+    signs = may_be_said(made)[0]
+    settled = {path for path, sign in signs.items() if sign} | set(held.small)
+    wanted = {e.path for e in made.effects} if asked.stop.when == "all-decided" else {asked.primary}
+    assert held.reached == (wanted <= settled)
+    assert ("it stopped after" in told) == (held.reached and held.scenes < most)
+    assert ("all that it was allowed" in told) == (held.scenes == most)
+    assert ("not decided" in told or "not every" in told) == (not held.reached)
+    assert held.scenes == 1 or "1 scenes" not in told
+    for effect in made.effects:
+        small = effect.path in held.small
+        assert not small or asked.stop.margin_pp
+        low, high = effect.success.low, effect.success.high
+        assert low is not None
+        assert high is not None
+        assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
+        assert ("it is smaller than" in effect.words) <= small
+        assert (effect.minimum_detectable_pp, effect.mid_p_value) == (None, None)
+        for other in (effect.time_s, effect.terminal_distance_m, effect.min_clearance_m):
+            assert other is None or (other.low, other.high) == (None, None)
+    if "differ by less than" in made.verdict.headline:
+        assert asked.primary in held.small
+    whole = made.model_dump_json()
+    for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):
+        assert fixed not in whole
+
+
+@pytest.mark.parametrize("n", [1, 2, 4, 40])
+@pytest.mark.parametrize("how", ["one seed", "three seeds", "void", "one path idle"])
+@pytest.mark.parametrize("over", ["one path", "shared"])
+def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(
+    n: int, how: str, over: str
+) -> None:
+    for shape in SHAPES:
+        for rule in RULES if how == "one seed" and n > 2 else ("to the last scene",):
+            if how == "void" and n == 1 and len(PATHS[over]) == 1:
+                continue
+            made = run(shape, PATHS[over], n, how, trained=n % 3 == 0, rule=rule)
+            check(made)
+            reads_well(made)
+            says_how_it_stopped(made)
 
 
 def test_without_a_scene_there_is_nothing_to_say() -> None:

@@ -5,11 +5,13 @@ import dataclasses
 import numpy as np
 import pytest
 
+from faultpath.record.family import SHARED, alpha_shares, decide_paths
 from faultpath.selfcheck import Report, check_statistics, failures, page
-from faultpath.selfcheck.audits import EqualArms, NoReversal, Trainings
+from faultpath.selfcheck.audits import PATHS, EqualArms, NoReversal, Trainings
 from faultpath.selfcheck.coverage import BreakEvenCoverage, IntervalCoverage, ModelsCoverage, tables
 from faultpath.selfcheck.detection import DetectionAtTheReported
 from faultpath.selfcheck.populations import Population, joint
+from faultpath.selfcheck.sequential import AnyLook, EveryLook, announced
 from faultpath.statistics import Resamples, break_even, success_effect
 
 
@@ -28,6 +30,10 @@ def test_the_quick_profile_keeps_every_promise(quick):
         "equal arms",
         "no reversal",
         "trainings",
+        "sequential, equal arms",
+        "sequential, coverage",
+        "sequential, scenes taken",
+        "sequential, decided",
     }
     assert Report.model_validate_json(quick.text()) == quick
 
@@ -162,3 +168,31 @@ def test_newly_trained_models_are_covered_near_zero_discordance(rate):
 def test_a_setting_always_gives_the_same_rate():
     cell = IntervalCoverage(25, Population(0.1, 0.0, 3, 0.5), 200)
     assert cell.measure() == dataclasses.replace(cell).measure()
+
+
+def test_what_is_announced_at_a_look_is_what_an_audit_of_its_scenes_announces():
+    stream = np.random.default_rng(5)
+    shares = alpha_shares(PATHS, SHARED)
+    lean = {"correct": 0.5, "reconstruction": 0.75, "predictor": 0.4, SHARED: 0.15}
+    arms = {path: stream.random((2, 40, 3)) < [[[lean[path]]], [[0.5]]] for path in PATHS}
+    effects = {path: (one * 1.0 - two).mean(axis=1) for path, (one, two) in arms.items()}
+    at_once = announced(effects, SHARED)
+    assert 0 < at_once.sum() < 40
+    for scenes in range(1, 41, 3):
+        so_far = {path: (one[:scenes], two[:scenes]) for path, (one, two) in arms.items()}
+        assert decide_paths(so_far, shares=shares).announces == at_once[scenes - 1]
+
+
+def test_shares_of_the_error_rate_sum_to_all_of_it():
+    for paths, primary in ((PATHS, SHARED), (PATHS, "predictor"), (("correct",), "correct")):
+        shares = alpha_shares(paths, primary)
+        assert sum(shares.values()) == pytest.approx(1.0)
+        assert max(shares, key=lambda name: shares[name]) == f"effect/{primary}"
+    assert len(alpha_shares(PATHS, SHARED)) == 6
+
+
+def test_looks_after_every_scene_keep_their_promises():
+    """The full profile is in the documents; here a few settings, at three standard errors."""
+    population = Population(0.4, 0.0, 1)
+    assert AnyLook(150, population, 0.0, 400).measure().rate <= 0.05 + 0.033
+    assert EveryLook(150, Population(0.4, 0.5), 400).measure().rate >= 0.95 - 0.033

@@ -50,6 +50,20 @@ def command(
     thresholds: Annotated[
         str | None, typer.Option(help="Of that metric, to tell success anew: 0.02,0.05,0.1.")
     ] = None,
+    stop_when: Annotated[
+        Literal["decided", "all-decided"] | None,
+        typer.Option(
+            help="Stop once the primary contrast is decided, or the effect on every path: scenes "
+            "in random order, --scenes is the most that are flown."
+        ),
+    ] = None,
+    margin: Annotated[
+        float | None,
+        typer.Option(
+            help="With --stop-when: a difference shown to be smaller than so many percentage "
+            "points ends it too."
+        ),
+    ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
@@ -82,6 +96,8 @@ def command(
         generalise=generalise,
         metric=metric,
         thresholds=() if thresholds is None else sizes(thresholds, "--thresholds"),
+        stop_when=stop_when,
+        margin_pp=margin,
         options=options,
         folder=out,
         workers=workers,

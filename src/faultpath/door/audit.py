@@ -7,7 +7,7 @@ from contextlib import nullcontext
 from datetime import datetime
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose, worker_count
@@ -16,7 +16,7 @@ from faultpath.faults import parse_fault
 from faultpath.faults.sizes import each_size
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
-from faultpath.record import Generalise
+from faultpath.record import Generalise, StopRule, StopWhen
 from faultpath.trials import System, library_of
 from faultpath.trials.state import system_code
 
@@ -38,6 +38,8 @@ def audit(
     seeds: int | Sequence[int] = 0,
     primary: str | None = None,
     generalise: Generalise = "scenes",
+    stop_when: StopWhen | None = None,
+    margin_pp: float | None = None,
     options: Mapping[str, object] | None = None,
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
@@ -65,6 +67,11 @@ def audit(
         seeds: Seeds of the noise, and of trained models where there are any.
         primary: Path that leads the headline, a module or `shared`; default the shared one.
         generalise: To new `scenes`, or to newly trained `models` too, which takes several seeds.
+        stop_when: Stop as soon as the primary contrast is `decided`, or the effect on every path is
+            (`all-decided`): scenes come in a random order, `scenes` is the most that are flown, and
+            intervals and tests are such that hold wherever one stops. Default: fly all.
+        margin_pp: A difference that is shown to be smaller than this, in percentage points, ends
+            a sequential audit too.
         options: The system's own options, such as `{"wind": "L3"}`.
         folder: Run folder. The default is `runs/<question>-<code>` in the working directory, so
             that the same call resumes, and finds what is finished.
@@ -105,6 +112,8 @@ def audit(
         generalise=generalise,
         metric=metric,
         thresholds=thresholds,
+        stop_when=_checked_rule(stop_when),
+        margin_pp=_checked_margin(margin_pp),
     )
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
     told = display(progress, "audit", given | said)
@@ -116,6 +125,7 @@ def audit(
 
     named = [asked.study.name, fault, Path(library).stem]
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
+    named += _until(asked.question.stop)
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
@@ -180,6 +190,31 @@ def checked_count(name: str, value: object) -> int | None:
     if value is None or (isinstance(value, int) and not isinstance(value, bool)):
         return value
     raise UserError(f"{name} is {value!r:.80}: give a whole number, or None.")
+
+
+def _until(rule: StopRule | None) -> list[str]:
+    if rule is None:
+        return []
+    small = "" if rule.margin_pp is None else f"-within-{rule.margin_pp:g}"
+    return [f"until-{rule.when}{small}"]
+
+
+def _checked_rule(rule: object) -> StopWhen | None:
+    """Return when to stop; `UserError` for what is no rule."""
+    rules: tuple[StopWhen, ...] = get_args(StopWhen)
+    for known in rules:
+        if rule == known:
+            return known
+    if rule is None:
+        return None
+    raise UserError(f"stop_when is {rule!r:.80}: choose {' or '.join(rules)}, or None.")
+
+
+def _checked_margin(margin: object) -> float | None:
+    """Return a margin in percentage points; `UserError` for what is no number."""
+    if margin is None or (isinstance(margin, (int, float)) and not isinstance(margin, bool)):
+        return margin
+    raise UserError(f"margin_pp is {margin!r:.80}: give a number of percentage points, or None.")
 
 
 def checked_seeds(seeds: int | Sequence[int]) -> tuple[int, ...]:

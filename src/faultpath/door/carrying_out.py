@@ -80,6 +80,7 @@ def _run(
                 system=system,
                 time_limit_s=time_limit_s,
                 after=after,
+                stop=audit.stops,
             )
         except Interrupted as stop:
             raise Stopped(

@@ -1,7 +1,7 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from datetime import datetime
@@ -13,6 +13,7 @@ from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
 from faultpath.execution.limits import TimeLimit
+from faultpath.execution.looks import Looks, Stop
 from faultpath.execution.rechecks import Rechecks
 from faultpath.execution.schedule import Recheck, Schedule, Task, Unit, plan
 from faultpath.execution.standing import Progress, ProgressCallback, Standing
@@ -94,6 +95,7 @@ def run_study(
     time_limit_s: float | None = None,
     recheck: bool = True,
     after: Path | None = None,
+    stop: Stop | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -107,6 +109,8 @@ def run_study(
     seconds; by default many times as long as the slowest block so far took. `recheck` flies a few
     scenes of one block again and tells what differs; see `RunResult.findings`. What the run in the
     folder `after` holds of the same units, flown by the same code, is taken over.
+    `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
+    up to that look.
 
     Raises `UserError` for a folder or a study that cannot be run, `Interrupted` on Ctrl-C, and an
     error of `faultpath.taps` when the audit itself is wrong.
@@ -120,8 +124,11 @@ def run_study(
     code = system_code(system, study.system)
     fingerprint = code.state.digest
     scenes = selected(study, library)
+    if study.look:
+        scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
-    units = plan(study.arms(), scenes, system.block_size, library, fingerprint)
+    units = plan(study.arms(), scenes, system.block_size, library, fingerprint, study.look)
+    looks = Looks(study, library, units, stop)
     manifest = Manifest(
         faultpath_version=__version__,
         code=code.state,
@@ -135,21 +142,22 @@ def run_study(
         with run.open(manifest, notice, shared):
             if after is not None:
                 run.take_over(RunFolder(after), [unit.key for unit in units])
-            schedule = _keep_finished(standing, run, notice)
+            schedule = _keep_finished(standing, run, notice, study.look > 0)
             report(standing.progress())
-            again = Rechecks(units, run)
             brief = Brief(study.system, study.library, code.state, library.content_hash)
             with hands as held:
                 there, here = partial(fly, brief), partial(fly_here, system, code.unread())
                 flown = here if held.in_process else there
                 flying = Flying[Task](held, _orders(flown), limit, study.system.name)
-                _run(flying, schedule, standing, report)
+                _run(flying, schedule, standing, looks, report)
+                again = Rechecks(looks.units, run)
                 if recheck:
                     _recheck(flying, again, standing)
             if flying.undeclared:
                 notice(_unnamed(sorted(flying.undeclared)))
-            table = assemble(study, library, standing.outcomes)
-            deliveries = Deliveries.of(study, standing.taps, table, again.findings())
+            table = assemble(looks.study, library, standing.outcomes)
+            taps = standing.taps(looks.units)
+            deliveries = Deliveries.of(study, taps, table, again.findings())
             for finding in deliveries.findings:
                 notice(finding)
             digest = run.save_tables(table, deliveries)
@@ -163,7 +171,7 @@ def run_study(
         traces=traces_of(table),
         blocks_computed=standing.computed,
         blocks_kept=standing.kept,
-        failures=_failures(standing, run),
+        failures=_failures(looks.units, standing, run),
         outcomes_sha256=digest,
         system_fingerprint=fingerprint,
         code=(code,),
@@ -172,7 +180,9 @@ def run_study(
     )
 
 
-def _keep_finished(standing: Standing, run: RunFolder, notice: Callable[[str], None]) -> Schedule:
+def _keep_finished(
+    standing: Standing, run: RunFolder, notice: Callable[[str], None], in_order: bool
+) -> Schedule:
     """Take over what is stored, say how much and from when, and return what is left to do.
 
     Trials that failed are left to do: what was wrong may have been the machine.
@@ -191,7 +201,7 @@ def _keep_finished(standing: Standing, run: RunFolder, notice: Callable[[str], N
         notice(
             _kept_trials(standing.progress(), sum(len(t.scenes) for t in again), run.written(kept))
         )
-    schedule = Schedule(missing)
+    schedule = Schedule(missing, in_order)
     schedule.put(again)
     return schedule
 
@@ -204,9 +214,15 @@ def _orders(fly: Callable[[Order], Reply]) -> Callable[[Task], Call]:
 
 
 def _run(
-    flying: Flying[Task], schedule: Schedule, standing: Standing, report: ProgressCallback
+    flying: Flying[Task],
+    schedule: Schedule,
+    standing: Standing,
+    looks: Looks,
+    report: ProgressCallback,
 ) -> None:
     def take(worker: int) -> Task | None:
+        if looks.enough(standing.outcomes):
+            return None
         if task := schedule.take(worker):
             standing.start(task)
         return task
@@ -225,9 +241,9 @@ def _recheck(flying: Flying[Task], again: Rechecks, standing: Standing) -> None:
         flying.run(lambda _: tasks.pop(0) if tasks else None, settle, lambda: None)
 
 
-def _failures(standing: Standing, run: RunFolder) -> tuple[Failure, ...]:
+def _failures(units: Iterable[Unit], standing: Standing, run: RunFolder) -> tuple[Failure, ...]:
     failures: list[Failure] = []
-    for unit in standing.units:
+    for unit in units:
         details = run.failures / f"{unit.key}.txt"
         for scene in unit.scenes:
             outcome = standing.outcomes[unit.arm.key(), scene]

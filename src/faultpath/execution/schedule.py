@@ -40,13 +40,24 @@ def plan(
     block_size: int,
     library: Library,
     fingerprint: str,
+    look: int = 0,
 ) -> tuple[Unit, ...]:
-    """Return every unit: block by block, in each the arms in order."""
+    """Return every unit: block by block, in each the arms in order.
+
+    With a `look`, blocks are so many scenes in the order given.
+    """
+    parts = looks(scenes, look) if look else blocks(scenes, block_size)
     return tuple(
         Unit(_key(arm, ids, library, fingerprint), arm, block, ids)
-        for block, ids in blocks(scenes, block_size)
+        for block, ids in parts
         for arm in arms
     )
+
+
+def looks(scenes: Sequence[SceneRef], look: int) -> Iterator[tuple[int, tuple[str, ...]]]:
+    """Group scenes by their place in the order in which they are flown."""
+    for block, start in enumerate(range(0, len(scenes), look)):
+        yield block, tuple(scene.id for scene in scenes[start : start + look])
 
 
 def _key(arm: Arm, scenes: Sequence[str], library: Library, fingerprint: str) -> str:
@@ -90,10 +101,12 @@ class Schedule:
 
     A system caches what it derives from a block's scenes, so a worker stays with its block, takes
     the one with the most work left when that is done, and helps out with another worker's only
-    when no block is free. The longest work is thus never started last.
+    when no block is free. The longest work is thus never started last. `in_order`, all workers are
+    at the first block that is left.
     """
 
-    def __init__(self, units: Iterable[Unit]) -> None:
+    def __init__(self, units: Iterable[Unit], in_order: bool = False) -> None:
+        self._in_order = in_order
         self._blocks: dict[int, deque[Task]] = {}
         for unit in units:
             self._blocks.setdefault(unit.block, deque()).append(Task(unit, unit.scenes))
@@ -109,7 +122,7 @@ class Schedule:
         """Return the next task for a worker, or `None` when nothing waits."""
         if not self._blocks:
             return None
-        home = self._home.get(worker)
+        home = min(self._blocks) if self._in_order else self._home.get(worker)
         if home not in self._blocks:
             home = self._home[worker] = self._choose()
         waiting = self._blocks[home]

@@ -44,7 +44,7 @@ class Standing:
     ) -> None:
         self.units = tuple(units)
         self.outcomes: dict[tuple[str, str], Outcome] = {}
-        self.taps: dict[str, tuple[TapCount, ...]] = {}
+        self._taps: dict[str, tuple[TapCount, ...]] = {}
         self.kept = 0
         self.computed = 0
         self.limit = TimeLimit() if limit is None else limit
@@ -109,6 +109,13 @@ class Standing:
             case Died():
                 return self._fail(task, reply.how, reply.how)
 
+    def taps(self, units: Iterable[Unit]) -> dict[str, tuple[TapCount, ...]]:
+        """Return what the taps did in units that are done, by the key of their arm."""
+        counts: dict[str, list[TapCount]] = {}
+        for unit in units:
+            counts.setdefault(unit.arm.key(), []).extend(self._taps[unit.key])
+        return {key: added(taps) for key, taps in counts.items()}
+
     def progress(self) -> Progress:
         """Return how far the run is, with an estimate for the blocks that run now."""
         done = sum(map(len, self._partial.values())) + len(self.outcomes)
@@ -169,4 +176,4 @@ class Standing:
     def _enter(self, unit: Unit, shard: Shard) -> None:
         key = unit.arm.key()
         self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
-        self.taps[key] = added((*self.taps.get(key, ()), *shard.taps))
+        self._taps[unit.key] = shard.taps

@@ -63,6 +63,10 @@ class Intervention(BaseModel, ABC):
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `(value, memory)`: what the consumer would get, and what to carry on."""
 
+    def is_random(self) -> bool:
+        """Return whether errors are drawn, here or in a part."""
+        return self.random
+
     said: ClassVar[str] = ""
     """What is done, in a few words; a field's name in braces stands for its value."""
 

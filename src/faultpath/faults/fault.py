@@ -66,7 +66,7 @@ class Fault(Frozen):
 
     @model_validator(mode="after")
     def _loads_on_draws(self) -> Self:
-        if self.loading != 1.0 and not self.intervention.random:
+        if self.loading != 1.0 and not self.intervention.is_random():
             raise ValueError(f"{self.intervention.kind} takes no loading; leave it out")
         return self
 

@@ -174,7 +174,7 @@ def _correlated(fault: Fault | Coupled, correlation: float | None) -> Fault | Co
         raise UserError(
             f"'{_CORRELATION}' needs several channels, and this fault has one; name a group"
         )
-    if any(not each.intervention.random for each in fault.faults):
+    if any(not each.intervention.is_random() for each in fault.faults):
         raise UserError(f"'{_CORRELATION}' needs errors that are drawn, such as bias or noise")
     loading = {"loading": sqrt(correlation)}
     faults = tuple(each.model_copy(update=loading) for each in fault.faults)

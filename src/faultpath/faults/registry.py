@@ -38,6 +38,10 @@ class Sequence(Intervention):
             carried = (*carried, past)
         return value, carried
 
+    def is_random(self) -> bool:
+        """Return whether any part draws errors."""
+        return any(part.is_random() for part in self.parts)
+
     def words(self) -> str:
         """Return the parts' words in turn."""
         return ", then ".join(part.words() for part in self.parts)

@@ -1,8 +1,16 @@
 """The decision: effects, break-even frequency, verdict."""
 
-from faultpath.record.decide import decide, primary_path
+from faultpath.record.decide import decide, primary_path, stops
 from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import DecisionRecord, Generalise, Path, Question, StruckTap
+from faultpath.record.model import (
+    DecisionRecord,
+    Generalise,
+    Path,
+    Question,
+    StopRule,
+    StopWhen,
+    StruckTap,
+)
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.reproduction import (
     Answer,
@@ -34,8 +42,11 @@ __all__ = [
     "RunProvenance",
     "SceneShown",
     "Series",
+    "StopRule",
+    "StopWhen",
     "StruckTap",
     "Sweep",
     "decide",
     "primary_path",
+    "stops",
 ]

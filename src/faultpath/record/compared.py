@@ -40,13 +40,23 @@ class Compared:
         return first.pairs.first.success.shape[1], first.arms[0].shape[1]
 
 
-def compared(repair: str, baseline: str, paths: Iterable[str], table: OutcomeTable) -> Compared:
-    """Return the trials of two variants that are compared; `UserError` when no scene is left."""
+def compared(
+    repair: str,
+    baseline: str,
+    paths: Iterable[str],
+    table: OutcomeTable,
+    distinct: bool = True,
+) -> Compared:
+    """Return the trials of two variants that are compared; `UserError` when no scene is left.
+
+    Of seeds that repeat others one is kept; all of them where not only those that are `distinct`
+    are asked for.
+    """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
     left = _comparable(pairs, mismatches)
     void = tuple(name for name in pairs if name not in left)
-    return Compared(_trials(left), void, mismatches)
+    return Compared(_trials(left, distinct), void, mismatches)
 
 
 def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
@@ -73,11 +83,16 @@ def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
     return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
 
 
-def _trials(pairs: Mapping[str, Pairs]) -> dict[str, PathTrials]:
-    """Cut all paths to the scenes that every one has, and success to the seeds that differ."""
+def _trials(pairs: Mapping[str, Pairs], distinct: bool) -> dict[str, PathTrials]:
+    """Cut all paths to the scenes that every one has, and success to the seeds that differ.
+
+    A sequential audit keeps all seeds: which of them differ is only seen later, and the value of a
+    scene has to be what it was when it was flown.
+    """
     kept = _shared_scenes(pairs.values())
     cut = {name: each.only(kept) for name, each in pairs.items()}
-    seeds = _distinct([arm.success for each in cut.values() for arm in (each.first, each.second)])
+    arms = [arm.success for each in cut.values() for arm in (each.first, each.second)]
+    seeds = _distinct(arms) if distinct else list(range(arms[0].shape[1]))
     return {
         name: PathTrials(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
         for name, each in cut.items()

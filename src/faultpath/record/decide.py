@@ -4,9 +4,17 @@ from collections.abc import Collection, Sequence
 from statistics import median
 
 from faultpath.errors import UserError
-from faultpath.record import breakeven_words, words
-from faultpath.record.compared import PathTrials, compared
-from faultpath.record.family import CORRECT, SHARED, Arms, Family, decide_paths, percent
+from faultpath.record import breakeven_words, sequential, words
+from faultpath.record.compared import Compared, PathTrials, compared
+from faultpath.record.family import (
+    CORRECT,
+    SHARED,
+    Arms,
+    Family,
+    alpha_shares,
+    decide_paths,
+    percent,
+)
 from faultpath.record.headline import headline
 from faultpath.record.model import (
     Cell,
@@ -51,7 +59,7 @@ def decide(
     gave the same.
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
-    found = compared(question.repair, question.baseline, [p.name for p in paths], table)
+    found = _compared(asked, paths, table)
     trials = found.trials
     if question.generalise == "models" and found.seeds[1] < 2:
         raise UserError(
@@ -59,21 +67,15 @@ def decide(
             "models: leave --generalise models out."
         )
     n_scenes = found.scenes
-    cells = tuple(
-        _cell(table, variant, path.name)
-        for path in paths
-        for variant in (question.baseline, question.repair)
-    )
+    cells = _cells(asked, paths, table)
     untested = _untested(paths, cells)
     resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
-    family = decide_paths(
-        {name: each.arms for name, each in trials.items()},
-        resamples=resamples,
-        models=question.generalise == "models",
-        untested=untested,
-    )
+    family = _family(asked, paths, found, untested, resamples)
+    stopped = sequential.stopped(asked, family, _scenes(table))
     estimand = words.estimand(asked)
-    about = words.About(asked, n_scenes, family.scenes_needed)
+    about = words.About(
+        asked, n_scenes, family.scenes_needed, frozenset(stopped.small if stopped else ())
+    )
     effects = tuple(
         _effect(about, name, each, family, resamples, untested) for name, each in trials.items()
     )
@@ -98,20 +100,72 @@ def decide(
             headline=headline(about, effects, changes),
             sentences=(
                 *words.opening(about, found.seeds),
+                *sequential.sentences(asked, stopped),
                 *(effect.words for effect in effects),
                 *(change.words for change in changes),
                 *breakeven_words.sentences(breaks, effects),
                 *words.barely_acted(asked, paths, cells),
                 *words.saturated(asked, effects),
             ),
-            would_change=words.would_change(about, effects),
+            would_change=(
+                *sequential.more(asked, stopped, not all(effect.detected for effect in effects)),
+                *words.would_change(about, effects),
+            ),
         ),
+        stopped=stopped,
         findings=(
             *words.void_paths(found.void),
             *mismatch_words(found.mismatches),
             *findings,
         ),
     )
+
+
+def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
+    """Return whether a sequential audit stops with these trials; their order does not matter."""
+    try:
+        found = _compared(question, paths, table)
+    except UserError:  # no pair is sound so far
+        return False
+    untested = _untested(paths, _cells(question, paths, table))
+    family = _family(question, paths, found, untested, None)
+    held = sequential.stopped(question, family, _scenes(table))
+    return held is not None and held.reached
+
+
+def _compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
+    names = [path.name for path in paths]
+    arms = question.repair, question.baseline
+    return compared(*arms, names, table, distinct=question.stop is None)
+
+
+def _family(
+    question: Question,
+    paths: Sequence[Path],
+    found: Compared,
+    untested: Collection[str],
+    resamples: Resamples | None,
+) -> Family:
+    shares = alpha_shares([path.name for path in paths], question.primary)
+    return decide_paths(
+        {name: each.arms for name, each in found.trials.items()},
+        resamples=resamples,
+        models=question.generalise == "models",
+        untested=untested,
+        shares=None if question.stop is None else shares,
+    )
+
+
+def _cells(question: Question, paths: Sequence[Path], table: OutcomeTable) -> tuple[Cell, ...]:
+    return tuple(
+        _cell(table, variant, path.name)
+        for path in paths
+        for variant in (question.baseline, question.repair)
+    )
+
+
+def _scenes(table: OutcomeTable) -> int:
+    return len({row.outcome.scene for row in table.rows})
 
 
 def primary_path(named: str, paths: Sequence[Path]) -> str:
@@ -156,7 +210,7 @@ def _effect(
         test=found.test.name,
         p_value=found.test.p_value,
         adjusted_p_value=found.decision.adjusted_p if found.decision else None,
-        mid_p_value=_mid_p(*counts) if len(counts) == 1 else None,
+        mid_p_value=_mid_p(*counts) if len(counts) == 1 and not about.sequential else None,
         scenes=len(trials.pairs.scenes),
         void_pairs=trials.pairs.void,
         wins=tuple(count.first_only for count in counts),
@@ -179,9 +233,10 @@ def _effect(
 def _detectable(about: words.About, found: Contrast, arms: Arms) -> float | None:
     """Return the least difference that the rule finds at the level that Holm left this contrast.
 
-    None is known for newly trained models, whose spread a few seeds do not give.
+    None is known for newly trained models, whose spread a few seeds do not give, and of an audit
+    that stops where it has decided.
     """
-    if found.decision is None or about.question.generalise == "models":
+    if found.decision is None or about.question.generalise == "models" or about.sequential:
         return None
     return detectable(*arms, alpha=found.decision.critical_p)
 

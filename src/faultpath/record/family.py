@@ -11,6 +11,7 @@ from faultpath.statistics import (
     Contrast,
     Resamples,
     Turn,
+    betting,
     change,
     decide_family,
     fewest_scenes,
@@ -56,6 +57,7 @@ def decide_paths(
     models: bool = False,
     untested: Collection[str] = (),
     alpha: float = ALPHA,
+    shares: Mapping[str, float] | None = None,
 ) -> Family:
     """Return what is decided of all paths, from paired successes `[scenes, seeds]` alone.
 
@@ -63,30 +65,62 @@ def decide_paths(
     simulations of its error rates call. The family holds the effect on every path and every change
     from an isolated path to `SHARED`; Holm's procedure runs over all of them at `alpha`. Paths in
     `untested` (the fault never acted there) take no part. `models` speaks of newly trained models
-    as well. `resamples` are drawn where they are not given.
+    as well. `resamples` are drawn where they are not given. `shares` of `alpha`, by the names of
+    `alpha_shares`, say that the audit was sequential: what is decided then holds at whatever scene
+    it stopped, each contrast at its own share.
     """
     n_scenes = len(next(iter(success.values()))[0])
     # Only what speaks of newly trained models resamples.
     drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=10_000 if models else 1)
     effects = {
-        path: with_test(success_effect(repair, baseline, drawn, resample_seeds=models))
+        path: with_test(
+            success_effect(
+                repair,
+                baseline,
+                drawn,
+                resample_seeds=models,
+                sequential=shares is not None,
+            )
+        )
         for path, (repair, baseline) in success.items()
     }
     isolated = _isolated([path for path in effects if path not in untested])
     changes = {path: with_test(change(effects[path], effects[SHARED])) for path in isolated}
-    family = {f"effect/{path}": e for path, e in effects.items() if path not in untested}
-    family |= {f"change/{path}": c for path, c in changes.items()}
-    made = decide_family(family, alpha)
-    effects = {path: made.get(f"effect/{path}", effect) for path, effect in effects.items()}
-    changes = {path: made[f"change/{path}"] for path in changes}
+    family = {_effect(path): e for path, e in effects.items() if path not in untested}
+    family |= {_change(path): c for path, c in changes.items()}
+    made = decide_family(family, alpha, shares)
+    effects = {path: made.get(_effect(path), effect) for path, effect in effects.items()}
+    changes = {path: made[_change(path)] for path in changes}
+    needed = fewest_scenes(len(family), alpha)
+    if shares is not None:
+        needed = betting.fewest_scenes(alpha * max(shares.values()))
     return Family(
         effects=effects,
         changes=changes,
         turns={path: turn(effects[path], effects[SHARED], c) for path, c in changes.items()},
         extremes={path: _extreme(*arms) for path, arms in success.items()},
-        hypotheses=len(family),
-        scenes_needed=fewest_scenes(len(family), alpha),
+        hypotheses=len(family if shares is None else shares),
+        scenes_needed=needed,
     )
+
+
+def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
+    """Return each contrast's share of the error rate of a sequential audit, by its name.
+
+    The effect on the primary path, for which it stops, has a half; all others share the rest.
+    """
+    named = [*map(_effect, paths), *map(_change, _isolated(paths))]
+    others = [name for name in named if name != _effect(primary)]
+    shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
+    return {_effect(primary): 0.5 if others else 1.0, **shares}
+
+
+def _effect(path: str) -> str:
+    return f"effect/{path}"
+
+
+def _change(path: str) -> str:
+    return f"change/{path}"
 
 
 def _isolated(tested: Collection[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from faultpath.record.model import Change, Effect
-from faultpath.record.words import About, capital, no_pair, where
+from faultpath.record.words import About, capital, margin, no_pair, where
 
 
 def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change]) -> str:
@@ -79,7 +79,7 @@ def _led(about: About, main: Effect, effects: Sequence[Effect]) -> str:
         if sides[-main.sign]:
             text += f"; {about.winner(-main.sign)} is ahead {_places(sides[-main.sign])}"
         return text + _models(about)
-    if not others and not main.extreme and len(effects) > 1:
+    if not others and not main.extreme and len(effects) > 1 and main.path not in about.small:
         extreme = any(effect.extreme for effect in effects if effect.acted)
         place = "away from the floor and the ceiling" if extreme else "on any path"
         tested = "" if all(effect.acted for effect in effects) else " that was tested"
@@ -95,6 +95,8 @@ def _undecided(about: About, main: Effect) -> str:
     if main.extreme:
         ends = "fail" if main.extreme == "floor" else "succeed"
         return f"{about.both} both nearly always {ends}: no choice can rest on it"
+    if main.path in about.small and about.question.stop:
+        return f"{about.both} differ by less than {margin(about.question.stop)}"
     return f"no difference between {about.both} is detected"
 
 

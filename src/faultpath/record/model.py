@@ -10,10 +10,28 @@ from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 Generalise = Literal["scenes", "models"]
+StopWhen = Literal["decided", "all-decided"]
 
 
 class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class StopRule(_Frozen):
+    """When a sequential audit stops."""
+
+    when: StopWhen
+    """`decided`: the primary contrast is; `all-decided`: the effect on every path is."""
+    margin_pp: float | None = None
+    """A difference that is shown to be smaller than this counts as decided too."""
+    order: tuple[str, ...]
+    """The scenes in the order in which they are flown, drawn before the first trial."""
+    order_seed: int
+    """Of the draw, with the hash of the library."""
+    look: int
+    """Scenes from one look at the results to the next."""
+    trials: int
+    """That a scene takes: distinct arms."""
 
 
 class Question(_Frozen):
@@ -43,6 +61,13 @@ class Question(_Frozen):
     """The metric to tell beside success; empty for none."""
     thresholds: tuple[float, ...] = ()
     """Of that metric: at which success is told anew."""
+    stop: StopRule | None = None
+    """Of a sequential audit, of which `n_scenes` is the most that it takes."""
+
+    @property
+    def family(self) -> str:
+        """How p-values were adjusted, as part of a sentence."""
+        return "after Holm" if self.stop is None else "within the family"
 
 
 class StruckTap(_Frozen):
@@ -111,7 +136,8 @@ class Effect(_Frozen):
     test: str
     p_value: float
     adjusted_p_value: float | None
-    """After Holm over the family; `None` for a path that is not in it."""
+    """Over the family, after Holm or by the shares of a sequential audit; `None` for a path that is
+    not in it."""
     mid_p_value: float | None
     scenes: int
     """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
@@ -190,6 +216,17 @@ class Change(_Frozen):
     words: str
 
 
+class Stopped(_Frozen):
+    """How far a sequential audit went."""
+
+    scenes: int
+    """Flown; void pairs included."""
+    reached: bool
+    """Whether what it was to stop for came about."""
+    small: tuple[str, ...]
+    """Paths on which the difference was shown to be smaller than the margin."""
+
+
 class Verdict(_Frozen):
     """The answer in words."""
 
@@ -221,3 +258,28 @@ class DecisionRecord(_Frozen):
     findings: tuple[str, ...] = ()
     """What the run found that a reader has to know, a sentence each: pairs of different conditions,
     results that do not repeat or depend on their block, consumers that never read."""
+    stopped: Stopped | None = None
+    """Of a sequential audit."""
+
+    @property
+    def flown(self) -> str:
+        """The number of scenes, and of how many where an audit could have taken more."""
+        most = str(self.question.n_scenes)
+        if self.stopped is None or self.stopped.scenes == self.question.n_scenes:
+            return most
+        return f"{self.stopped.scenes} of at most {most}"
+
+    @property
+    def stopping(self) -> str:
+        """How a sequential audit was to stop."""
+        rule = self.question.stop
+        if rule is None:
+            return ""
+        what = "the primary contrast" if rule.when == "decided" else "the effect on every path"
+        small = f" or shown to be smaller than {rule.margin_pp:g} pp" if rule.margin_pp else ""
+        return (
+            f"the audit was to stop once {what} is decided{small}, at a look after every "
+            f"{'scene' if rule.look == 1 else f'{rule.look} scenes'}, or after "
+            f"{self.question.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+            f"of the library and the seed {rule.order_seed}"
+        )

@@ -30,10 +30,13 @@ class Secondary(NamedTuple):
 
 
 def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> Secondary:
-    """Return the secondary outcomes of paired trials."""
+    """Return the secondary outcomes of paired trials.
+
+    Of a sequential audit time and metrics have no interval: theirs need a fixed number of scenes.
+    """
     first, second = pairs.first, pairs.second
     joint = first.success & second.success
-    return Secondary(
+    found = Secondary(
         time_s=_time(pairs, joint, resamples),
         joint_successes=int(joint.sum()),
         metrics={
@@ -46,6 +49,18 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> Secondary:
         if _means(pairs, asked.metric)
         else (),
     )
+    if asked.stop is None:
+        return found
+    return found._replace(
+        time_s=found.time_s and _bare(found.time_s, "median"),
+        metrics={name: _bare(each, "mean") for name, each in found.metrics.items()},
+    )
+
+
+def _bare(estimate: Estimate, what: str) -> Estimate:
+    """Return the estimate without the interval that a fixed number of scenes would give it."""
+    method = f"{what} of the scenes until the audit stopped: no interval"
+    return estimate.model_copy(update={"low": None, "high": None, "method": method})
 
 
 def _means(pairs: Pairs, metric: str) -> tuple[float, float] | None:
@@ -68,7 +83,9 @@ def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -
         threshold=threshold,
         baseline_percent=percent(baseline),
         repair_percent=percent(repair),
-        difference=success_effect(repair, baseline, resamples).estimate(),
+        difference=success_effect(
+            repair, baseline, resamples, sequential=asked.stop is not None
+        ).estimate(),
     )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import Cell, Change, Effect, Path, Question
+from faultpath.record.model import Cell, Change, Effect, Path, Question, StopRule
 from faultpath.statistics import Estimate
 
 FEW_TRAININGS = 5
@@ -25,6 +25,13 @@ class About:
     """Compared."""
     needed: int
     """With fewer scenes, nothing can be decided."""
+    small: frozenset[str] = frozenset()
+    """Paths on which the difference was shown to be smaller than the margin that was asked for."""
+
+    @property
+    def sequential(self) -> bool:
+        """Whether the number of scenes was not fixed beforehand."""
+        return self.question.stop is not None
 
     @property
     def few(self) -> bool:
@@ -89,17 +96,18 @@ def points(value: float) -> str:
     return "0.0" if float(text) == 0 else text
 
 
-def numbers(estimate: Estimate, adjusted_p: float | None) -> str:
+def numbers(about: About, estimate: Estimate, adjusted_p: float | None) -> str:
     """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`."""
     text = f"{points(estimate.value)} pp"
     if estimate.low is not None and estimate.high is not None:
         text += f" [{_plain(estimate.low)}, {_plain(estimate.high)}]"
-    return text if adjusted_p is None else f"{text}, p {_p(adjusted_p)} after Holm"
+    return text if adjusted_p is None else f"{text}, p {_p(adjusted_p)} {about.question.family}"
 
 
 def effect_words(about: About, effect: Effect) -> str:
     """Say what one effect shows: who is decided to be ahead, or what could have been found."""
-    place, shown = capital(where(effect.path)), numbers(effect.success, effect.adjusted_p_value)
+    place = capital(where(effect.path))
+    shown = numbers(about, effect.success, effect.adjusted_p_value)
     if not effect.acted:
         place = "Shared" if effect.path == SHARED else place
         return f"{place}, the fault never acted on this path: nothing was tested."
@@ -118,6 +126,8 @@ def effect_words(about: About, effect: Effect) -> str:
         )
     else:
         words = f"{place}, no difference is detected ({shown})"
+    if effect.path in about.small and about.question.stop:
+        words += f", and it is smaller than {margin(about.question.stop)}"
     if effect.extreme:
         return f"{words}; {_extreme(effect)}, where a difference can hardly show."
     if effect.minimum_detectable_pp is None:
@@ -135,7 +145,7 @@ def _extreme(effect: Effect) -> str:
 def change_words(about: About, isolated: Effect, shared: Effect, change: Change) -> str:
     """Say whether sharing the fault reverses the verdict, changes the difference, or neither."""
     from_to = f"{points(isolated.success.value)} pp to {points(shared.success.value)} pp"
-    shown = f"{from_to}; change {numbers(change.change, change.adjusted_p_value)}"
+    shown = f"{from_to}; change {numbers(about, change.change, change.adjusted_p_value)}"
     alone = where(isolated.path)
     if change.turn == "reversal":
         words = (
@@ -155,6 +165,11 @@ def change_words(about: About, isolated: Effect, shared: Effect, change: Change)
     if about.few:
         return f"Nothing is decided {between} ({shown})."
     return f"No change is detected {between} ({shown})."
+
+
+def margin(rule: StopRule) -> str:
+    """Return the margin below which a difference counts as small."""
+    return f"{rule.margin_pp or 0.0:g} pp"
 
 
 def void_paths(paths: Sequence[str]) -> tuple[str, ...]:

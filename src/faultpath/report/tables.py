@@ -71,7 +71,7 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
     "interval": ("", lambda of: wording.interval(of.effect.success) or MISSING),
     "won": ("Won:lost", lambda of: wording.wins_losses(of.effect.wins, of.effect.losses)),
     "p": ("p, alone", lambda of: wording.p_value(of.effect.p_value)),
-    "holm": ("p, Holm", lambda of: wording.adjusted(of.effect)),
+    "holm": ("", lambda of: wording.adjusted(of.effect)),
     "decided": ("Decided for", _Of.decided),
     "power": ("80 % power, pp", _Of.power),
     "scenes": ("Scenes", lambda of: str(of.effect.scenes)),
@@ -86,12 +86,14 @@ def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Ta
     lines = [
         line(
             _title(record, effect),
-            *(_QUANTITIES[name][1](_Of(record, effect)) for name in names),
+            *(_QUANTITIES[name][1](_Of(record, effect)) for name in _named(record, names)),
             aside="primary" if effect.path == record.question.primary else "",
         )
         for effect in record.effects
     ]
-    columns = tuple(_label(record, name) + (", %" if name in _ARMS else "") for name in names)
+    columns = tuple(
+        _label(record, name) + (", %" if name in _ARMS else "") for name in _named(record, names)
+    )
     return Table(title=title, corner="Path", columns=columns, lines=tuple(lines))
 
 
@@ -105,7 +107,7 @@ def by_quantity(
             *(_QUANTITIES[name][1](_Of(record, effect)) for effect in record.effects),
             aside=name if name in _ARMS else "",
         )
-        for name in names
+        for name in _named(record, names)
     ]
     return Table(
         name="faultpath",
@@ -122,19 +124,29 @@ def whole_table(record: DecisionRecord) -> Table:
     asked = record.question
     title = (
         f"{asked.repair} against {asked.baseline} on {asked.system}, fault {asked.fault}: "
-        f"{asked.n_scenes} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
+        f"{record.flown} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
     )
     notes = (
         f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
         "ahead.",
-        f"Primary contrast: {asked.primary}. Holm's correction is for {record.hypotheses} "
-        f"contrasts. Intervals and tests speak of {record.estimand}.",
+        f"Primary contrast: {asked.primary}. {_corrected(record)} Intervals and tests speak of "
+        f"{record.estimand}.",
         record.verdict.headline,
     )
     table = by_quantity(record, ALL, title, notes)
     return table.model_copy(update={"lines": (*table.lines, *_secondary(record))})
+
+
+def _corrected(record: DecisionRecord) -> str:
+    if record.stopped is None:
+        return f"Holm's correction is for {record.hypotheses} contrasts."
+    others = "" if record.hypotheses == 1 else ", half of it for the primary one"
+    return (
+        f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
+        f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
+    )
 
 
 def markdown_table(record: DecisionRecord) -> str:
@@ -148,11 +160,21 @@ def latex_table(record: DecisionRecord) -> str:
     return "% Needs \\usepackage{booktabs}\n" + booktabs(whole_table(record))
 
 
+def _named(record: DecisionRecord, names: Sequence[str]) -> list[str]:
+    """Return the quantities that the record has: no power where the number of scenes was open."""
+    return [name for name in names if name != "power" or record.stopped is None]
+
+
 def _label(record: DecisionRecord, name: str) -> str:
     asked = record.question
     levels = {f"{100 * effect.success.level:g} % interval" for effect in record.effects}
     interval = levels.pop() if len(levels) == 1 else "Interval"
-    said = {"baseline": asked.baseline, "repair": asked.repair, "interval": interval}
+    said = {
+        "baseline": asked.baseline,
+        "repair": asked.repair,
+        "interval": interval,
+        "holm": "p, Holm" if record.stopped is None else "p, family",
+    }
     return said.get(name, _QUANTITIES[name][0])
 
 

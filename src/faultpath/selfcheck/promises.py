@@ -9,6 +9,7 @@ from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
 from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
+from faultpath.selfcheck.sequential import ANY_LOOK, EVERY_LOOK
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,8 @@ PROMISES = (
     ),
     Promise(EQUAL_MAPS, "a map of equal arms announces anything", most=0.05),
     Promise(CORRELATION, "the set of correlations covers the true one", least=0.93),
+    Promise(ANY_LOOK, "a sequential audit of equal arms announces anything at any look", most=0.05),
+    Promise(EVERY_LOOK, "the confidence sequence holds the truth at every look", least=0.95),
 )
 
 

@@ -13,6 +13,7 @@ from faultpath.selfcheck.detection import detection_grid
 from faultpath.selfcheck.model import Measured, Report, Section
 from faultpath.selfcheck.plane import map_grid
 from faultpath.selfcheck.populations import SCENES
+from faultpath.selfcheck.sequential import any_look_grid, every_look_grid, taken_grid
 from faultpath.work import local, run_all
 
 
@@ -35,6 +36,7 @@ class Profile:
     reports: int
     audits: int
     trainings: int
+    sequential: int
 
     def tasks(self) -> list[Task]:
         """Return all settings."""
@@ -46,12 +48,15 @@ class Profile:
             *equal_grid(self.audits),
             *reversal_grid(self.audits),
             *training_grid(self.trainings),
+            *any_look_grid(self.sequential),
+            *every_look_grid(self.sequential),
+            *taken_grid(self.sequential),
         ]
 
 
 PROFILES = {
-    "full": Profile(SCENES, 20_000, 4_000, 500, 200, 1_000, 2_000),
-    "quick": Profile((25,), 500, 200, 20, 1, 10, 30),
+    "full": Profile(SCENES, 20_000, 4_000, 500, 200, 1_000, 2_000, 2_000),
+    "quick": Profile((25,), 500, 200, 20, 1, 10, 30, 20),
 }
 _EACH = 8
 """Settings that are worth starting a process for."""

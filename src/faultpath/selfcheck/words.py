@@ -1,9 +1,7 @@
 """The tables of a self-check, for the terminal and for the page."""
 
 import itertools
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from typing import TypeAlias
+from collections.abc import Iterable, Sequence
 
 from rich.console import Console
 
@@ -12,61 +10,13 @@ from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
 from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
-from faultpath.tables import Table, line
+from faultpath.selfcheck.rows import LEANS, Shown, Texts, across, each, of_seeds, share
+from faultpath.selfcheck.sequential import ANY_LOOK, DECIDED, EVERY_LOOK, TAKEN
+from faultpath.tables import Table
 from faultpath.tables.markdown import grid
 from faultpath.tables.terminal import drawn
 
 _FEW = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 1e9)
-Texts: TypeAlias = tuple[str, ...]
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A table of one section: how its settings become rows."""
-
-    section: str
-    title: str
-    note: str
-    rows: Callable[[Sequence[Cell]], tuple[Texts, Iterable[Texts]]]
-    """Headings, the first above the labels, and rows."""
-    concerns: Callable[[Cell], bool] = lambda cell: True
-
-    def table(self, report: Report) -> Table:
-        """Return it for a report."""
-        cells = [cell for cell in report.section(self.section).cells() if self.concerns(cell)]
-        (corner, *columns), rows = self.rows(cells)
-        lines = tuple(line(label, *texts) for label, *texts in rows)
-        return Table(
-            title=self.title,
-            corner=corner,
-            columns=tuple(columns),
-            lines=lines,
-            notes=(self.note,),
-        )
-
-
-def _across(
-    corner: str, across: str, label: Callable[[Cell], str]
-) -> Callable[[Sequence[Cell]], tuple[Texts, Iterable[Texts]]]:
-    """Return rows of the range of rates by label, with a column for each value of `across`."""
-
-    def made(cells: Sequence[Cell]) -> tuple[Texts, Iterable[Texts]]:
-        values = sorted({float(cell[across]) for cell in cells})
-        rows: dict[str, dict[float, list[float]]] = {}
-        for cell in cells:
-            at = rows.setdefault(label(cell), {})
-            at.setdefault(float(cell[across]), []).append(float(cell["measured"]))
-        heads = (corner, *(f"{100 * value:g} %" for value in values))
-        return heads, [(name, *(_range(at[v]) for v in values)) for name, at in rows.items()]
-
-    return made
-
-
-def _each(
-    heads: Texts, texts: Callable[[Cell], Texts]
-) -> Callable[[Sequence[Cell]], tuple[Texts, Iterable[Texts]]]:
-    """Return one row for each setting, its rate last."""
-    return lambda cells: (heads, [(*texts(c), _share(float(c["measured"]))) for c in cells])
 
 
 def _by_differing(cells: Sequence[Cell]) -> tuple[Texts, Iterable[Texts]]:
@@ -77,7 +27,7 @@ def _by_differing(cells: Sequence[Cell]) -> tuple[Texts, Iterable[Texts]]:
             name = f"{low:g} to {high:g}" if high < 1e9 else f"{low:g} and more"
             above = sum(rate > 0.98 for rate in rates)
             below = sum(rate < 0.93 for rate in rates)
-            ends = _share(min(rates)), _share(max(rates))
+            ends = share(min(rates)), share(max(rates))
             rows.append((name, str(len(rates)), *ends, f"{below}/{above}"))
     heads = ("differing scenes", "settings", "least", "greatest", "below .93 / above .98")
     return heads, rows
@@ -92,15 +42,20 @@ def _detection(cells: Sequence[Cell]) -> tuple[Texts, Iterable[Texts]]:
     rows = [
         (
             f"{n} scenes, {100 * float(rate):g} %",
-            *(_share(found[(n, rate, *kind)]) for kind in kinds),
+            *(share(found[(n, rate, *kind)]) for kind in kinds),
         )
         for n, rate in dict.fromkeys((c["scenes"], c["rate"]) for c in cells)
     ]
     heads = (
-        f"{_seeds(seeds)}{', half alike' if alike else ''}, p ≤ {float(alpha):.3g}"
+        f"{of_seeds(seeds)}{', half alike' if alike else ''}, p ≤ {float(alpha):.3g}"
         for seeds, alike, alpha in kinds
     )
     return ("scenes, discordant", *heads), rows
+
+
+def _difference(cell: Cell) -> Texts:
+    label = f"{100 * float(cell['rate']):g} %, {float(cell['difference pp']):g} pp"
+    return label, str(cell["fixed scenes"])
 
 
 TABLES = (
@@ -109,7 +64,7 @@ TABLES = (
         "Interval of an effect, one seed",
         "Coverage of the 95 % interval (Tango's), exact, by scenes, by how discordant scenes "
         "split, and by the share of scenes that is discordant. Promised: at least .93.",
-        _across("scenes, split", "rate", lambda c: f"{c['scenes']}, {_LEANS[float(c['lean'])]}"),
+        across("scenes, split", "rate", lambda c: f"{c['scenes']}, {LEANS[float(c['lean'])]}"),
         lambda c: c["seeds"] == 1,
     ),
     Shown(
@@ -118,7 +73,7 @@ TABLES = (
         "Least and greatest coverage over three splits, over seeds that are independent, half "
         "alike or copies of each other, without and with strong seed effects. Columns: share of "
         "discordant pairs of a seed, on average. Promised: at least .93.",
-        _across("seeds, scenes", "rate", lambda c: f"{c['seeds']} seeds, {c['scenes']} scenes"),
+        across("seeds, scenes", "rate", lambda c: f"{c['seeds']} seeds, {c['scenes']} scenes"),
         lambda c: c["seeds"] != 1,
     ),
     Shown(
@@ -140,7 +95,7 @@ TABLES = (
         "at least .93 where trainings do not differ. Where each has a rate of its own, anywhere "
         "from 0 to twice the average, nothing is promised: so few trainings do not show how far "
         "new ones may lie, and what is detected needs the t test of the seeds' effects as well.",
-        _across(
+        across(
             "trainings, scenes",
             "rate",
             lambda c: (
@@ -156,8 +111,8 @@ TABLES = (
         "ahead, over costs that are one-sided, in between or none on balance, gains of 5 and 30 "
         "pp under the fault, and seeds as above. Columns: share of scenes that differ under "
         "correct inputs. Promised: at least .93.",
-        _across(
-            "seeds, scenes", "cost rate", lambda c: f"{_seeds(c['seeds'])}, {c['scenes']} scenes"
+        across(
+            "seeds, scenes", "cost rate", lambda c: f"{of_seeds(c['seeds'])}, {c['scenes']} scenes"
         ),
     ),
     Shown(
@@ -178,7 +133,7 @@ TABLES = (
         "Share of audits with four paths that announce anything at all: an effect, a change, a "
         "reversal. Paths alike: chance that a scene ends the same on all paths. Promised: at most "
         ".05.",
-        _each(
+        each(
             ("scenes", "seeds", "discordant", "paths alike", "announce"),
             lambda c: (
                 str(c["scenes"]),
@@ -193,7 +148,7 @@ TABLES = (
         "Reversals",
         "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
         "isolated effects are 0 there is none; promised: at most .025. The others show the power.",
-        _each(
+        each(
             ("scenes", "seeds", "isolated effects, pp", "announce"),
             lambda c: (str(c["scenes"]), str(c["seeds"]), f"{float(c['isolated pp']):g}"),
         ),
@@ -205,7 +160,7 @@ TABLES = (
         "Share of audits that detect a difference. For newly trained models (`--generalise "
         "models`) that is an error, promised in at most .05; for these trained models it is not "
         "one: they do differ.",
-        _each(
+        each(
             ("speaks of", "scenes", "seeds", "detect"),
             lambda c: (
                 f"{'new' if c['generalise'] == 'models' else 'these'} trainings",
@@ -221,7 +176,7 @@ TABLES = (
         "errors: at a place on the map, or at a correlation of the errors. Scenes alike: share "
         "that ends the same in both arms; waves: scenes in which places of the map depend on each "
         "other little. Promised: at most .05 each.",
-        _each(
+        each(
             ("of a", "scenes", "scenes alike", "announce"),
             lambda c: (str(c["of"]), str(c["scenes"]), str(c["alike"])),
         ),
@@ -232,7 +187,7 @@ TABLES = (
         "Coverage of the set of correlations at which it is not decided who does better: of the "
         "true one of the surface that is straight between the points, and of the true one of the "
         "errors themselves. Promised: at least .93.",
-        _each(
+        each(
             ("truth", "scenes", "scenes alike", "coverage"),
             lambda c: (
                 "of the surface" if c["straight"] else "of the errors",
@@ -240,6 +195,47 @@ TABLES = (
                 f"{float(c['alike']):g}",
             ),
         ),
+    ),
+    Shown(
+        ANY_LOOK,
+        "Sequential audits of equal arms",
+        "Share of sequential audits with four paths that announce anything at any look, with a "
+        "look after every scene. Promised: at most .05.",
+        each(
+            ("at most scenes", "seeds", "discordant", "paths alike", "announce"),
+            lambda c: (
+                str(c["scenes"]),
+                str(c["seeds"]),
+                f"{100 * float(c['rate']):g} %",
+                f"{float(c['paths alike']):g}",
+            ),
+        ),
+    ),
+    Shown(
+        EVERY_LOOK,
+        "Confidence sequence of an effect",
+        "Share of sequential audits whose 95 % confidence sequence holds the truth after every "
+        "one of 300 scenes; where an audit stops, for whatever reason, it then does so at least as "
+        "often. Columns: share of discordant pairs of a seed. Promised: at least .95.",
+        across(
+            "seeds, split", "rate", lambda c: f"{of_seeds(c['seeds'])}, {LEANS[float(c['lean'])]}"
+        ),
+    ),
+    Shown(
+        TAKEN,
+        "Scenes that sequential audits take",
+        "A true difference, one seed, six contrasts, a look after every scene. Fixed: scenes with "
+        "which an audit of a fixed number detects it in 90 % of cases, to know which takes knowing "
+        "discordance and difference beforehand. A sequential audit may take as many; it takes that "
+        "share of them on average, and what it decides by then is in the next table. Nothing is "
+        "promised.",
+        each(("discordant, difference", "fixed scenes", "share taken"), _difference),
+    ),
+    Shown(
+        DECIDED,
+        "What sequential audits decide with that",
+        "Share of the same audits that decide. With a fixed number of scenes it is .90.",
+        each(("discordant, difference", "at most scenes", "decide"), _difference),
     ),
 )
 
@@ -265,8 +261,9 @@ def page(report: Report, broken: Sequence[str]) -> str:
         "(reference/statistics-check.json). Populations with a known truth are sampled, and the "
         "shipped code decides. Simulated rates have a standard error of "
         f"{_error(report, INTERVAL)} (interval), {_error(report, BREAK_EVEN)} (break-even), at "
-        f"most {_error(report, EQUAL)} (audits) and {_error(report, MODELS)} (newly trained "
-        "models); those of one seed are exact, but for break-even and audits.",
+        f"most {_error(report, EQUAL)} (audits), {_error(report, ANY_LOOK)} (sequential audits) "
+        f"and {_error(report, MODELS)} (newly trained models); those of one seed are exact, but "
+        "for break-even, audits and all that is sequential.",
         "",
         "What is promised, and how it is decided: [design/statistics.md](design/statistics.md).",
         "",
@@ -289,20 +286,3 @@ def show(report: Report, console: Console) -> None:
 def _error(report: Report, name: str) -> str:
     runs = max(float(cell["runs"]) for cell in report.section(name).cells())
     return f"{(0.05 * 0.95 / runs) ** 0.5:.3f}".lstrip("0")
-
-
-def _range(rates: Iterable[float]) -> str:
-    low, high = _share(min(rates := list(rates))), _share(max(rates))
-    return low if low == high else f"{low}–{high}"
-
-
-def _share(rate: float) -> str:
-    text = f"{rate:.3f}"
-    return text.removeprefix("0") if rate < 0.9995 else "1"
-
-
-def _seeds(seeds: object) -> str:
-    return f"{seeds} seed{'' if seeds == 1 else 's'}"
-
-
-_LEANS = {0.0: "even", 0.5: "three to one", 1.0: "one-sided"}

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.statistics import betting
 from faultpath.statistics.contrast import Contrast, check_joint, percentile_interval
 from faultpath.statistics.estimate import BreakEven, Region
 from faultpath.statistics.inputs import Floats
@@ -84,11 +85,12 @@ class _Mixture:
         self.ends = correct, faulty
         self.level = level
         self.resampled = correct.resampled or faulty.resampled
-        self.scenes = None
+        self.scenes, self.sequential = None, False
         first, second = correct.scenes, faulty.scenes
         if first is not None and second is not None:
             both = np.stack([first.scale * first.values, second.scale * second.values])
             unique, counts = np.unique(both, axis=1, return_counts=True)
+            self.sequential = first.sequential
             self.scenes = unique, counts, first.scale * first.far, second.scale * second.far
 
     def value(self, p: float) -> float:
@@ -99,6 +101,8 @@ class _Mixture:
         """Return [frequencies]: whether the difference at each is not told from 0."""
         if not self.resampled:
             values, counts, far = self._mixed(p)
+            if self.sequential:
+                return ~betting.rejects(values, counts, 0.0, far, self.level)
             return ~rejects(values, counts, 0.0, far, quantile(self.level))
         low, high = self.intervals(p)
         return (low <= 0.0) & (high >= 0.0)
@@ -107,7 +111,12 @@ class _Mixture:
         """Return both ends [frequencies] of the difference's interval at each."""
         ends: list[tuple[Floats, Floats]] = []
         if self.scenes is not None:
-            ends.append(interval(*self._mixed(p), quantile(self.level)))
+            values = self._mixed(p)
+            ends.append(
+                betting.interval(*values, self.level)
+                if self.sequential
+                else interval(*values, quantile(self.level))
+            )
         if self.resampled:
             first, second = (end.draws for end in self.ends)
             mixed = ((1.0 - each) * first + each * second for each in p.tolist())

@@ -185,9 +185,7 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         value=_dot(weights, [each.value for each in contrasts]),
         draws=np.dot(weights, [each.draws for each in contrasts]).round(_DIGITS),
         per_seed=tuple(_dot(weights, values) for values in by_seed),
-        method="score on scene differences (Tango's, cluster-robust)"
-        if scenes is not None and not first.resampled
-        else f"combined effects, {first.method}",
+        method=_combined_method(first, scenes),
         n_seeds=max(each.n_seeds for each in contrasts),
         arms=None,
         scenes=scenes,
@@ -195,6 +193,14 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         decision=None,
         notable=None,
     )
+
+
+def _combined_method(first: Contrast, scenes: SceneValues | None) -> str:
+    if scenes is None or first.resampled:
+        return f"combined effects, {first.method}"
+    if scenes.sequential:
+        return "confidence sequence by betting on scene differences"
+    return "score on scene differences (Tango's, cluster-robust)"
 
 
 def _dot(weights: Sequence[float], values: Sequence[float]) -> float:

@@ -6,6 +6,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
+from faultpath.statistics import betting
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import ALPHA, SCENES_AND_SEEDS, Decision, PairedTest, Sign
@@ -17,13 +18,17 @@ def with_test(contrast: Contrast) -> Contrast:
     """Return a contrast with its test, the paper's for given models.
 
     For given models: exact McNemar (one seed), else the sign test on what scenes differ by. For
-    newly trained ones: the t test of the seeds' effects. ``ValueError`` for contrasts that have no
-    test, as means and medians of unbounded outcomes.
+    newly trained ones: the t test of the seeds' effects. For a sequential audit: bets on the mean
+    (`betting`). ``ValueError`` for contrasts that have no test, as means and medians of unbounded
+    outcomes.
     """
     if contrast.estimand == SCENES_AND_SEEDS:
         return replace(contrast, test=_seed_test(contrast))
     if contrast.scenes is None or not contrast.against_zero:
         raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
+    if contrast.scenes.sequential:
+        p_value, leans = betting.p_value(*contrast.scenes.kinds(), contrast.scenes.bound)
+        return replace(contrast, test=PairedTest("bets on the mean", p_value, _sign(leans)))
     values = contrast.scenes.values
     first, second = int((values > 0).sum()), int((values < 0).sum())
     name = "exact McNemar" if contrast.n_seeds == 1 else "sign test on scene means"
@@ -42,28 +47,41 @@ def _seed_test(contrast: Contrast) -> PairedTest:
     return PairedTest("t test of the seeds' effects", p_value, _sign(contrast.value))
 
 
-def decide_family(contrasts: Mapping[str, Contrast], alpha: float = ALPHA) -> dict[str, Contrast]:
+def decide_family(
+    contrasts: Mapping[str, Contrast],
+    alpha: float = ALPHA,
+    shares: Mapping[str, float] | None = None,
+) -> dict[str, Contrast]:
     """Decide tested contrasts together: Holm's adjustment of all p-values given.
 
     One is detected when its adjusted p-value is at most ``alpha``, its interval excludes 0 and both
     point the same way. So one or more false detections among all of them come in at most a share
-    ``alpha`` of audits, whichever of the nulls are true.
+    ``alpha`` of audits, whichever of the nulls are true. With ``shares`` (of ``alpha``, at most 1
+    together) each contrast stands by itself at its own share of it, Bonferroni's procedure.
     """
     tests = {name: each.test for name, each in contrasts.items() if each.test is not None}
     p_values = {name: tests[name].p_value for name in contrasts}
+    adjusted = _holm(p_values)
+    if shares is not None:
+        adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
+    decided: dict[str, Contrast] = {}
+    for name, each in contrasts.items():
+        leans = tests[name].leans if adjusted[name] <= alpha else 0
+        sign = leans if leans and leans == each.side else 0
+        others = [p for other, p in p_values.items() if other != name]
+        critical = _critical(others, alpha) if shares is None else alpha * shares[name]
+        decided[name] = replace(each, decision=Decision(sign, adjusted[name], critical))
+    return decided
+
+
+def _holm(p_values: Mapping[str, float]) -> dict[str, float]:
     ordered = sorted(p_values, key=lambda name: p_values[name])
     adjusted: dict[str, float] = {}
     largest = 0.0
     for place, name in enumerate(ordered):
         largest = max(largest, min(1.0, (len(ordered) - place) * p_values[name]))
         adjusted[name] = largest
-    decided: dict[str, Contrast] = {}
-    for name, each in contrasts.items():
-        leans = tests[name].leans if adjusted[name] <= alpha else 0
-        sign = leans if leans and leans == each.side else 0
-        critical = _critical([p for other, p in p_values.items() if other != name], alpha)
-        decided[name] = replace(each, decision=Decision(sign, adjusted[name], critical))
-    return decided
+    return adjusted
 
 
 def turn(isolated: Contrast, shared: Contrast, change: Contrast) -> Turn:

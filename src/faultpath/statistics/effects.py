@@ -18,14 +18,25 @@ from faultpath.statistics.inputs import (
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import SceneValues
 
+BETTING = "confidence sequence by betting on scene means"
+
 
 def success_effect(
-    first: Numbers, second: Numbers, resamples: Resamples, *, resample_seeds: bool = False
+    first: Numbers,
+    second: Numbers,
+    resamples: Resamples,
+    *,
+    resample_seeds: bool = False,
+    sequential: bool = False,
 ) -> Contrast:
-    """Return the difference in success in percentage points, from binary [scenes, seeds]."""
+    """Return the difference in success in percentage points, from binary [scenes, seeds].
+
+    ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
+    hold at whatever scene one stops.
+    """
     one, two = paired_binary(first, second)
     # Summed first, so that wins and losses of a scene cancel exactly.
-    scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0)
+    scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0, sequential)
     found = _mean(one - two, resamples, "pp", scenes, resample_seeds)
     return replace(found, arms=(one, two))
 
@@ -92,6 +103,8 @@ def _method(scenes: SceneValues | None, n_seeds: int, resample_seeds: bool) -> s
     drawn = f"percentile bootstrap of {'scenes and seeds' if resample_seeds else 'scenes'}"
     if scenes is None:
         return drawn
+    if scenes.sequential:
+        return BETTING
     name = "Wilson" if scenes.centre else "Tango"
     seeds = f"score on scene means ({name}'s, cluster-robust)"
     score = f"score ({name})" if n_seeds == 1 else seeds

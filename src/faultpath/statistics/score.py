@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.statistics import betting
 from faultpath.statistics.distributions import normal_quantile
 from faultpath.statistics.inputs import Floats
 
@@ -40,10 +41,19 @@ class SceneValues:
     far: float
     scale: float = 1.0
     centre: float = 0.0
+    sequential: bool = False
+    """Whether the number of scenes was not fixed beforehand: see `betting`."""
 
     @classmethod
-    def paired(cls, values: Floats, bound: float, scale: float = 1.0) -> "SceneValues":
-        """Return differences between two arms; what was not observed lies within `reach`."""
+    def paired(
+        cls, values: Floats, bound: float, scale: float = 1.0, sequential: bool = False
+    ) -> "SceneValues":
+        """Return differences between two arms; what was not observed lies within `reach`.
+
+        Of a ``sequential`` audit it may lie anywhere within the bound.
+        """
+        if sequential:
+            return cls(values, bound, far=bound, scale=scale, sequential=True)
         kinds, counts = np.unique(values, return_counts=True)
         often = counts.astype(np.float64)
         # Summed in both orders, since swapping the arms turns the order round.
@@ -51,11 +61,20 @@ class SceneValues:
         return cls(values=values, bound=bound, far=float(far), scale=scale)
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
-        """Return the score interval of the mean, in the unit of the effect."""
-        values, counts = np.unique(self.values, return_counts=True)
-        ends = interval(values, counts.astype(np.float64), np.asarray(self.far), quantile(level))
+        """Return the interval of the mean, in the unit of the effect: by score, or by betting."""
+        values, counts = self.kinds()
+        far = np.asarray(self.far)
+        if self.sequential:
+            ends = betting.interval(values, counts, far, level)
+        else:
+            ends = interval(values, counts, far, quantile(level))
         low, high = (self.scale * (float(end) + self.centre) for end in ends)
         return low + 0.0, high + 0.0  # never -0.0
+
+    def kinds(self) -> tuple[Floats, Floats]:
+        """Return the different values, ascending, and how often each occurred."""
+        values, counts = np.unique(self.values, return_counts=True)
+        return values, counts.astype(np.float64)
 
 
 def combined(weights: Sequence[float], parts: Sequence[SceneValues]) -> SceneValues:
@@ -64,7 +83,7 @@ def combined(weights: Sequence[float], parts: Sequence[SceneValues]) -> SceneVal
     size = np.abs(np.array(weights))
     bound = float(size @ np.array([part.bound for part in parts]))
     far = float(size @ np.array([part.far for part in parts]))
-    return SceneValues(values, bound, far, parts[0].scale)
+    return SceneValues(values, bound, far, parts[0].scale, sequential=parts[0].sequential)
 
 
 def quantile(level: float) -> float:

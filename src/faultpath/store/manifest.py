@@ -62,6 +62,7 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
     same_study = (
         ("study", found.study.name, asked.study.name),
         ("set of variants, faults or seeds", found.study.rows, asked.study.rows),
+        ("number of scenes from look to look", found.study.look, asked.study.look),
     )
     differences = [
         what

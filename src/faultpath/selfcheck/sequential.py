@@ -1,0 +1,180 @@
+"""What sequential audits announce, and how many scenes they take, with a look after every scene."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.record.family import ALPHA, SHARED, alpha_shares
+from faultpath.selfcheck.audits import PATHS
+from faultpath.selfcheck.model import Measured, Setting
+from faultpath.selfcheck.populations import Population
+from faultpath.statistics.betting import log_capitals
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.power import rule_power
+from faultpath.streams import generator
+
+ANY_LOOK, EVERY_LOOK = "sequential, equal arms", "sequential, coverage"
+TAKEN, DECIDED = "sequential, scenes taken", "sequential, decided"
+POWER = 0.9
+"""At which the fixed number of scenes is planned that a sequential audit is compared with."""
+Bools = NDArray[np.bool_]
+
+
+def against(values: Floats, mean: float, bound: float, alpha: float) -> Bools:
+    """Return [..., scenes]: whether after each scene a mean is doubted at ``alpha``, two-sided."""
+    sides = above(values, mean, alpha, bound), above(-values, -mean, alpha, bound)
+    return np.logical_or(*sides)
+
+
+def above(values: Floats, mean: float, alpha: float, bound: float = 1.0) -> Bools:
+    """Return [..., scenes]: whether after each scene the truth is known to lie above a mean."""
+    needed = np.log(2.0 / alpha)
+    return np.asarray(log_capitals(values, mean, bound) >= needed, dtype=np.bool_)
+
+
+def announced(effects: Mapping[str, Floats], primary: str) -> Bools:
+    """Return [scenes]: whether after each scene an audit announces anything.
+
+    ``effects`` [scenes] are what a scene shows on each path, a mean over seeds; the rule is that of
+    `record.family.decide_paths` with the shares of a sequential audit.
+    """
+    shares = alpha_shares(list(effects), primary)
+    found = np.zeros(len(effects[primary]), dtype=np.bool_)
+    for name, share in shares.items():
+        kind, _, path = name.partition("/")
+        values, bound = effects[path], 1.0
+        if kind == "change":
+            values, bound = effects[SHARED] - values, 2.0
+        found |= against(values, 0.0, bound, ALPHA * share)
+    return found
+
+
+@dataclass(frozen=True)
+class AnyLook:
+    """Sequential audits with four paths of arms that do not differ."""
+
+    scenes: int
+    population: Population
+    together: float
+    """Chance that a scene is the same on all paths, as where the fault changes nothing."""
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return the share of audits that announce anything at any look."""
+        stream = generator("selfcheck", repr(self), 0)
+        n, seeds = self.scenes, self.population.seeds
+        false = 0
+        for _ in range(self.runs):
+            common = stream.random((n, seeds + 2))
+            effects: dict[str, Floats] = {}
+            for path in PATHS:
+                same = stream.random((n, 1)) < self.together
+                draws: Floats = np.where(same, common, stream.random((n, seeds + 2)))
+                effects[path] = self.population.outcomes(draws).mean(axis=1)
+            false += bool(announced(effects, SHARED).any())
+        setting = {
+            "scenes": n,
+            "seeds": seeds,
+            "rate": self.population.rate,
+            "paths alike": self.together,
+        }
+        return Measured(ANY_LOOK, setting, false / self.runs, self.runs)
+
+
+@dataclass(frozen=True)
+class EveryLook:
+    """The confidence sequence of an effect, looked at after every scene."""
+
+    scenes: int
+    population: Population
+    runs: int
+
+    def measure(self) -> Measured:
+        """Return the share of audits in which it holds the truth at every look.
+
+        At the look at which an audit stops it then does at least as often, whatever it stops for.
+        """
+        stream = generator("selfcheck", repr(self), 0)
+        truth = self.population
+        missed = sum(
+            bool(against(_drawn(stream, truth, self.scenes), truth.mean, 1.0, ALPHA).any())
+            for _ in range(self.runs)
+        )
+        setting = {
+            "scenes": self.scenes,
+            "seeds": truth.seeds,
+            "rate": truth.rate,
+            "lean": truth.lean,
+            "alike": truth.alike,
+        }
+        return Measured(EVERY_LOOK, setting, 1.0 - missed / self.runs, self.runs)
+
+
+@dataclass(frozen=True)
+class Taken:
+    """Sequential audits of six contrasts whose primary one is a true difference, one seed.
+
+    They may take as many scenes as one with a fixed number needs to detect it with `POWER`.
+    """
+
+    rate: float
+    difference: float
+    runs: int
+    decided: bool
+    """Whether to measure how many decide, rather than how many scenes they take."""
+
+    def measure(self) -> Measured:
+        """Return the share of audits that decide, or the mean share of the scenes they take."""
+        most = fixed_scenes(self.rate, self.difference)
+        stream = generator("selfcheck", f"taken {self.rate} {self.difference}", 0)
+        truth = Population(self.rate, self.difference / self.rate)
+        alpha = ALPHA * alpha_shares(PATHS, SHARED)[f"effect/{SHARED}"]
+        taken, decided = 0, 0
+        for _ in range(self.runs):
+            found = against(_drawn(stream, truth, most), 0.0, 1.0, alpha)
+            decided += bool(found.any())
+            taken += int(found.argmax()) + 1 if found.any() else most
+        setting: Setting = {
+            "rate": self.rate,
+            "difference pp": round(100 * self.difference, 1),
+            "fixed scenes": most,
+        }
+        if self.decided:
+            return Measured(DECIDED, setting, decided / self.runs, self.runs)
+        return Measured(TAKEN, setting, taken / most / self.runs, self.runs)
+
+
+def fixed_scenes(rate: float, difference: float) -> int:
+    """Return how many scenes detect a difference with `POWER`, as the first of Holm's six."""
+    alpha = ALPHA / len(alpha_shares(PATHS, SHARED))
+    n = 10
+    while rule_power(n, rate, difference, alpha) < POWER:
+        n += 1
+    return n
+
+
+def _drawn(stream: np.random.Generator, truth: Population, scenes: int) -> Floats:
+    return truth.outcomes(stream.random((scenes, truth.seeds + 2))).mean(axis=1)
+
+
+def any_look_grid(runs: int) -> Iterator[AnyLook]:
+    """Yield sequential audits of equal arms."""
+    sizes = ((25, 1), (100, 1), (300, 1), (100, 3))
+    for (n, seeds), rate, together in product(sizes, (0.05, 0.3), (0.0, 0.7)):
+        yield AnyLook(n, Population(rate, 0.0, seeds, 0.5), together, runs)
+
+
+def every_look_grid(runs: int) -> Iterator[EveryLook]:
+    """Yield populations for the confidence sequence."""
+    for seeds, rate, lean in product((1, 3), (0.02, 0.1, 0.3, 0.6), (0.0, 0.5, 1.0)):
+        yield EveryLook(300, Population(rate, lean, seeds, 0.5 if seeds > 1 else 0.0), runs)
+
+
+def taken_grid(runs: int) -> Iterator[Taken]:
+    """Yield true differences, from small and noisy to large."""
+    sizes = ((0.2, 0.1), (0.4, 0.1), (0.2, 0.2), (0.4, 0.2), (0.4, 0.3), (0.5, 0.5), (0.7, 0.5))
+    for decided, (rate, difference) in product((False, True), sizes):
+        yield Taken(rate, difference, runs, decided)

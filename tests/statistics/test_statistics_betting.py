@@ -1,0 +1,162 @@
+"""Bets on the mean of scenes: fair, the same in any order, and one with their intervals."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from faultpath.statistics import (
+    Resamples,
+    break_even,
+    change,
+    decide_family,
+    mixture_curve,
+    success_effect,
+    with_test,
+)
+from faultpath.statistics.betting import fewest_scenes, log_capital, log_capitals, p_value
+from faultpath.streams import generator
+
+
+def effect(first, second):
+    resamples = Resamples.draw("betting", len(first), n_resamples=1)
+    return with_test(success_effect(first, second, resamples, sequential=True))
+
+
+def arms(wins: int, losses: int, n: int):
+    scene = np.arange(n)
+    return scene < wins, (scene >= wins) & (scene < wins + losses)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "chances"),
+    [
+        ((-1.0, 0.0, 1.0), (0.2, 0.5, 0.3)),
+        ((-1.0, -0.5, 0.5, 1.0), (0.1, 0.4, 0.3, 0.2)),
+        ((0.0, 1.0), (0.9, 0.1)),
+    ],
+)
+def test_a_bet_on_the_true_mean_is_fair_and_on_more_is_a_loss(sizes, chances):
+    """Every sequence of five scenes, weighed with its chance."""
+    mean = float(np.dot(sizes, chances))
+    fair, loss = 0.0, 0.0
+    for drawn in product(range(len(sizes)), repeat=5):
+        chance = float(np.prod([chances[i] for i in drawn]))
+        values = np.array([sizes[i] for i in drawn])
+        fair += chance * np.exp(log_capital(values, np.ones(5), mean, 1.0))
+        loss += chance * np.exp(log_capital(values, np.ones(5), mean + 0.1, 1.0))
+    assert fair == pytest.approx(1.0)
+    assert loss < 0.95
+
+
+def test_a_bet_on_discordant_pairs_is_robbins_mixture():
+    """Of one seed: the mean of (1 + c)^wins (1 - c)^losses over the arcsine law, by integration."""
+    angle = (np.arange(20_000) + 0.5) * np.pi / 40_000
+    for wins, losses in ((0, 0), (7, 0), (5, 3), (2, 9)):
+        stakes = np.sin(angle)
+        exact = float(((1.0 + stakes) ** wins * (1.0 - stakes) ** losses).mean())
+        counts = np.array([losses, 4.0, wins])
+        found = float(np.exp(log_capital(np.array([-1.0, 0.0, 1.0]), counts, 0.0, 1.0)))
+        assert found == pytest.approx(exact, rel=1e-2)
+
+
+def test_evidence_does_not_depend_on_the_order_of_scenes():
+    values = generator("betting", "order", 0).choice([-1.0, -0.5, 0.0, 0.5, 1.0], 60)
+    kinds, counts = np.unique(values, return_counts=True)
+    for ordered in (values, values[::-1], np.sort(values)):
+        last = log_capitals(ordered, 0.1, 1.0)[-1]
+        assert last == pytest.approx(float(log_capital(kinds, counts, 0.1, 1.0)), abs=1e-9)
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4, 14])
+def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
+    for wins in range(scenes + 1):
+        for losses in range(scenes + 1 - wins):
+            found = effect(*arms(wins, losses, scenes))
+            assert found.test is not None
+            assert (found.side != 0) == (found.test.p_value <= 0.05)
+            assert found.side in (0, found.test.leans)
+            assert found.test.leans == np.sign(wins - losses)
+            low, high = found.interval
+            assert -100.0 <= low < high <= 100.0
+            assert low <= found.value <= high
+
+
+@given(st.integers(0, 2**32), st.integers(1, 3))
+def test_swapping_the_arms_mirrors_and_copying_a_seed_changes_nothing(seed, seeds):
+    stream = generator("betting", "mirror", seed)
+    first, second = stream.random((2, 30, seeds)) < 0.5
+    found, mirrored = effect(first, second), effect(second, first)
+    copied = effect(np.tile(first, (1, 2)), np.tile(second, (1, 2)))
+    low, high = found.interval
+    assert mirrored.interval == (-high, -low)
+    assert mirrored.test.p_value == found.test.p_value
+    assert copied.interval == pytest.approx(found.interval, abs=1e-9)
+    assert copied.test.p_value == pytest.approx(found.test.p_value)
+
+
+def test_no_scene_that_differs_and_scenes_that_all_do_leave_room():
+    none = effect(*arms(0, 0, 100))
+    assert (none.test.p_value, none.test.leans) == (1.0, 0)
+    assert -6.0 < none.interval[0] < -3.0 < 3.0 < none.interval[1] < 6.0
+    assert 85.0 < effect(*arms(100, 0, 100)).interval[0] < 97.0
+    assert effect(*arms(100, 0, 100)).interval[1] == pytest.approx(100.0)
+
+
+@pytest.mark.parametrize("alpha", [0.05, 0.025, 0.005])
+def test_fewest_scenes_are_those_of_a_unanimous_win(alpha):
+    n = fewest_scenes(alpha)
+    assert p_value(np.ones(1), np.full(1, n), 1.0)[0] <= alpha
+    assert p_value(np.ones(1), np.full(1, n - 1.0), 1.0)[0] > alpha
+
+
+def test_intervals_are_wider_than_for_a_fixed_number_of_scenes():
+    stream = generator("betting", "wider", 0)
+    first, second = stream.random((80, 1)) < 0.6, stream.random((80, 1)) < 0.4
+    resamples = Resamples.draw("betting", 80, n_resamples=1)
+    low, high = success_effect(first, second, resamples).interval
+    wide = effect(first, second).interval
+    assert wide[0] < low < high < wide[1]
+
+
+def test_the_band_of_a_mixture_touches_0_exactly_where_it_is_undecided():
+    stream = generator("betting", "mixture", 0)
+    correct = effect(*(stream.random((120, 1)) < [[[0.6]], [[0.9]]]))
+    faulty = effect(*(stream.random((120, 1)) < [[[0.9]], [[0.4]]]))
+    found = break_even(correct, faulty)
+    ((start, end),) = found.pieces
+    for p, _, low, high in mixture_curve(correct, faulty, points=201):
+        if min(abs(p - start), abs(p - end)) > 1e-6:
+            assert (low <= 0.0 <= high) == (start < p < end)
+    ends = mixture_curve(correct, faulty, points=2)
+    assert ends[0][2:] == pytest.approx(correct.interval)
+    assert ends[1][2:] == pytest.approx(faulty.interval)
+    assert "betting" in found.method
+
+
+def test_each_contrast_stands_at_its_own_share():
+    one, two = effect(*arms(9, 0, 40)), effect(*arms(0, 9, 40))
+    family = {"one": one, "two": two, "change": with_test(change(one, two))}
+    shares = {"one": 0.5, "two": 0.1, "change": 0.1}
+    decided = decide_family(family, 0.05, shares)
+    for name, each in decided.items():
+        p = family[name].test.p_value
+        assert each.decision.adjusted_p == pytest.approx(min(1.0, p / shares[name]))
+        assert each.decision.critical_p == pytest.approx(0.05 * shares[name])
+        assert each.sign == (family[name].test.leans if p <= 0.05 * shares[name] else 0)
+    assert (decided["one"].sign, decided["two"].sign) == (1, 0)
+
+
+def test_a_look_after_every_scene_announces_too_much_in_at_most_5_percent():
+    """Fair scenes of three kinds, and a library that is even as a whole, in random order."""
+    stream = generator("betting", "looks", 0)
+    needed = np.log(2.0 / 0.05)
+    drawn = stream.choice([-1.0, 0.0, 1.0], (3000, 120), p=[0.2, 0.6, 0.2])
+    library = np.repeat([-1.0, 0.0, 1.0], [20, 60, 20])
+    ordered = stream.permuted(np.tile(library, (3000, 1)), axis=1)
+    for values in (drawn, ordered):
+        ever = np.maximum(log_capitals(values, 0.0, 1.0), log_capitals(-values, 0.0, 1.0)) >= needed
+        assert ever.any(axis=1).mean() < 0.05 + 3 * np.sqrt(0.05 * 0.95 / 3000)
+        assert ever.any(axis=1).mean() > 0.002
