@@ -63,7 +63,7 @@ def trials(record: Record) -> str:
     names = list(record["space"])
     rows = [
         {
-            "name": f"trial {trial['number']}",
+            "name": f"trial {trial['number']}" + (", by hand" if "by_hand" in trial else ""),
             "scenes": str(trial["rungs"][-1]["scenes"]),
             "distance": wording.plain(trial["rungs"][-1]["distance"], 2),
             **{name: _value(trial["point"][name]) for name in names},
