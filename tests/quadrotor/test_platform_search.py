@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from faultpath.quadrotor.platforms import FIRST
+from faultpath.quadrotor.platforms import FIRST, MATCHED
 from faultpath.work import Here
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -131,6 +131,16 @@ def test_a_point_keeps_the_winds_accelerations_and_the_collection_has_both_ends(
     gentle = space.collection_of(0.0)
     assert gentle.perturbation.thrust_sigma == 0.08
     assert gentle.controller.speed_mps == (1.0, 3.4)
+
+
+def test_the_frozen_platform_is_the_best_finalist():
+    import platform_space as space
+
+    record = json.loads((ROOT / "docs/design/platform-search/7-matched.json").read_text())
+    finalists = [trial for trial in record["trials"] if "final" in trial]
+    assert len(finalists) > 1
+    best = min(finalists, key=lambda trial: trial["final"]["distance"])
+    assert space.platform_of(best["point"]) == MATCHED
 
 
 def test_a_search_that_was_killed_goes_on_as_if_it_had_not_been(tmp_path, monkeypatch):

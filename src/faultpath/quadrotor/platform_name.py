@@ -9,6 +9,7 @@ class PlatformName(StrEnum):
     """Platforms that are frozen; `platforms.PLATFORMS` says what each is."""
 
     FIRST = "first"
+    MATCHED = "matched"
 
 
 DEFAULT_NAME = PlatformName.FIRST
