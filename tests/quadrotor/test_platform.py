@@ -10,7 +10,7 @@ from flights import HELD_OUT, STEPS, fault, fly
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import models
-from faultpath.quadrotor.checkpoint import shipped_folder
+from faultpath.quadrotor.checkpoint import checkpoint_path, shipped_folder
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import PerceptionSettings
 from faultpath.quadrotor.planner import BlendedGoal, CostWeights, NavigationCost
@@ -229,3 +229,10 @@ def test_known_altitudes_pass_a_tap_of_their_own():
     lifted, _ = fly(seeing, "dki", HELD_OUT[:2], [raised])
     for one, other in zip(exact, lifted, strict=True):
         assert one.metrics["terminal_distance_m"] != other.metrics["terminal_distance_m"]
+
+
+def test_a_model_that_a_platform_lacks_is_named_with_the_command_that_fits_it(tmp_path):
+    with pytest.raises(UserError, match=r"wm-a.*'other'.*--platform other --ship` makes it"):
+        checkpoint_path("wm-a", 7, shipped_folder().parent / "other")
+    with pytest.raises(UserError, match=rf"in {tmp_path}.*--out {tmp_path}` makes it"):
+        checkpoint_path("wm-a", 7, tmp_path)

@@ -23,16 +23,20 @@ def shipped_folder(platform: str = DEFAULT_NAME) -> Path:
 
 
 def checkpoint_path(name: str, seed: int, folder: Path | None = None) -> Path:
-    """Return the weights file of a model, by default among those of the first platform.
+    """Return the weights file of a model, by default among those of the default platform.
 
     Raises `UserError` when it is not there.
     """
-    path = (folder or shipped_folder()) / f"{stem(name, seed)}.safetensors"
+    shipped = shipped_folder()
+    folder = folder or shipped
+    path = folder / f"{stem(name, seed)}.safetensors"
     if not path.is_file():
-        place = "with the package" if folder is None else f"in {folder}"
+        where, how = f"in {folder}", f"--out {folder}"
+        if folder.parent == shipped.parent:
+            where, how = f"for the platform '{folder.name}'", f"--platform {folder.name} --ship"
         raise UserError(
-            f"there is no checkpoint of '{name}' with seed {seed} {place}: "
-            f"`faultpath train quadrotor {name} --seed {seed} --ship` makes it."
+            f"there is no checkpoint of '{name}' with seed {seed} {where}: "
+            f"`faultpath train quadrotor {name} --seed {seed} {how}` makes it."
         )
     return path
 
