@@ -50,4 +50,10 @@ def test_a_reference_map_follows_from_its_outcomes(
     assert again.sentences == record.sentences
     assert again.headline == record.headline
     for one, two in zip(again.points, record.points, strict=True):
-        assert one.model_dump() == pytest.approx(two.model_dump(), abs=1e-6)
+        assert (one.errors, one.sign, one.won, one.lost) == (
+            two.errors,
+            two.sign,
+            two.won,
+            two.lost,
+        )
+        assert (one.low, one.high) == pytest.approx((two.low, two.high), abs=1e-6)
