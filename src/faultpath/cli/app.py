@@ -22,6 +22,7 @@ from faultpath.cli import (
     reproduce,
     scenes,
     selfcheck,
+    trace,
     train,
 )
 from faultpath.cli.system_flags import with_system_flags
@@ -56,6 +57,7 @@ _OF_SYSTEMS = {
     "interface": interface.command,
     "map": map.command,
     "probe": probe.command,
+    "trace": trace.command,
 }
 _OTHERS = {
     "claims": claims.command,

@@ -8,7 +8,6 @@ from faultpath.report.interface_layout import (
     SOURCE_HEIGHT,
     Layout,
     ModuleBlock,
-    Tap,
     lay_out,
 )
 from faultpath.report.interface_wiring import StruckPath, Who, Wiring, hits
@@ -32,14 +31,15 @@ def draw_interface(
     """Return the drawing as SVG markup: a file of its own, or a part of a page with its styles.
 
     `variants` are baseline and repair: what only one of them uses carries its letter, what neither
-    uses is dashed. Every struck tap carries the numbers of the paths that strike it, with a letter
-    where one variant alone was struck; the key stands below.
+    uses is dashed. It may be one variant alone, as it ran: what it did not use is dashed. Every
+    struck tap carries the numbers of the paths that strike it, with a letter where one variant
+    alone was struck; the key stands below.
     """
     layout, wiring = lay_out(interface), Wiring(variants)
     lanes = len(interface.reconstructions)
     key_top = layout.bottom + 18 + _LANE * lanes + (12 if lanes else 0)
     width = _TAP_X + _BLOCK_W + 14 + _LANE * max(lanes, 1)
-    height = key_top + 28 + 20 * (len(struck) + bool(variants))
+    height = key_top + 28 + 20 * (len(struck) + (len(variants) > 1))
     svg = Svg(width, height, *_told(interface, struck, wiring))
     for x, words in ((_SOURCE_X, "Sources"), (_CHANNEL_X, "Channels"), (_TAP_X, "Taps, by module")):
         svg.text(x, 18, words, "head")
@@ -62,12 +62,12 @@ def draw_interface(
 def _told(interface: Interface, struck: Sequence[StruckPath], wiring: Wiring) -> tuple[str, str]:
     def fed(channel: Channel) -> str:
         feeding = [(s, wiring.feeds(channel, s)) for s in channel.sources]
-        used = [f"{s}{by.words}" for s, by in feeding if by is not Who.NEITHER]
+        used = [f"{s}{wiring.words(by)}" for s, by in feeding if by is not Who.NEITHER]
         return " and ".join(used) or "nothing"
 
     reads = "; ".join(
         f"{channel.name} from {fed(channel)} to "
-        + ", ".join(f"{c}{wiring.tap((channel.name, c)).words}" for c in channel.consumers)
+        + ", ".join(f"{c}{wiring.words(wiring.tap((channel.name, c)))}" for c in channel.consumers)
         for channel in interface.channels
     )
     told = "".join(
@@ -114,7 +114,7 @@ def _source_wires(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring
             by = wiring.feeds(channel, name)
             svg.path(_curve(start, end), _wire(by))
             middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2 + 4)
-            _letter(svg, by, middle, f"{name} feeds {channel.name}{by.words}")
+            _letter(svg, by, middle, f"{name} feeds {channel.name}{wiring.words(by)}")
 
 
 def _tap_wires(svg: Svg, layout: Layout, struck: Sequence[StruckPath], wiring: Wiring) -> None:
@@ -151,12 +151,12 @@ def _module(svg: Svg, block: ModuleBlock, struck: Sequence[StruckPath], wiring: 
         found, by = hits(tap, struck), wiring.tap(tap)
         room = _BLOCK_W - _READS_X - 14 - sum(_tag_width(*hit) + 2 for hit in found)
         svg.text(_TAP_X + _READS_X, y + 4, shortened(channel, room, 11), "small soft")
-        _letter(svg, by, (_TAP_X + _READS_X - 10, y + 4), f"{channel} at {consumer}{by.words}")
-        _tap(svg, tap, y, found, by)
+        tip = f"{channel} at {consumer}{wiring.words(by)}"
+        _letter(svg, by, (_TAP_X + _READS_X - 10, y + 4), tip)
+        _tap(svg, y, found, by, tip)
 
 
-def _tap(svg: Svg, tap: Tap, y: float, found: Sequence[tuple[int, Who]], by: Who) -> None:
-    tip = f"{tap[0]} at {tap[1]}{by.words}"
+def _tap(svg: Svg, y: float, found: Sequence[tuple[int, Who]], by: Who, tip: str) -> None:
     if not found:
         svg.circle((_TAP_X, y), 3.5, "tap unread" if by is Who.NEITHER else "tap", tip=tip)
         return
@@ -218,7 +218,7 @@ def _reconstructions(svg: Svg, interface: Interface, layout: Layout, wiring: Wir
         svg.polygon(
             [(_SOURCE_X - 1, end), (_SOURCE_X - 9, end - 4), (_SOURCE_X - 9, end + 4)], "arrow"
         )
-        words = f"{module} reconstructs {source}{wiring.module(module).words}"
+        words = f"{module} reconstructs {source}{wiring.words(wiring.module(module))}"
         room = text_width(words, 11)
         middle = _CHANNEL_X + _CHANNEL_W / 2
         svg.rect(middle - room / 2 - 4, below - 7, room + 8, 14, "paper")
@@ -236,12 +236,13 @@ def _key(
     svg.circle((x + 4, y - 4), 3.5, "tap")
     svg.text(x + 16, y, "tap", "small soft")
     svg.path(f"M{x + 56} {y - 4}h24", "wire other")
-    other = "used by neither variant" if variants else "other source that may feed the channel"
+    unused = "used by neither variant" if len(variants) > 1 else "declared, not read here"
+    other = unused if variants else "other source that may feed the channel"
     svg.text(x + 86, y, other, "small soft")
     if reconstructs:
         svg.path(f"M{x + 322} {y - 4}h26", "back")
         svg.text(x + 354, y, "reconstruction", "small soft")
-    if variants:
+    if len(variants) > 1:
         y += 20
         for left, by, variant in zip(
             (x, x + 420), (Who.BASELINE, Who.REPAIR), variants, strict=True

@@ -44,7 +44,11 @@ class Wiring:
     """How baseline and repair are wired; without them, how the interface declares it."""
 
     variants: tuple[VariantShown, ...] = ()
-    """Baseline and repair, or none."""
+    """Baseline and repair, one variant alone, as it ran, or none."""
+
+    def words(self, by: Who) -> str:
+        """Say behind a name whom it concerns; see `Who.words`."""
+        return " (not read)" if by is Who.NEITHER and len(self.variants) == 1 else by.words
 
     def tap(self, tap: Tap) -> Who:
         """Return who reads at a tap."""
@@ -67,7 +71,8 @@ class Wiring:
         )
 
     def _who(self, holds: Callable[[VariantShown], bool]) -> Who:
-        return who(*map(holds, self.variants)) if self.variants else Who.BOTH
+        held = tuple(map(holds, self.variants))
+        return who(held[0], held[-1]) if held else Who.BOTH
 
 
 @dataclass(frozen=True)

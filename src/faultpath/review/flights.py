@@ -58,6 +58,8 @@ class Flown:
     reads: tuple[Read, ...] = ()
     refused: Mapping[tuple[str, str], str] = field(default_factory=dict[tuple[str, str], str])
     """See `Trace.refused`."""
+    truths: frozenset[tuple[str, str]] = frozenset()
+    """See `Trace.truths`."""
     error: str = ""
     """What stopped it."""
     blames: str = ""
@@ -84,9 +86,12 @@ def fly_here(system: System, flight: Flight) -> Flown:
         lost = next((o for o in found.outcomes if o.failed), None)
         error = f"{lost.error} in scene {lost.scene!r}" if lost else ""
         blames = "trials" if lost else ""
-        return Flown(found.outcomes, found.taps, trace.reads, refused, error, blames)
-    error, blames = ("", "") if found is None else _said(found)
-    return Flown(reads=trace.reads, refused=refused, error=error, blames=blames)
+        outcomes, counts = found.outcomes, found.taps
+    else:
+        outcomes, counts = (), ()
+        error, blames = ("", "") if found is None else _said(found)
+    truths = frozenset(trace.truths)
+    return Flown(outcomes, counts, trace.reads, refused, truths, error, blames)
 
 
 def _said(found: Raised | Wrong) -> tuple[str, str]:

@@ -22,35 +22,41 @@ def reads(seen: Seen) -> Check:
     count = 0
     for variant, flown in seen.firsts():
         failures |= dict.fromkeys(
-            f"Variant '{variant}', {said[0].lower()}{said[1:]}." for said in flown.refused.values()
-        )
-        failures |= dict.fromkeys(
             unread(
                 (variant, each)
                 for each in flown.counts
                 if (each.channel, each.consumer) not in flown.refused
             )
         )
-        failures |= dict.fromkeys(_unused(variant, flown))
-        failures |= dict.fromkeys(_two_readings(variant, flown))
+        failures |= dict.fromkeys(differences(variant, flown))
         count += len({read.tap for read in flown.reads})
     says = f"{count} taps declared and read" if count else "no variant flew to its end"
     return Check(name="declared reads", says=says, failures=tuple(failures), judged=count > 0)
 
 
-def _unused(variant: str, flown: Flown) -> Iterator[str]:
+def differences(variant: str, flown: Flown) -> dict[str, tuple[tuple[str, str], ...]]:
+    """Return how a flight differs from what is declared, in sentences, each with its taps.
+
+    What never read at all is not among it: a flight may be too short to tell.
+    """
+    refused = {f"Variant '{variant}', {said}.": (tap,) for tap, said in flown.refused.items()}
+    return refused | dict(_unused(variant, flown)) | dict(_two_readings(variant, flown))
+
+
+def _unused(variant: str, flown: Flown) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     looked: dict[tuple[str, str], bool] = {}
     for read in flown.reads:
         looked[read.tap] = looked.get(read.tap, False) or read.used is not False
     for (channel, consumer), used in looked.items():
         if not used:
-            yield (
+            said = (
                 f"Variant '{variant}' hands '{channel}' to {consumer}, which never looks at it; "
                 "take the port out of the module's reads, or use what comes there."
             )
+            yield said, ((channel, consumer),)
 
 
-def _two_readings(variant: str, flown: Flown) -> Iterator[str]:
+def _two_readings(variant: str, flown: Flown) -> Iterator[tuple[str, tuple[tuple[str, str], ...]]]:
     """Name channels that bring their consumers different readings of one step."""
     first: dict[tuple[str, str, int, int], Read] = {}
     told: set[str] = set()
@@ -60,11 +66,12 @@ def _two_readings(variant: str, flown: Flown) -> Iterator[str]:
         one = first.setdefault((read.channel, read.source, read.step, read.valid_step), read)
         if one.given != read.given:
             told.add(read.channel)
-            yield (
+            said = (
                 f"Variant '{variant}' gives {one.consumer} and {read.consumer} different readings "
                 f"of channel '{read.channel}' at step {read.step}; deliver one reading to both, or "
                 "declare a channel for each."
             )
+            yield said, (one.tap, read.tap)
 
 
 def delivery(seen: Seen) -> tuple[Check, tuple[Struck, ...]]:

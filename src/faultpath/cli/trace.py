@@ -1,0 +1,72 @@
+"""`faultpath trace`: who read what, when, over a few steps."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import SET, path, settings
+
+FOUND = 1
+
+
+def command(
+    system: Annotated[
+        str, typer.Argument(help="`quadrotor`, `module:attribute` or `file.py:attribute`.")
+    ],
+    variant: Annotated[str | None, typer.Option(help="Variant; default the first.")] = None,
+    steps: Annotated[int, typer.Option(min=1, help="Control steps to trace.")] = 3,
+    scene: Annotated[str | None, typer.Option(help="Scene by its id; default the first.")] = None,
+    library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the trial.")] = 0,
+    fault: Annotated[
+        str | None, typer.Option(help="A fault, as in `audit`, to see whom it reaches.")
+    ] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    svg: Annotated[
+        Path | None, typer.Option(parser=path, help="Draw what ran into this SVG file.")
+    ] = None,
+) -> int:
+    """Print who read what, when, and draw the interface with what really ran. Exits with 1 where
+    that differs from what is declared."""
+    from faultpath.door.display import SafeConsole
+    from faultpath.door.systems import choose
+    from faultpath.faults import parse_fault
+    from faultpath.patience import patience
+    from faultpath.report.interface_trace import draw_trace, trace_table
+    from faultpath.review.tracing import trace_system
+    from faultpath.store import write_text
+    from faultpath.tables.terminal import STYLES, drawn
+
+    with patience(system, None):
+        chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
+    built = chosen.system
+    struck = fault and parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s)
+    trace = trace_system(
+        built,
+        chosen.spec,
+        variant or next(iter(built.variants)),
+        library,
+        scene,
+        steps,
+        seed,
+        struck or None,
+    )
+    console = SafeConsole()
+    if as_json:
+        typer.echo(trace.model_dump_json(indent=2))
+    else:
+        table = trace_table(trace)
+        console.print(drawn(table))
+        for said in (*table.notes, *trace.privileged):
+            console.print(said, markup=False)
+        for finding in trace.findings:
+            console.print(f"Found: {finding.says}", markup=False, style=STYLES["bad"])
+        if not trace.findings:
+            console.print("What ran is what is declared.", style=STYLES["good"])
+    if svg is not None:
+        write_text(svg, draw_trace(built.interface, trace))
+        if not as_json:
+            console.print(f"Written: {svg}", markup=False, soft_wrap=True)
+    return FOUND if trace.findings else 0
