@@ -5,6 +5,7 @@ import os
 import sys
 import time
 
+import numpy as np
 import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
@@ -24,6 +25,8 @@ class Unruly(ToySystem):
             match options["does"]:
                 case "hang":
                     time.sleep(600)
+                case "eat":
+                    np.empty(2**33, dtype=np.uint8)
                 case "exit":
                     sys.exit(int(options["status"]))
                 case "raise":
@@ -33,6 +36,13 @@ class Unruly(ToySystem):
 
 def unruly(**options: str) -> Unruly:
     return Unruly(**options)
+
+
+def bounded(**options: str) -> Unruly:
+    """Build one that says itself how much and how long."""
+    system = Unruly(**options)
+    system.memory_limit_gib, system.time_limit_s = 4.0, 8.0
+    return system
 
 
 def slow_worker(parent: str) -> ToySystem:
@@ -52,11 +62,22 @@ def _failed(result) -> list[str]:
     return [failure.scene for failure in result.failures]
 
 
-def test_a_scene_that_hangs_is_stopped_and_loses_itself_alone(tmp_path):
-    asked = _study(SCENES[4:6], does="hang", where="s05")
-    result = run_study(asked, tmp_path, workers=2, time_limit_s=10.0)
+@pytest.mark.parametrize("says", ["user", "system"])
+@pytest.mark.parametrize("does", ["eat", "hang"])
+def test_a_scene_that_takes_too_much_or_too_long_loses_itself_alone(tmp_path, does, says):
+    asked = _study(SCENES[4:6], does=does, where="s05")
+    limits = {"memory_limit_gib": 4.0, "time_limit_s": 8.0}
+    if says == "system":
+        system = asked.system.model_copy(update={"name": f"{__file__}:bounded"})
+        asked, limits = asked.model_copy(update={"system": system}), {}
+    result = run_study(asked, tmp_path, workers=1, **limits)
     assert _failed(result) == ["s05"]
-    assert "stopped at the time limit of 10 s" in result.failures[0].error
+    if does == "eat":
+        error = result.failures[0].error
+        assert error.startswith("_ArrayMemoryError: Unable to allocate 8.00 GiB"), error
+        assert error.endswith("(the worker was held to its memory limit of 4 GiB)")
+    else:
+        assert "stopped at the time limit of 8 s" in result.failures[0].error
 
 
 @pytest.mark.parametrize("workers", [0, 1])
@@ -104,9 +125,26 @@ def test_a_limit_that_is_none_is_refused(tmp_path, wrong):
         run_study(study(), tmp_path, workers=1, time_limit_s=wrong)
 
 
-def test_this_process_cannot_stop_itself(tmp_path):
+@pytest.mark.parametrize("limit", ["time_limit_s", "memory_limit_gib"])
+def test_this_process_cannot_stop_itself(tmp_path, limit):
     with pytest.raises(UserError, match="needs worker processes"):
-        run_study(study(), tmp_path, workers=0, time_limit_s=10.0)
+        run_study(study(), tmp_path, workers=0, **{limit: 10.0})
+
+
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        (math.nan, "the memory limit is nan GiB: give a number above 0"),
+        (-1.0, "the memory limit is -1 GiB: give a number above 0"),
+        (
+            0.01,
+            r"takes \d+\.\d\d GiB before it flies, and the memory limit is 0.01 GiB: allow more",
+        ),
+    ],
+)
+def test_a_memory_limit_that_nothing_can_keep_is_refused(tmp_path, limit, said):
+    with pytest.raises(UserError, match=said):
+        run_study(study(), tmp_path, workers=1, memory_limit_gib=limit)
 
 
 def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):

@@ -142,6 +142,22 @@ def test_what_depends_on_the_block_is_called_that_and_nothing_else(tmp_path, kin
     assert [each.why for each in result.flown_again if each.differs].count("repeat") == 0
 
 
+@pytest.mark.parametrize(("kind", "lost"), [("drifts", True), ("crowded", False)])
+def test_trials_that_do_not_repeat_are_void_and_the_rest_stands(tmp_path, kind, lost):
+    asked = _study(kind, rows=slice(None), block="4")
+    result = run_study(asked.model_copy(update={"scenes": SCENES}), tmp_path, workers=0)
+    (again,) = (each for each in result.flown_again if each.differs and each.why == "sample")
+    failed = {(each.arm.variant, each.scene) for each in result.failures}
+    assert failed == ({(again.variant, scene) for scene in again.scenes} if lost else set())
+    assert {each.error for each in result.failures} == (
+        {"it does not repeat: flown again in the same way, it came out otherwise"}
+        if lost
+        else set()
+    )
+    resumed = run_study(asked.model_copy(update={"scenes": SCENES}), tmp_path, workers=0)
+    assert (resumed.blocks_computed, resumed.outcomes_sha256) == (0, result.outcomes_sha256)
+
+
 def test_a_reading_that_is_written_to_after_its_delivery_is_named(tmp_path):
     (said,) = run_study(_study("", "plant"), tmp_path, workers=0).findings
     assert re.match(r"Results depend on who else holds a reading: scene 's\d\d' of 'plain' ", said)

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, numbers, path, settings, sizes
+from faultpath.cli.options import SET, MemoryLimit, TimeLimit, numbers, path, settings, sizes
 
 FAILED_TRIALS = 1
 
@@ -75,6 +75,7 @@ def command(
         ),
     ] = None,
     time_limit: TimeLimit = None,
+    memory_limit: MemoryLimit = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
@@ -102,6 +103,7 @@ def command(
         folder=out,
         workers=workers,
         time_limit_s=time_limit,
+        memory_limit_gib=memory_limit,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 

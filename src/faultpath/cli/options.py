@@ -26,6 +26,13 @@ TimeLimit = Annotated[
 """`--time-limit` of the verbs that fly."""
 
 
+MemoryLimit = Annotated[
+    float | None,
+    typer.Option(help="GiB that a worker process may take; a trial that asks for more fails."),
+]
+"""`--memory-limit` of the verbs that fly."""
+
+
 SET = "System option, key=value; for scripts, and where a flag above has the same name."
 """Help of `--set`."""
 

@@ -44,6 +44,7 @@ def audit(
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
     time_limit_s: float | None = None,
+    memory_limit_gib: float | None = None,
     progress: bool | Display = True,
     after: str | PathLike[str] | None = None,
     metric: str = "",
@@ -77,6 +78,7 @@ def audit(
             that the same call resumes, and finds what is finished.
         workers: Worker processes, 0 for this process alone; default one per core where that helps.
         time_limit_s: Seconds that a block of scenes may take in a worker.
+        memory_limit_gib: GiB that a worker may take; a trial that asks for more fails.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.
         metric: Of the system's own, told beside success.
@@ -130,7 +132,8 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     held = None if after is None or chosen.own else Path(after)
-    carry_out(built, asked, place, worker_count(built, chosen.workers), told, time_limit_s, held)
+    count = worker_count(built, chosen.workers)
+    carry_out(built, asked, place, count, told, time_limit_s, memory_limit_gib, held)
     run = Run(place, *read_run(place))
     run.report()
     return run

@@ -31,6 +31,7 @@ def carry_out(
     workers: int,
     told: Display,
     time_limit_s: float | None,
+    memory_limit_gib: float | None = None,
     after: Path | None = None,
 ) -> None:
     """Run, decide and write what the run folder's pages are made from.
@@ -45,7 +46,7 @@ def carry_out(
         told.say(f"Computing with {system.backend}.")
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(system, audit, folder, workers, told, time_limit_s, after)
+    result = _run(system, audit, folder, workers, told, time_limit_s, memory_limit_gib, after)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
@@ -62,6 +63,7 @@ def _run(
     workers: int,
     told: Display,
     time_limit_s: float | None,
+    memory_limit_gib: float | None,
     after: Path | None,
 ) -> RunResult:
     with told.progress("Running") as show:
@@ -79,6 +81,7 @@ def _run(
                 notice=told.say,
                 system=system,
                 time_limit_s=time_limit_s,
+                memory_limit_gib=memory_limit_gib,
                 after=after,
                 stop=audit.stops,
             )
@@ -99,6 +102,7 @@ def tell_failures(told: Display, result: RunResult, folder: Path) -> None:
         alike.setdefault(failure.error, []).append(failure)
     for error, (first, *more) in list(alike.items())[:_SHOWN]:
         rest = f" and {len(more)} more trials" if more else ""
-        told.say(f"  {first.scene}{rest}: {' '.join(error.split())} ({first.details})")
+        details = f" ({first.details})" if first.details else ""
+        told.say(f"  {first.scene}{rest}: {' '.join(error.split())}{details}")
     if len(alike) > _SHOWN:
         told.say(f"  and {len(alike) - _SHOWN} other errors, in {folder / 'failures'}")

@@ -23,7 +23,7 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
             return f"failed the second time ({reply.error}), which differs"
         case Died():
             return f"could not be flown again ({reply.how}), which differs"
-    pairs = [(one, two) for one, two in zip(first, second, strict=True) if not _same(one, two)]
+    pairs = _unlike(first, second)
     if not pairs:
         return ""
     scene = pairs[0][0].scene
@@ -34,6 +34,17 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
     parts += [f"{name} by up to {gaps[name]:.3g}" for name in numbers if gaps[name]]
     parts += [f"{name} too" for name in _HASHES if gaps[name]]
     return f"differs in {len(pairs)} of {len(first)}, {scene!r} for one ({', '.join(parts)})"
+
+
+def differing(first: Sequence[Outcome], reply: Reply) -> tuple[str, ...]:
+    """Return the scenes of which a second flight gave something else, or nothing."""
+    if not isinstance(reply, Done):
+        return tuple(outcome.scene for outcome in first)
+    return tuple(one.scene for one, _ in _unlike(first, reply.outcomes))
+
+
+def _unlike(first: Sequence[Outcome], second: Sequence[Outcome]) -> list[tuple[Outcome, Outcome]]:
+    return [(one, two) for one, two in zip(first, second, strict=True) if not _same(one, two)]
 
 
 def _gap(one: Outcome, two: Outcome, name: str) -> float:
@@ -62,7 +73,7 @@ def findings(flown: Iterable[FlownAgain]) -> tuple[str, ...]:
     """
     flown = tuple(flown)
     writes = tuple(_writes(each) for each in flown if each.wrote)
-    chance = tuple(_chance(each) for each in flown if each.differs and _whole(each))
+    chance = tuple(_chance(each) for each in flown if each.differs and whole(each))
     return (*writes, *(chance or (*_crowded(flown), *_shared(flown))))
 
 
@@ -111,7 +122,8 @@ def _shared(flown: Sequence[FlownAgain]) -> Iterator[str]:
             )
 
 
-def _whole(shown: FlownAgain) -> bool:
+def whole(shown: FlownAgain) -> bool:
+    """Return whether a unit was flown again just as it was the first time."""
     return shown.why != "guarded" and len(shown.scenes) == shown.unit_scenes
 
 

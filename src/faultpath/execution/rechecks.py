@@ -5,13 +5,14 @@ by itself, guarded. Only where that shows something more is flown, to tell the c
 """
 
 import hashlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Literal
 
 from pydantic import ValidationError
 
 from faultpath.execution.attempt import Reply, Wrong
-from faultpath.execution.differences import difference, findings
+from faultpath.execution.differences import difference, differing, findings, whole
 from faultpath.execution.schedule import Recheck, Task, Unit
 from faultpath.frozen import Frozen
 from faultpath.record.provenance import FlownAgain
@@ -29,7 +30,7 @@ SAMPLE = 4
 class _Kept(Frozen):
     """What `rechecks.json` holds."""
 
-    format: int = 2
+    format: Literal[3] = 3
     flown: tuple[FlownAgain, ...] = ()
 
 
@@ -84,6 +85,7 @@ class Rechecks:
             unit_scenes=len(task.unit.scenes),
             wrote=wrote,
             differs="" if wrote else difference(first, reply),
+            other=() if wrote else differing(first, reply),
         )
         self._kept[_name(shown)] = shown
         kept = _Kept(flown=tuple(self._kept[name] for name in sorted(self._kept)))
@@ -93,6 +95,14 @@ class Rechecks:
         """Return what was flown again of the units of this run."""
         keys = {unit.key for unit in self._units}
         return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
+
+    def void(self) -> Iterator[tuple[Unit, str]]:
+        """Yield the unit and scene of each trial that came out otherwise when its unit was asked
+        for the same again: it says nothing, and no pair can be made of it."""
+        units = {unit.key: unit for unit in self._units}
+        for shown in self.flown():
+            if whole(shown):
+                yield from ((units[shown.unit], scene) for scene in shown.other)
 
     def findings(self) -> tuple[str, ...]:
         """Return the findings about units of this run, a sentence or two each."""

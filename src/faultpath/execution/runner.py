@@ -12,7 +12,7 @@ from faultpath.code import Code, named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
-from faultpath.execution.limits import TimeLimit
+from faultpath.execution.limits import TimeLimit, memory_limit
 from faultpath.execution.looks import Looks, Stop
 from faultpath.execution.rechecks import Rechecks
 from faultpath.execution.schedule import Recheck, Schedule, Task, Unit, plan
@@ -25,6 +25,7 @@ from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries
+from faultpath.trials.outcome import failed_outcome
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
 from faultpath.trials.system import System
@@ -33,6 +34,9 @@ from faultpath.version import __version__
 from faultpath.work import Call, Executor, local
 
 _log = logging.getLogger("faultpath")
+
+
+_OTHERWISE = "it does not repeat: flown again in the same way, it came out otherwise"
 
 
 class Interrupted(Exception):
@@ -93,6 +97,7 @@ def run_study(
     shared: bool = False,
     executor: Executor | None = None,
     time_limit_s: float | None = None,
+    memory_limit_gib: float | None = None,
     recheck: bool = True,
     after: Path | None = None,
     stop: Stop | None = None,
@@ -106,8 +111,10 @@ def run_study(
     them ran is there for the next; the folder's tables are those of the last. `executor` flies in
     place of `workers` processes and keeps its own for the next study. `time_limit_s` is how long a
     worker may take over one block (or one scene, when a block failed) before it is stopped, in
-    seconds; by default many times as long as the slowest block so far took. `recheck` flies a few
-    scenes of one block again and tells what differs; see `RunResult.findings`. What the run in the
+    seconds; by default what the system says, or many times as long as the slowest block so far
+    took. `memory_limit_gib` is how much a worker may take, in GiB; by default what the system says,
+    or what there is. `recheck` flies a few scenes of one block again and tells what differs, see
+    `RunResult.findings`; trials that do not repeat are void. What the run in the
     folder `after` holds of the same units, flown by the same code, is taken over.
     `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
     up to that look.
@@ -116,10 +123,12 @@ def run_study(
     error of `faultpath.taps` when the audit itself is wrong.
     """
     hands = local(workers) if executor is None else nullcontext(executor)
-    if workers == 0 and time_limit_s is not None:
-        raise UserError("a time limit needs worker processes: this one cannot stop itself")
-    limit = TimeLimit(time_limit_s)
+    for what, asked in (("time", time_limit_s), ("memory", memory_limit_gib)):
+        if workers == 0 and asked is not None:
+            raise UserError(f"a {what} limit needs worker processes: this one cannot stop itself")
     system = load_system(study.system) if system is None else system
+    limit = TimeLimit(system.time_limit_s if time_limit_s is None else time_limit_s)
+    memory_gib = memory_limit(memory_limit_gib, system.memory_limit_gib)
     library = library_of(system, study.library)
     code = system_code(system, study.system)
     fingerprint = code.state.digest
@@ -144,7 +153,7 @@ def run_study(
                 run.take_over(RunFolder(after), [unit.key for unit in units])
             schedule = _keep_finished(standing, run, notice, study.look > 0)
             report(standing.progress())
-            brief = Brief(study.system, study.library, code.state, library.content_hash)
+            brief = Brief(study.system, study.library, code.state, library.content_hash, memory_gib)
             with hands as held:
                 there, here = partial(fly, brief), partial(fly_here, system, code.unread())
                 flown = here if held.in_process else there
@@ -153,6 +162,8 @@ def run_study(
                 again = Rechecks(looks.units, run)
                 if recheck:
                     _recheck(flying, again, standing)
+            for unit, scene in again.void():
+                standing.outcomes[unit.arm.key(), scene] = failed_outcome(scene, _OTHERWISE)
             if flying.undeclared:
                 notice(_unnamed(sorted(flying.undeclared)))
             table = assemble(looks.study, library, standing.outcomes)

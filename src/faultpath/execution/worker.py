@@ -1,14 +1,16 @@
 """What a worker does for a study: builds the system that it is told, then flies what it is sent."""
 
+import gc
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 from faultpath.blame import explained
 from faultpath.code import Code, CodeState, Reads, Watch, named
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Reply, Wrong, attempt
+from faultpath.execution.attempt import Raised, Reply, Wrong, attempt
+from faultpath.execution.limits import hold_to
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
@@ -24,6 +26,8 @@ class Brief:
     library: str
     state: CodeState
     library_hash: str
+    memory_gib: float | None = None
+    """What the process may take once it has built the system; see `limits.hold_to`."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,17 @@ def fly(brief: Brief, order: Order) -> Reply:
     the system cannot be built or is another one here.
     """
     with building(brief) as built:
-        return fly_here(built.system, built.unread, order)
+        reply = fly_here(built.system, built.unread, order)
+    if brief.memory_gib is None or not isinstance(reply, Raised) or not _in_want(reply.error):
+        return reply
+    gc.collect()  # what the flight held is not to be held against the next one
+    limit = f"the worker was held to its memory limit of {brief.memory_gib:g} GiB"
+    return replace(reply, error=f"{reply.error} ({limit})")
+
+
+def _in_want(error: str) -> bool:
+    """Return whether an error of NumPy, torch or Python says that there was no memory."""
+    return "MemoryError" in error or "allocate memory" in error
 
 
 @contextmanager
@@ -76,8 +90,10 @@ def building(brief: Brief) -> Generator[Built]:
     """Give a worker process the system of a brief, and tell files that it reads unnamed."""
     if not _built or _built[0].brief != brief:
         _built.clear()
+        hold_to(None)
         try:
             _built.append(_build(brief))
+            hold_to(brief.memory_gib)
         except (Exception, SystemExit) as error:
             if mistake := explained(error):
                 raise mistake from error

@@ -27,6 +27,8 @@ class FlownAgain(BaseModel):
     """How many scenes the unit has in all."""
     differs: str = ""
     """How the outcomes differ from those of the run; empty where they are the same to the bit."""
+    other: tuple[str, ...] = ()
+    """The scenes that came out otherwise."""
     wrote: str = ""
     """The consumer that wrote into its reading, where the guard saw one."""
 

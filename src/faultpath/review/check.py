@@ -7,7 +7,7 @@ from functools import partial
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Died, Wrong
 from faultpath.execution.flying import Flying
-from faultpath.execution.limits import TimeLimit
+from faultpath.execution.limits import TimeLimit, memory_limit
 from faultpath.execution.worker import Brief
 from faultpath.faults import Fault, Scale
 from faultpath.review import information, promises
@@ -64,7 +64,9 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
         stable = fingerprint(system, spec, held)
         if stable.failures and asked.workers:  # a worker would refuse to fly another system
             return check_system(system, spec, replace(asked, workers=0, time_limit_s=None), note)
-        crew = _Crew(system, spec, library, TimeLimit(asked.time_limit_s), note)
+        crew = _Crew(
+            system, spec, library, TimeLimit(asked.time_limit_s or system.time_limit_s), note
+        )
         crew.fly(held, tuple(_first(seen)), seen)
     with local(asked.workers) as held:  # new processes: what is kept in one is not in the other
         crew.fly(held, tuple(_again(seen)), seen)
@@ -109,7 +111,8 @@ class _Crew:
     ) -> None:
         self._system, self._name, self._limit, self._note = system, spec.name, limit, note
         state = system_code(system, spec).state
-        self._brief = Brief(spec, library.name, state, library.content_hash)
+        memory_gib = memory_limit(None, system.memory_limit_gib)
+        self._brief = Brief(spec, library.name, state, library.content_hash, memory_gib)
         self._done, self._known = 0, 0
         self.undeclared = set[str]()
         """Files that were read and not named."""

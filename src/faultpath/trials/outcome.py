@@ -18,7 +18,8 @@ class Status(StrEnum):
     CRASH = "crash"
     TIMEOUT = "timeout"
     FAILED = "failed"
-    """The program raised an error: the trial says nothing and voids every pair it is part of."""
+    """The program raised an error, hung, died, or gave something else when asked again: the trial
+    says nothing and voids every pair it is part of."""
 
 
 @dataclass(frozen=True)
