@@ -65,6 +65,8 @@ FAULTS = (
     "gain:scale=0.6,for=1,recover=-1",
 )
 
+OF_SYSTEMS = ("audit", "check", "interface", "map", "trace")
+
 VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
     "audit": (
         [TOY],
@@ -92,6 +94,29 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--columns": ("px4", "map.yaml", "folder"),
             "--mass": ("1.5", "-1", "nan"),
             "--errors": ("0.1", "x", "1,1"),
+        },
+    ),
+    "check": (
+        [TOY],
+        {
+            "--variants": ("calibrated", "blind,nobody", ","),
+            "--library": ("carts",),
+            "--scenes": ("1", "2"),
+            "--seed": ("0", "-1", "x"),
+            "--workers": ("0",),
+            "--json": (None,),
+        },
+    ),
+    "trace": (
+        [TOY],
+        {
+            "--variant": ("blind", "nobody"),
+            "--steps": ("1", "0", "x"),
+            "--scene": ("cart/001", "cart/1"),
+            "--library": ("carts",),
+            "--fault": FAULTS,
+            "--json": (None,),
+            "--svg": ("a.svg", "folder"),
         },
     ),
     "map": (
@@ -143,7 +168,9 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
         for _ in range(rng.randint(0, 2)):
             name = rng.choice([*options, "system", "more", "less"] if options else ["system"])
             if name == "system" and words:
-                words[0] = rng.choice(SYSTEMS if verb in ("audit", "interface", "map") else JUNK)
+                words[0] = rng.choice(
+                    SYSTEMS if verb in ("audit", "check", "interface", "map", "trace") else JUNK
+                )
             elif name == "more":
                 given[rng.choice(("--set", "--wind", "--device", "--nothing"))] = rng.choice(JUNK)
             elif name == "less":

@@ -23,6 +23,8 @@ MAY_LOAD = {
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
     "no such map": (["map", TOY, *MAP], {"numpy"}),
+    "nothing to check": (["check", TOY, "--variants", "a"], {"numpy", "pyarrow", "scipy"}),
+    "nothing to trace": (["trace", TOY, "--variant", "a"], {"numpy", "pyarrow", "jinja2", "scipy"}),
     "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
     "interface": (["interface", TOY], {"jinja2", "numpy", "pyarrow"}),
     "quadrotor": (["interface", "quadrotor"], {"jinja2", "numpy", "pyarrow", "torch"}),

@@ -59,7 +59,8 @@ def command(
     else:
         table = trace_table(trace)
         console.print(drawn(table))
-        for said in (*table.notes, *trace.privileged):
+        slopes = trace.gradient.words() if trace.gradient else ()
+        for said in (*table.notes, *trace.privileged, *slopes):
             console.print(said, markup=False)
         for finding in trace.findings:
             console.print(f"Found: {finding.says}", markup=False, style=STYLES["bad"])

@@ -8,9 +8,10 @@ from faultpath.faults import AnyFault
 from faultpath.frozen import Frozen
 from faultpath.interface import Provenance
 from faultpath.review.flights import Flight, Flown, fly_here
+from faultpath.review.gradient import Gradient, gradient
 from faultpath.review.information import differences
 from faultpath.text import unknown
-from faultpath.trials import Arm, System, SystemSpec, library_of
+from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
 
 class TracedRead(Frozen):
@@ -57,6 +58,9 @@ class TraceReport(Frozen):
     """Source to the module that reconstructs it and the channels that this one read."""
     privileged: tuple[str, ...] = ()
     """Reads of what deployment does not have, by permission of the variant or past all taps."""
+    gradient: Gradient | None = None
+    """What autograd tells of paths past the taps; `None` where nothing is torch, or the system
+    runs a loop of its own."""
     findings: tuple[Finding, ...] = ()
 
 
@@ -89,6 +93,12 @@ def trace_system(
     flown = fly_here(system, Flight("trace", arm, (chosen,), steps))
     if flown.error and not flown.reads:
         raise UserError(f"variant '{variant}' does not run: {flown.error}")
+    found = list(_findings(system, variant, flown, steps))
+    slopes = None
+    if isinstance(system, LoopSystem):
+        two = (chosen, *(each for each in known if each != chosen))[:2]
+        slopes = gradient(system, variant, two, steps, seed)
+        found += (Finding(says=said) for said in (slopes.found if slopes else ()))
     return TraceReport(
         system=spec.name,
         options=spec.options,
@@ -101,7 +111,8 @@ def trace_system(
         reads=tuple(_reads(flown, arm)),
         reconstructed=_reconstructed(system, flown),
         privileged=tuple(_privileged(system, variant, flown)),
-        findings=tuple(_findings(system, variant, flown, steps)),
+        gradient=slopes,
+        findings=tuple(found),
     )
 
 
