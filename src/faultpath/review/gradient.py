@@ -11,7 +11,7 @@ gradient stops are named, so that silence is not taken for proof.
 """
 
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from functools import wraps
 from types import FunctionType, MethodType, ModuleType
 from typing import Any, cast
@@ -224,10 +224,12 @@ def _tensors(
 
 def _parts(thing: Any) -> Iterator[tuple[str, Any]]:
     if isinstance(thing, Mapping):
-        yield from ((str(key), part) for key, part in thing.items())
+        mapping = cast("Mapping[Any, Any]", thing)
+        yield from ((str(key), part) for key, part in mapping.items())
     elif isinstance(thing, (list, tuple, set, frozenset)):
-        named = getattr(thing, "_fields", None) or range(len(thing))
-        yield from zip(map(str, named), thing, strict=True)
+        parts = cast("Collection[Any]", thing)
+        named: Iterable[Any] = getattr(parts, "_fields", None) or range(len(parts))
+        yield from zip(map(str, named), parts, strict=True)
     elif isinstance(thing, MethodType):
         yield "self", thing.__self__
     elif isinstance(thing, FunctionType):
