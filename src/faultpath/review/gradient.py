@@ -96,7 +96,7 @@ class _Cutting(Taps):
     def _cut(self, value: Any) -> Any:
         if not isinstance(value, self._torch.Tensor):
             return value
-        apart = cast(Any, value).detach().clone()
+        apart = value.detach().clone()
         return apart.requires_grad_() if apart.is_floating_point() else apart
 
 
@@ -173,7 +173,7 @@ class _Watch:
     def _differentiate(self, module: Module, source: str, value: Any) -> None:
         tensor = isinstance(value, self._torch.Tensor)
         self.torches = self.torches or tensor
-        carries = tensor and bool(cast(Any, value).requires_grad)
+        carries = tensor and bool(value.requires_grad)
         self.carries[module.name] = self.carries.get(module.name, False) or carries
         if not carries or not self._marked:
             return
@@ -236,4 +236,4 @@ def _parts(thing: Any) -> Iterator[tuple[str, Any]]:
         names, cells = thing.__code__.co_freevars, thing.__closure__ or ()
         yield from ((name, cell.cell_contents) for name, cell in zip(names, cells, strict=True))
     elif not isinstance(thing, ModuleType) and hasattr(thing, "__dict__"):
-        yield from vars(thing).items()
+        yield from cast("dict[str, Any]", vars(thing)).items()
