@@ -100,8 +100,6 @@ def _outcome(broken, variant, scene, left, draws):
         scene=scene,
         status=Status.SUCCESS if abs(left) < 0.3 else Status.TIMEOUT,
         time_s=2.0,
-        terminal_distance_m=abs(float(left)),
-        min_clearance_m=None,
         initial_hash="none" if broken == "hashless" else drawn,
         disturbance_hash="none" if broken == "hashless" else disturbed,
         planner_noise_hash="none",
