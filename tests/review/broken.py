@@ -10,7 +10,7 @@ import numpy as np
 from faultpath.interface import read_interface
 from faultpath.streams import generator
 from faultpath.taps import Reading
-from faultpath.trials import Library, Outcome, SceneRef, Status, System, Variant
+from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""
 name: wall
@@ -22,6 +22,7 @@ channels:
 - {name: range, sources: [laser, sonar], consumers: [pilot.approach, guard.limit]}
 - {name: mass, sources: [mass_estimate], consumers: [pilot.thrust]}
 """)
+DISTANCE = Metric(unit="m", better="less", words="distance", title="Distance left at the end")
 PILOT = frozenset({"pilot.approach", "pilot.thrust"})
 _CALLS = itertools.count()
 _SEEN = set()
@@ -33,6 +34,8 @@ class Wall(System):
         "bare": Variant("bare", "The pilot alone.", PILOT),
         "guarded": Variant("guarded", "With a guard.", PILOT | {"guard.limit"}),
     }
+
+    metrics = {"terminal_distance_m": DISTANCE}  # noqa: RUF012 - never changed
 
     def __init__(self, broken: str):
         self.broken = broken
@@ -100,6 +103,7 @@ def _outcome(broken, variant, scene, left, draws):
         scene=scene,
         status=Status.SUCCESS if abs(left) < 0.3 else Status.TIMEOUT,
         time_s=2.0,
+        metrics={"terminal_distance_m": abs(float(left))},
         initial_hash="none" if broken == "hashless" else drawn,
         disturbance_hash="none" if broken == "hashless" else disturbed,
         planner_noise_hash="none",

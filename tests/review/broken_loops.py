@@ -38,7 +38,7 @@ class Line(Plant):
         running = np.full(len(place), step < self.steps)
         near = np.abs(place) < 0.1
         times = np.full(len(place), 0.1 * step)
-        return Progress(running, ~running & near, running & False, times, np.abs(place))
+        return Progress(running, ~running & near, running & False, times)
 
     def conditions(self, state):
         return [f"{drawn:.6f}" for drawn in state[2]], ["calm"] * len(state[2])
