@@ -79,7 +79,7 @@ def command(
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
-    drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
+    every_seed, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.sizes import audits
@@ -92,7 +92,7 @@ def command(
         fault=fault,
         library=library,
         scenes=scenes,
-        seeds=drawn,
+        seeds=every_seed,
         primary=primary,
         generalise=generalise,
         metric=metric,

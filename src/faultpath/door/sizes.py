@@ -2,12 +2,14 @@
 
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit
-from faultpath.door.run import Run
 from faultpath.faults.sizes import each_size
 from faultpath.trials import System
+
+if TYPE_CHECKING:
+    from faultpath.door.run import Run
 
 
 def audits(
@@ -16,7 +18,7 @@ def audits(
     fault: str,
     folder: str | PathLike[str] | None = None,
     **asked: Any,
-) -> tuple[Run, ...]:
+) -> "tuple[Run, ...]":
     """Audit a repair under each size of a fault.
 
     The arms that the sizes have in common, those under correct inputs for one, fly once. Each size
