@@ -24,8 +24,8 @@ def by_size(records: Sequence[DecisionRecord]) -> Table:
         columns=tuple(titles.values()),
         lines=tuple(lines),
         notes=(
-            "Each size is an audit of its own: the correction is for the contrasts of one size, not "
-            "for the number of sizes.",
+            "Each size is an audit of its own: the correction is for the contrasts of one size, "
+            "not for the number of sizes.",
         ),
     )
 
