@@ -249,7 +249,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
         assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
         assert ("it is smaller than" in effect.words) <= small
         assert (effect.minimum_detectable_pp, effect.mid_p_value) == (None, None)
-        for other in (effect.time_s, effect.terminal_distance_m, effect.min_clearance_m):
+        for other in (effect.time_s, *effect.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
     if "differ by less than" in made.verdict.headline:
         assert asked.primary in held.small

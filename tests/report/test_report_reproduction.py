@@ -95,7 +95,7 @@ def test_page_is_the_same_every_time_and_small(toy: ReproductionInput, html: str
 def test_page_at_full_size_stays_small(toy: ReproductionInput) -> None:
     found, claims = toy.reproduction, toy.reproduction.ledger.claims
     many = tuple(
-        claims[i % 3].model_copy(update={"id": f"C{i + 1:02d}", "parts": 6 * claims[0].parts})
+        claims[i % 3].model_copy(update={"id": f"C{i + 1:02d}", "parts": 6 * claims[i % 3].parts})
         for i in range(40)
     )
     lines = 20 * found.tables[0].lines
