@@ -10,7 +10,7 @@ from faultpath.selfcheck.run import Profile
 from faultpath.statistics import score
 from faultpath.work import local
 
-SMALL = Profile((10,), 20, 10, 1, 1, 1, 1)
+SMALL = Profile((10,), 20, 10, 1, 1, 1, 1, 1)
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def test_numbers_are_written_and_tables_printed(check, tmp_path):
     assert status == 0, said
     report = Report.model_validate_json(out.read_text())
     assert report.profile == "quick"
-    assert len(report.sections) == 7
+    assert len(report.sections) == 11
     for title in ("Interval of an effect, one seed", "Break-even frequency", "Reversals"):
         assert title in said
     assert "No promise is broken by more than three standard errors." in said

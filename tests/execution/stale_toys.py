@@ -23,7 +23,7 @@ class Mine(ToySystem):
 
         push = {helper}.PUSH + float(Path(__file__).with_name("push.txt").read_text())
         outcomes = super().run(variant, scenes, taps, seed)
-        return [replace(o, metrics={"distance": o.metrics["distance"] + push}) for o in outcomes]
+        return [replace(o, metrics={{"distance": o.metrics["distance"] + push}}) for o in outcomes]
 
 
 def create(**options):

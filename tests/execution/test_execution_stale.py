@@ -22,7 +22,7 @@ def _edit(mine: Mine, place: str) -> str:
     """Let every trial end one metre further off, by one file; return the name of that file."""
     path: Path = getattr(mine, place)
     old, new = {
-        "file": ("+ push)", "+ push + 1.0)"),
+        "file": ("+ push}", "+ push + 1.0}"),
         "helper": ("0.0", "1.0"),
         "data": ("0.0", "1.0"),
     }[place]

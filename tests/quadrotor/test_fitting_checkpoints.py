@@ -44,9 +44,9 @@ def test_the_file_depends_on_the_weights_alone(fitted: Path, tmp_path: Path) -> 
 
 
 def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"'wm-q' with seed 7 with the package") as stop:
+    with pytest.raises(UserError, match=r"'wm-q' with seed 7 for the platform 'first'") as stop:
         checkpoint_path("wm-q", 7)
-    assert "`faultpath train quadrotor wm-q --seed 7 --ship`" in str(stop.value)
+    assert "`faultpath train quadrotor wm-q --seed 7 --platform first --ship`" in str(stop.value)
     with pytest.raises(UserError, match=f"in {tmp_path}"):
         checkpoint_path("wm-q", 7, tmp_path)
 

@@ -74,7 +74,7 @@ def test_bindings_name_the_source_of_every_channel() -> None:
             mass(0, source="still"),
             IllegalRead,
             "tap mass -> observer.model: the reading is of source 'still', but the channel is "
-            "bound to 'scale'",
+            "bound to 'scale'; deliver that one, or bind the channel in the variant",
         ),
         (
             make(bindings={"wind": "truth"}),
@@ -83,7 +83,7 @@ def test_bindings_name_the_source_of_every_channel() -> None:
             Reading(np.zeros((2, 3)), "truth", 0),
             IllegalRead,
             "tap wind -> planner.wind: source 'truth' is privileged and this arm does not permit "
-            "it",
+            "it; read another one, or name it in the variant's privileged sources",
         ),
         (
             make(),
@@ -91,7 +91,8 @@ def test_bindings_name_the_source_of_every_channel() -> None:
             "observer.model",
             mass(1),
             IllegalRead,
-            "tap mass -> observer.model: the reading is of step 1, which is after step 0",
+            "tap mass -> observer.model: the reading is of step 1, which is after step 0; "
+            "deliver what is known by then",
         ),
         (
             make([SCALE]),

@@ -27,8 +27,8 @@ def command(
     fault: Annotated[
         str,
         typer.Option(
-            help="`calibration=+0.1`, `wind:delay=5@predictor,onset=20`, ...; several sizes, as in "
-            "`mass:scale=0.9,1.1`, are an audit each."
+            help="`calibration=+0.1`, `wind:delay=5@predictor`, `gain:scale=2,onset=20`, ...; "
+            "several sizes, as in `mass:scale=0.9,1.1`, are an audit each."
         ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
