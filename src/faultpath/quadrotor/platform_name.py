@@ -12,7 +12,7 @@ class PlatformName(StrEnum):
     MATCHED = "matched"
 
 
-DEFAULT_NAME = PlatformName.FIRST
+DEFAULT_NAME = PlatformName.MATCHED
 """What flies, is fitted and is shown unless another one is asked for."""
 
 
