@@ -12,6 +12,7 @@ from rich.console import Console
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.intervals import interval_plot, plot_axis
 from faultpath.report.reproduction.page import reproduction_page
@@ -251,14 +252,15 @@ def test_view_shows_only_the_faces_turned_to_it(turn: int) -> None:
     assert drawn.count('class="face flat"') == 2
 
 
-def test_terminal_has_one_line_a_claim() -> None:
-    console = Console(width=100)
+def test_terminal_cuts_nothing_of_a_claim() -> None:
+    console = Console(width=72)
     with console.capture() as captured:
         console.print(ledger_view(ledger()))
     lines = captured.get().splitlines()
     for claim in ledger().claims:
         (line,) = (line for line in lines if line.startswith(claim.id))
         assert line.split()[2] == claim.verdict
+        assert words.typeset(claim.claim) in " ".join(captured.get().split())
     assert "✓ 1 confirmed, ✕ 1 refuted, ○ 2 undecided" in lines
 
 

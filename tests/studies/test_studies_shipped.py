@@ -23,6 +23,7 @@ def two(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         shutil.copytree(FIRST, tmp_path / name)
     monkeypatch.setattr(shipped, "RUNS", tmp_path)
     monkeypatch.setattr(shipped, "platforms", lambda: ("first", "second", "third"))
+    monkeypatch.setattr(shipped, "default_platform", lambda: "first")
     return tmp_path
 
 
@@ -44,7 +45,7 @@ def test_every_shipped_run_lies_under_the_platform_that_it_flew_on() -> None:
 def test_runs_are_found_by_platform_in_the_order_of_freezing(two: Path) -> None:
     assert shipped.shipped() == ("first", "third")
     assert shipped.shipped_run("third") == two / "third"
-    assert shipped.shipped_run() == two / shipped.default_platform()
+    assert shipped.shipped_run() == two / "first"
 
 
 @pytest.mark.parametrize(

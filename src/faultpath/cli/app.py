@@ -4,8 +4,9 @@ Nothing heavy is imported here: torch and the statistics load when a verb needs 
 `--help` answers at once.
 """
 
-from collections.abc import Sequence
-from typing import Annotated
+from collections.abc import Callable, Mapping, Sequence
+from inspect import getdoc
+from typing import Annotated, Any
 
 import typer
 
@@ -27,6 +28,7 @@ from faultpath.cli import (
 )
 from faultpath.cli.system_flags import with_system_flags
 from faultpath.cli.verbs import Verbs
+from faultpath.version import __version__
 
 
 def build(arguments: Sequence[str] = ()) -> typer.Typer:
@@ -42,31 +44,73 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     )
     app.callback()(everywhere)
     verb, *rest = arguments or ("",)
-    for name, command in _OF_SYSTEMS.items():
-        app.command(name)(with_system_flags(name, command, rest) if name == verb else command)
-    for name, command in _OTHERS.items():
-        app.command(name)(command)
-    for name, verbs in _GROUPS.items():
-        app.add_typer(verbs, name=name)
+    for panel, verbs in _PANELS.items():
+        for name in verbs:
+            command = _COMMANDS[name]
+            shown: dict[str, Any] = {
+                "rich_help_panel": panel,
+                "epilog": f"Example: {EXAMPLES[name]}",
+            }
+            if isinstance(command, typer.Typer):
+                app.add_typer(command, name=name, **shown)
+                continue
+            # Typer would keep the line breaks of a docstring.
+            said = " ".join((getdoc(command) or "").split())
+            if name == verb and name in _OF_SYSTEMS:
+                command = with_system_flags(name, command, rest)
+            app.command(name, help=said, **shown)(command)
     return app
 
 
-_OF_SYSTEMS = {
+_OF_SYSTEMS = ("audit", "check", "interface", "map", "probe", "trace")
+_COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
     "audit": audit.command,
     "check": check.command,
-    "interface": interface.command,
-    "map": map.command,
-    "probe": probe.command,
-    "trace": trace.command,
-}
-_OTHERS = {
     "claims": claims.command,
     "init": init.command,
+    "interface": interface.command,
     "log": log.command,
+    "map": map.command,
+    "probe": probe.command,
     "report": report.command,
     "reproduce": reproduce.command,
+    "scenes": scenes.app,
+    "selfcheck": selfcheck.app,
+    "trace": trace.command,
+    "train": train.app,
 }
-_GROUPS = {"scenes": scenes.app, "selfcheck": selfcheck.app, "train": train.app}
+_PANELS = {
+    "Your system": ("init", "interface", "trace", "check"),
+    "Audits": ("audit", "map", "probe", "log", "report"),
+    "The paper and its quadrotor": ("claims", "reproduce", "scenes", "train"),
+    "faultpath itself": ("selfcheck",),
+}
+
+EXAMPLES = {
+    "audit": "faultpath audit examples/toy.py:create --baseline calibrated --repair blind "
+    "--fault gain:scale=0.6 --library carts",
+    "check": "faultpath check examples/toy.py:create",
+    "claims": "faultpath claims",
+    "init": "faultpath init mine --with numpy",
+    "interface": "faultpath interface examples/toy.py:create",
+    "log": "faultpath log flight.ulg --columns px4 --mass 1.5",
+    "map": "faultpath map examples/toy.py:create --baseline calibrated --repair blind "
+    "--fault gain:scale --against controller,observer --up-to 0.4 --library carts",
+    "probe": "faultpath probe quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
+    "report": "faultpath report runs/mine",
+    "reproduce": "faultpath reproduce table-4",
+    "scenes": "faultpath scenes generate mine.json --seed 7",
+    "selfcheck": "faultpath selfcheck statistics --quick",
+    "trace": "faultpath trace examples/toy.py:create",
+    "train": "faultpath train quadrotor gru gru+dcc --seed 0",
+}
+"""One line a verb that shows how it is called."""
+
+
+def _tell(asked: bool) -> None:
+    if asked:
+        typer.echo(f"faultpath {__version__}")
+        raise typer.Exit
 
 
 def everywhere(
@@ -76,7 +120,10 @@ def everywhere(
             "--traceback", help="Show the whole traceback of an error; works with every command."
         ),
     ] = False,
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_tell, help="Show the version.")
+    ] = False,
 ) -> None:
     """Audit whether a repair still helps when a fault reaches every module that shares its
     source."""
-    del traceback  # `main` takes it out of the arguments, wherever it stands
+    del traceback, version  # `main` takes the one out of the arguments, wherever it stands

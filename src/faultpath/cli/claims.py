@@ -83,13 +83,11 @@ def command(
 
 
 def _show(run: Path | None, platform: str | None, as_json: bool) -> int:
-    """Evaluate a finished run anew, so that the answers are those of the code that is here."""
-    from faultpath.studies.claims import again
-    from faultpath.studies.run import read_results
-    from faultpath.studies.shipped import shipped_run
+    """Show the answers of a run; one that did not come with faultpath is answered anew, so that
+    they are those of the code that is here."""
+    from faultpath.studies.shipped import shipped_ledger
 
-    results, found = read_results(shipped_run(platform) if run is None else run)
-    answers = again(results, found.ledger)
+    answers = shipped_ledger(platform) if run is None else _answered(run)
     if as_json:
         _print(answers)
         return 0
@@ -98,6 +96,14 @@ def _show(run: Path | None, platform: str | None, as_json: bool) -> int:
 
     SafeConsole().print(ledger_view(answers))
     return 0
+
+
+def _answered(run: Path) -> "Ledger":
+    from faultpath.studies.claims import again
+    from faultpath.studies.run import read_results
+
+    results, found = read_results(run)
+    return again(results, found.ledger)
 
 
 def _print(answers: "Ledger") -> None:

@@ -1,6 +1,7 @@
 """`faultpath scenes`: libraries of the quadrotor."""
 
 import time
+from collections import Counter
 from pathlib import Path
 from typing import Annotated
 
@@ -49,8 +50,13 @@ def generate(
 def show(
     library: Annotated[str, typer.Argument(help="Name or file of a library.")] = "held-out",
 ) -> None:
-    """List the scenes of a library."""
+    """List the scenes of a library, and how many there are of each kind."""
     from faultpath.quadrotor.scenes.library import load_library
 
-    for scene in load_library(library).scenes:
-        typer.echo(f"{scene.id}  {scene.topology}")
+    scenes = load_library(library).scenes
+    wide = max(len("Scene"), *(len(scene.id) for scene in scenes))
+    for name, kind in (("Scene", "Kind"), *((scene.id, scene.topology) for scene in scenes)):
+        typer.echo(f"{name:{wide}}  {kind}")
+    kinds = Counter(scene.topology for scene in scenes)
+    counts = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    typer.echo(f"{len(scenes)} scenes: {counts}")

@@ -32,8 +32,7 @@ def shipped() -> tuple[str, ...]:
 
 def beside(ledger: Ledger) -> tuple[Ledger, ...]:
     """Return what the shipped runs on other platforms answered, over the library of `ledger`."""
-    others = (RUNS / name / "reproduction.json" for name in shipped() if name != ledger.platform)
-    found = (Reproduction.model_validate_json(path.read_bytes()).ledger for path in others)
+    found = (shipped_ledger(name) for name in shipped() if name != ledger.platform)
     return tuple(other for other in found if other.library_hash == ledger.library_hash)
 
 
@@ -49,3 +48,12 @@ def shipped_run(platform: str | None = None) -> Path:
             f"Name one of these, or fly it: faultpath reproduce --profile paper --platform {name}."
         )
     return RUNS / name
+
+
+def shipped_ledger(platform: str | None = None) -> Ledger:
+    """Return what a platform's run answered; `UserError` where there is none.
+
+    A test holds it to what the code that is here answers from the run's tables.
+    """
+    text = (shipped_run(platform) / "reproduction.json").read_bytes()
+    return Reproduction.model_validate_json(text).ledger

@@ -1,6 +1,9 @@
 """The ledger as a table, for the terminal and as Markdown."""
 
-from rich.console import Group, RenderableType
+from collections.abc import Iterable, Sequence
+
+from rich.console import Group, JustifyMethod, RenderableType
+from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Size
@@ -10,10 +13,16 @@ from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.escapes import markdown
 from faultpath.tables.markdown import grid
 from faultpath.tables.model import Tone
-from faultpath.tables.terminal import STYLES, drawn
+from faultpath.tables.terminal import STYLES
 
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
-_COLUMNS = ("Verdict", "Estimate", "Size", "Detectable", "What is claimed")
+_SHOWN: dict[str, JustifyMethod] = {
+    "Claim": "left",
+    "Verdict": "left",
+    "Estimate": "right",
+    "Size": "left",
+    "Detectable": "right",
+}
 _PRINTED = ("Kind", "Verdict", "Estimate", "Sizes", "Detectable", "The paper", "What is claimed")
 _IN_SHORT: dict[Size, str] = {
     "right sign, other size": "right sign only",
@@ -37,31 +46,55 @@ def _counts(ledger: Ledger) -> Text:
     return Text(", ").join(parts)
 
 
-def _table(ledger: Ledger, columns: tuple[str, ...] = _COLUMNS) -> Table:
+def _table(ledger: Ledger) -> Table:
     """Return one line a claim: what was claimed, what came of it, and by what estimate."""
     lines = (
-        line(claim.id, *(entries[column] for column in columns))
+        line(claim.id, *(entries[column] for column in _PRINTED))
         for claim in ledger.claims
         for entries in [_entries(claim)]
     )
-    texts = ("Kind", "Verdict", "Size", "Sizes", "The paper", "What is claimed")
-    return Table(corner="Claim", columns=columns, lines=tuple(lines), words=texts)
+    texts = ("Kind", "Verdict", "Sizes", "The paper", "What is claimed")
+    return Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts)
 
 
 def ledger_view(ledger: Ledger) -> RenderableType:
-    """Return headline, counts by kind and the claims."""
+    """Return headline, the claims, each with its words below what came of it, and counts."""
     title = Text(f"{words.headline(ledger)}.", style="bold")
     note = tuple(Text(each, "dim") for each in words.notes(ledger))
-    table = drawn(_table(ledger), one_line=True)
     blank = Text("")
     below = (Text(words.sizes(ledger)),) if words.sizes(ledger) else ()
-    return Group(title, Text(_about(ledger)), *note, blank, table, blank, _counts(ledger), *below)
+    about, claims = Text(_about(ledger)), _claims(ledger)
+    return Group(title, about, *note, blank, *claims, blank, _counts(ledger), *below)
+
+
+def _claims(ledger: Ledger) -> Iterable[RenderableType]:
+    rows = [[Text(claim.id), *_shown(claim)] for claim in ledger.claims]
+    heads = [Text(head) for head in _SHOWN]
+    widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
+
+    def aligned(cells: Sequence[Text]) -> Text:
+        for cell, side, width in zip(cells, _SHOWN.values(), widths, strict=True):
+            cell.align(side, width)
+        return Text("  ").join(cells)
+
+    yield aligned(heads)
+    for claim, row in zip(ledger.claims, rows, strict=True):
+        yield aligned(row)
+        said = Text(words.typeset(claim.claim), "dim")
+        yield Padding(said, (0, 0, 0, widths[0] + 2))
+
+
+def _shown(claim: ClaimVerdict) -> Iterable[Text]:
+    entries = _entries(claim)
+    for column in list(_SHOWN)[1:]:
+        entry = entries[column]
+        yield Text(entry) if isinstance(entry, str) else Text(entry.text, STYLES[entry.tone])
 
 
 def ledger_markdown(ledger: Ledger) -> str:
     """Return the ledger as a Markdown table, the counts above it."""
     about = " ".join([f"{_about(ledger)}.", *words.notes(ledger)])
-    table = grid(_table(ledger, _PRINTED))
+    table = grid(_table(ledger))
     sizes = ["", markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
     return "\n".join([f"{words.headline(ledger)}.", "", markdown(about), "", table, *sizes, ""])
 

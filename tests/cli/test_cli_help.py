@@ -1,0 +1,39 @@
+"""What `faultpath --help` shows: verbs in groups, one example of each that can be typed."""
+
+import shlex
+
+import pytest
+import typer
+from cli_runs import faultpath
+
+import faultpath as package
+from faultpath.cli.app import EXAMPLES, build
+
+
+def test_every_verb_stands_in_a_group_with_an_example() -> None:
+    command = typer.main.get_command(build())
+    assert set(EXAMPLES) == set(command.commands)
+    shown = faultpath("--help").out
+    assert all(f"│ {verb} " in shown for verb in EXAMPLES)
+    assert shown.index("Your system") < shown.index("│ check") < shown.index("Audits")
+
+
+@pytest.mark.parametrize("verb", EXAMPLES)
+def test_an_example_can_be_typed(verb: str) -> None:
+    first, *line = shlex.split(EXAMPLES[verb])
+    assert (first, line[0]) == ("faultpath", verb)
+    command = typer.main.get_command(build(line))
+    while line and line[0] in getattr(command, "commands", ()):
+        command = command.commands[line.pop(0)]
+    context = command.context_class(command)
+    _, left, _ = command.make_parser(context).parse_args(line)
+    assert not left  # an option that does not exist raises
+
+
+def test_help_wraps_as_the_terminal_is_wide() -> None:
+    shown = " ".join(faultpath("check", "--help").out.split())
+    assert "and that a fault reaches every tap. Exits with 1 where a check fails." in shown
+
+
+def test_the_version() -> None:
+    assert faultpath("--version").out == f"faultpath {package.__version__}\n"
