@@ -65,7 +65,7 @@ def test_correct_arms_and_arms_that_no_error_reaches_are_flown_once() -> None:
 def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
     rows = plan().study([(8, -16)]).rows
     struck = {
-        (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr]
+        (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
         for row in rows
         for fault in row.arm.faults
     }
@@ -105,7 +105,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     assert not made.question.relative
     assert made.question.said(-0.25) == "-0.25 m"
     (fault,) = made.study([(0, 16)]).rows[1].arm.faults
-    assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr]
+    assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
 
 def test_readers_that_get_it_without_error_are_named() -> None:

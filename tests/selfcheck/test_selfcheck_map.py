@@ -32,7 +32,7 @@ def test_the_true_correlation_is_where_both_arms_do_equally_well() -> None:
         .multivariate_normal([0, 0], 0.16 * np.array([[1, r], [r, 1]]), 400_000)
         .T
     )
-    seen = truth([(32 * a, 32 * b) for a, b in zip(x, y, strict=True)])  # type: ignore[misc]
+    seen = truth([(32 * a, 32 * b) for a, b in zip(x, y, strict=True)])  # type: ignore[misc] - fractions of a unit
     assert -1 < r < 1
     assert seen.mean() == pytest.approx(0, abs=0.002)
 
