@@ -127,7 +127,7 @@ def test_weights_belong_to_what_decided_their_data():
 
 
 def test_weights_of_another_platform_are_refused():
-    here = models.Shelf(DAMPED, shipped_folder())
+    here = models.Shelf(DAMPED, shipped_folder(PlatformName.FIRST))
     assert models.clearance_model(shelf=here) is not None
     for name in ("wm-a", "wm-u", "wm-a-wind"):
         with pytest.raises(UserError, match=f"{name}-0 .* another platform .* fit them again"):
@@ -159,7 +159,7 @@ def test_tasks_and_pools_belong_to_their_platform(tmp_path):
     assert different(recipe("wind", platform=DAMPED), asked) == ["vehicle"]
     pooled = FIRST.model_copy(update={"winds": Winds(pool_mean_mps=(0.0, 6.0))})
     assert different(recipe("wind", platform=pooled), asked) == ["wind"]
-    assert different(recipe("nominal", platform=pooled), recipe("nominal")) == []
+    assert different(recipe("nominal", platform=pooled), recipe("nominal", platform=FIRST)) == []
 
 
 def test_predictors_and_observers_assume_the_nominal_drag():

@@ -15,7 +15,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS, Shelf
-from faultpath.quadrotor.platforms import FIRST
+from faultpath.quadrotor.platforms import DEFAULT, FIRST
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork
@@ -32,7 +32,6 @@ from faultpath.quadrotor.training.reconstruction_task import (
     _Samples,
 )
 from faultpath.quadrotor.training.windows import windows_of
-from faultpath.quadrotor.wind import Winds
 
 ROOT = Path(__file__).resolve().parents[2]
 EPISODES = {"nominal": 48, "wind": 10}
@@ -271,9 +270,9 @@ def test_an_estimate_reads_nothing_after_the_present(windy):
 
 def test_a_window_has_the_level_of_the_nearest_sustained_wind(windy):
     speed = windy.wind_mps.mean(1).norm(dim=0)
-    found = levels(windy, Winds())
+    found = levels(windy, DEFAULT.winds)
     for each, name in zip(speed.tolist(), found, strict=True):
-        distance = {key: abs(each - level.mean_mps) for key, level in Winds().levels.items()}
+        distance = {key: abs(each - level.mean_mps) for key, level in DEFAULT.winds.levels.items()}
         assert distance[name] == min(distance.values())
     assert len(set(found)) > 1
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.pool import read_pool
 from faultpath.quadrotor.training.windows import (
@@ -19,7 +20,6 @@ from faultpath.quadrotor.training.windows import (
     windows_of,
 )
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.wind import Winds
 
 torch.set_num_threads(1)
 
@@ -110,7 +110,7 @@ def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, poo
     for w in (0, 5, len(windy) - 1):
         episode, number = int(windy.episode[w]), int(windy.ids[w].rpartition("/")[2])
         first = starts(int(steps[episode]))[number]
-        series = Winds().pool_series(0, episode, 6.1)[25 * first :: 25][:33]
+        series = DEFAULT.winds.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
         assert np.array_equal(windy.wind_mps[..., w].T.numpy(), series.astype(np.float32))
 
 
