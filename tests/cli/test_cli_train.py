@@ -117,6 +117,19 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
     assert Path("runs/train/needy-0.safetensors").exists()
 
 
+def test_closed_loop_flights_without_their_predictor_are_refused_before_any_fit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(job_pools, "shipped_folder", lambda platform: tmp_path / platform)
+    flown = catalogue.Entry(
+        "flown", entry("one").factory, ("trajectory",), "", 9.0, seeds=(0,), after=("one",)
+    )
+    monkeypatch.setattr(catalogue, "ALL", (flown, entry("one")))
+    said = _train("flown", "one").refused()
+    assert "no checkpoint of 'one' with seed 0" in said
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
     begin = Toy.begin_epoch
 

@@ -65,6 +65,7 @@ def train(request: TrainRequest) -> int:
     from faultpath.quadrotor.platform_name import DEFAULT_NAME, platform_name
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.quadrotor.training.fitting import tensorboard_writer
+    from faultpath.quadrotor.training.job_pools import check_pilots
     from faultpath.store import make_folder
 
     console = SafeConsole()
@@ -72,6 +73,8 @@ def train(request: TrainRequest) -> int:
     chosen = choose(request.names, request.seeds, platform_name(request.platform or DEFAULT_NAME))
     if request.tensorboard is not None:
         tensorboard_writer()
+    if not request.ship:
+        check_pilots(chosen)
     for place in (request.out, request.tensorboard, request.data):
         if place is not None:
             make_folder(place)  # before the flights: what cannot be kept need not be collected

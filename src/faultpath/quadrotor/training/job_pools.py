@@ -5,6 +5,7 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.quadrotor.checkpoint import checkpoint_path, shipped_folder
 from faultpath.quadrotor.platforms import PLATFORMS
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
@@ -44,6 +45,16 @@ def check_pools(jobs: Sequence[Job], data: Path) -> None:
                 f"the pool at {path} was collected for another platform than {platform}: give "
                 "another folder of data"
             )
+
+
+def check_pilots(jobs: Sequence[Job]) -> None:
+    """Raise `UserError` where closed-loop flights need a model that the package lacks.
+
+    They are flown with the package's models, among which only `--ship` puts those of this run.
+    """
+    flying = [job for job in jobs if trajectories.POOL in job.entry.pools]
+    for name, platform in {(name, job.platform) for job in flying for name in job.entry.after}:
+        checkpoint_path(name, trajectories.SEED, shipped_folder(platform))
 
 
 def collect_missing(
