@@ -14,7 +14,7 @@ from faultpath.record.model import Effect
 from faultpath.report import wording
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import latex_table, markdown_table
+from faultpath.report.tables import by_path, latex_table, markdown_table
 from faultpath.report.terminal import decision, interface_table
 
 
@@ -140,6 +140,20 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
         assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
     for cell in record.cells:
         assert f"{cell.success_percent:.1f}" in text
+
+
+RECORDS = sorted((Path(__file__).parents[2] / "docs" / "reference").glob("*/record.json"))
+
+
+@pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.parent.name)
+def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
+    console = Console(width=80)
+    record = DecisionRecord.model_validate_json(path.read_bytes())
+    with console.capture() as captured:
+        console.print(decision(record))
+    text = captured.get()
+    for row in by_path(record, ("break-even", "interval", "won"), "").lines:
+        assert all(entry.text in text for entry in row.entries), text
 
 
 def test_terminal_shows_an_interface(drawn_interface: Interface) -> None:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 STYLES: dict[Tone, str] = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
 """How tones look."""
-_ROOMY = 6
+_ROOMY = 5
 """Columns that leave room on a terminal of 80 characters to stand two blanks apart."""
 
 
