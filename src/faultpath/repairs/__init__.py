@@ -1,0 +1,39 @@
+"""Repairs as objects: uncertainty training, withholding and reconstruction of any torch module.
+
+A fit gets its inputs through the taps of the system's interface, and what perturbs them are the
+faults of an audit. Nothing here loads torch before a module is fitted.
+"""
+
+from faultpath.repairs.fitting import Fit, evaluate, fit, load, mean_squared_error
+from faultpath.repairs.flying import Learned, withheld
+from faultpath.repairs.matched import Comparison, matched
+from faultpath.repairs.record import FitRecord, Schedule, read_record
+from faultpath.repairs.repair import (
+    Repair,
+    errors,
+    reconstruction,
+    uncertainty_training,
+    withholding,
+)
+from faultpath.repairs.windows import Windows
+
+__all__ = [
+    "Comparison",
+    "Fit",
+    "FitRecord",
+    "Learned",
+    "Repair",
+    "Schedule",
+    "Windows",
+    "errors",
+    "evaluate",
+    "fit",
+    "load",
+    "matched",
+    "mean_squared_error",
+    "read_record",
+    "reconstruction",
+    "uncertainty_training",
+    "withheld",
+    "withholding",
+]

@@ -1,0 +1,165 @@
+"""Every single difference between two fits is found, and nothing else is named."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+from repair_toys import SHORT, Net, scaled_net, windows
+from torch import nn
+
+from faultpath.repairs import Schedule, fit, matched, uncertainty_training, withholding
+
+REPAIR = uncertainty_training("gain:uniform_scale=0.2")
+
+
+def weighed(factor):
+    def loss(output, target):
+        return factor * ((output - target) ** 2).mean()
+
+    return loss
+
+
+def absolute(output, target):
+    return (output - target).abs().mean()
+
+
+START = Net()
+with torch.no_grad():
+    OTHER = Net()
+    OTHER.load_state_dict(START.state_dict())
+    OTHER.last.bias += 0.1
+TANH = Net(activation=nn.Tanh)
+TANH.load_state_dict(START.state_dict())
+
+
+def made(**changes):
+    given = {"module": START, "data": windows(), "loss": weighed(1.0), "schedule": SHORT}
+    return fit(**(given | changes))
+
+
+def other(name, change):
+    values = {key: np.asarray(value) for key, value in windows().readings.items()}
+    return values | {name: change(values[name])}
+
+
+DIFFERENCES = {
+    "width": ({"module": Net(width=9)}, "Architecture: 'first.weight' is float32 [8, 8]"),
+    "activation": ({"module": TANH}, "Architecture: (activation): ReLU()"),
+    "readings": (
+        {"data": windows(readings=other("gain", lambda v: v + 1e-3))},
+        "Data: the readings of gain differ.",
+    ),
+    "targets": (
+        {"data": windows(targets=-np.asarray(windows().targets))},
+        "Data: the targets of target differ.",
+    ),
+    "windows": ({"data": windows(59)}, "Data: other windows, 60 for the baseline and 59"),
+    "step": ({"data": windows(dt_s=0.2)}, "Data: steps of 0.1 s in the baseline and 0.2 s"),
+    "split": ({"validation": 0.4}, "Split: other windows are trained on, 5"),
+    "loss": ({"loss": absolute}, "Loss: weighed.loss in the baseline and absolute in the repair."),
+    "constant of the loss": ({"loss": weighed(2.0)}, "Loss: both are called weighed.loss"),
+    "initial weights": ({"module": OTHER}, "Initialisation: the weights before the first step"),
+    "order": ({"seed": 1}, "Minibatch order: other windows come first from epoch 1 on"),
+    "places": (
+        {"data": windows(reader=("observer.model", "observer.difference"))},
+        "Inputs: the baseline is delivered",
+    ),
+    "epochs": ({"schedule": Schedule(epochs=3, batch_size=16)}, "Budget: epochs 2 in the baseline"),
+    **{
+        name: (
+            {"schedule": SHORT.model_copy(update={name: value})},
+            f"Budget: {name.replace('_', ' ')} ",
+        )
+        for name, value in {
+            "batch_size": 17,
+            "learning_rate": 2e-3,
+            "optimiser": "adam",
+            "weight_decay": 0.0,
+            "clip_norm": 1.0,
+        }.items()
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def baseline():
+    return made()
+
+
+@pytest.mark.parametrize("name", DIFFERENCES)
+def test_a_single_difference_is_the_only_sentence(baseline, name) -> None:
+    change, sentence = DIFFERENCES[name]
+    found = matched(baseline, made(repair=REPAIR, **change))
+    (said,) = found.differences
+    assert said.startswith(sentence)
+    assert said.endswith(".")
+    assert not found.matched
+
+
+def test_code_that_captures_another_number_is_another_architecture() -> None:
+    torch.manual_seed(0)
+    one = scaled_net(1.0)()
+    two = scaled_net(2.0)()
+    two.load_state_dict(one.state_dict())
+    same = scaled_net(1.0)()
+    same.load_state_dict(one.state_dict())
+    assert matched(made(module=one), made(module=same, repair=REPAIR)).matched
+    (said,) = matched(made(module=one), made(module=two, repair=REPAIR)).differences
+    assert said == "Architecture: the code of scaled_net.Scaled differs, though its parts do not."
+
+
+def test_code_that_no_record_sees_shows_in_the_first_loss(baseline) -> None:
+    hidden = baseline.record.model_copy(
+        update={"initial_loss": 1.01 * baseline.record.initial_loss}
+    )
+    (said,) = matched(baseline, hidden).differences
+    assert said.startswith("Computation: before any step the same weights have the loss")
+
+
+def test_another_machine_is_named(baseline) -> None:
+    record = baseline.record
+    elsewhere = record.model_copy(
+        update={"machine": record.machine.model_copy(update={"python": "3.12"})}
+    )
+    (said,) = matched(baseline, elsewhere).differences
+    assert said == (
+        f"Machine: python {record.machine.python} in the baseline and 3.12 in the repair; code was "
+        "not compared."
+    )
+
+
+@pytest.mark.parametrize("repair", [REPAIR, withholding("gain")], ids=lambda each: each.kind)
+def test_fits_that_differ_in_the_repair_alone_are_matched(baseline, repair, tmp_path) -> None:
+    repaired = made(repair=repair, folder=tmp_path)
+    found = matched(baseline, repaired)
+    assert found.matched
+    assert str(found).startswith(f"matched in all but the repair ({repair.kind.replace('_', ' ')}:")
+    assert matched(baseline.record, repaired.path) == found
+
+
+def test_the_same_fit_twice_is_said_to_be_that(baseline) -> None:
+    found = matched(baseline, baseline)
+    assert not found.matched
+    assert str(found).startswith("the same fit twice")
+
+
+def test_all_differences_are_listed(baseline) -> None:
+    changed = made(loss=absolute, schedule=Schedule(epochs=1, batch_size=16), seed=2, repair=REPAIR)
+    said = str(matched(baseline, changed)).splitlines()
+    assert said[0] == "not matched:"
+    assert [line.split(":")[0] for line in said[1:]] == [
+        "  - Loss",
+        "  - Budget",
+        "  - Minibatch order",
+    ]
+
+
+def test_a_partial_counts_with_its_arguments(baseline) -> None:
+    def loss(output, target, factor):
+        return factor * ((output - target) ** 2).mean()
+
+    one, same, other = (made(loss=partial(loss, factor=f), repair=REPAIR) for f in (1.0, 1.0, 3.0))
+    assert not matched(one, same).differences
+    (said,) = matched(one, other).differences
+    assert said.startswith("Loss: both are called")
