@@ -49,8 +49,10 @@ def _parts(thing: Any, seen: set[int]) -> Iterator[str]:
         yield f"{thing.__module__}.{thing.__qualname__}" if not _own(thing) else thing.__name__
         if id(thing) not in seen and _own(thing):
             seen.add(id(thing))
-            inside = _of_class if isinstance(thing, type) else _of_function
-            yield from inside(thing, seen)
+            if isinstance(thing, type):
+                yield from _of_class(thing, seen)
+            else:
+                yield from _of_function(thing, seen)
     elif isinstance(thing, Mapping):
         for key, value in thing.items():
             yield repr(key)

@@ -126,11 +126,7 @@ def evaluate(
 
 
 def load(module: nn.Module, path: Path | str) -> Fit:
-    """Return a fit from its files, in a module whose weights are replaced.
-
-    Raises `UserError` when a file is missing, differs from its record, or is of another
-    architecture.
-    """
+    """Return a fit from its files, in a module that is filled; `UserError` where they do not fit."""
     record = fill(module, Path(path))
     return Fit(module.eval(), record, Path(path))
 
@@ -192,7 +188,7 @@ class _Work:
         faults, total, was = tuple(faults), 0.0, self.net.training
         self.net.eval()
         with torch.no_grad():
-            for part in self._minibatches(index):
+            for part in _cut(index, self.schedule):
                 total += self._loss(part, faults, VALIDATION)[0].item() * len(part)
         self.net.train(was)
         return total / len(index)
@@ -203,7 +199,7 @@ class _Work:
 
         total = 0.0
         self.net.train()
-        for part in self._minibatches(order):
+        for part in _cut(order, self.schedule):
             optimiser.zero_grad(set_to_none=True)
             loss, counts = self._loss(part, self.faults, epoch)
             value = loss.item()
@@ -240,10 +236,6 @@ class _Work:
         """Return the training windows in an epoch's order, addressed by seed and epoch alone."""
         return generator("repairs", "minibatches", self.seed, epoch).permutation(self.training)
 
-    def _minibatches(self, index: np.ndarray) -> list[np.ndarray]:
-        size = self.schedule.batch_size
-        return [index[first : first + size] for first in range(0, len(index), size)]
-
     def _tensor(self, array: np.ndarray) -> Tensor:
         import torch
 
@@ -279,6 +271,10 @@ class _Work:
             machine=machine(self.device.type),
             duration_s=round(self.seconds, 3),
         )
+
+
+def _cut(index: np.ndarray, schedule: Schedule) -> list[np.ndarray]:
+    return np.split(index, range(schedule.batch_size, len(index), schedule.batch_size))
 
 
 def _several(repair: Repair | Iterable[Repair], data: Windows) -> tuple[Repair, ...]:

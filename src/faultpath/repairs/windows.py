@@ -158,7 +158,7 @@ class Windows:
 
     def names_sha256(self, index: HostArray) -> str:
         """Return a digest of the names of some windows, in this order."""
-        return sha256("\n".join(self.ids[i] for i in index).encode()).hexdigest()
+        return sha256("\n".join(self.ids[int(i)] for i in index).encode()).hexdigest()
 
 
 def delivered(
