@@ -126,7 +126,7 @@ def evaluate(
 
 
 def load(module: nn.Module, path: Path | str) -> Fit:
-    """Return a fit from its files, in a module that is filled; `UserError` where they do not fit."""
+    """Return a fit from its files, filled in; `UserError` where they do not fit."""
     record = fill(module, Path(path))
     return Fit(module.eval(), record, Path(path))
 
@@ -185,12 +185,11 @@ class _Work:
         """Return the mean loss of some windows, without gradients and in evaluation mode."""
         import torch
 
-        faults, total, was = tuple(faults), 0.0, self.net.training
+        faults, total = tuple(faults), 0.0
         self.net.eval()
         with torch.no_grad():
             for part in _cut(index, self.schedule):
                 total += self._loss(part, faults, VALIDATION)[0].item() * len(part)
-        self.net.train(was)
         return total / len(index)
 
     def _epoch(self, epoch: int, order: np.ndarray, optimiser: Any) -> float:
@@ -233,7 +232,7 @@ class _Work:
         return loss, counts
 
     def _permuted(self, epoch: int) -> np.ndarray:
-        """Return the training windows in an epoch's order, addressed by seed and epoch alone."""
+        """Return the training windows in an epoch's order."""
         return generator("repairs", "minibatches", self.seed, epoch).permutation(self.training)
 
     def _tensor(self, array: np.ndarray) -> Tensor:
@@ -249,16 +248,17 @@ class _Work:
 
     def record(self, name: str | None) -> FitRecord:
         """Return what the fit says of itself."""
-        data = self.data
         kinds = (each.kind.replace("_", "-") for each in self.repairs)
         return FitRecord(
             name=name or "+".join((type(self.net).__name__.lower(), *kinds)),
             seed=self.seed,
             repairs=self.repairs,
-            reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
+            reads=tuple(
+                f"{port.channel} -> {consumer}" for port, consumer in self.data.ports.items()
+            ),
             architecture=architecture(self.net),
             parameters=sum(p.numel() for p in self.net.parameters() if p.requires_grad),
-            data=data.digested(self.host_targets, self.training),
+            data=self.data.digested(self.host_targets, self.training),
             loss=Loss(name=name_of(self.loss), code_sha256=code_sha256(self.loss)),
             schedule=self.schedule,
             initial_sha256=self.initial,
