@@ -2,7 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from rich.console import Group, JustifyMethod, RenderableType
+from rich.align import AlignMethod
+from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
@@ -16,7 +17,7 @@ from faultpath.tables.model import Tone
 from faultpath.tables.terminal import STYLES
 
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
-_SHOWN: dict[str, JustifyMethod] = {
+_SHOWN: dict[str, AlignMethod] = {
     "Claim": "left",
     "Verdict": "left",
     "Estimate": "right",
