@@ -1,9 +1,7 @@
 """Fit a torch module of the user's to windows that come through the taps.
 
-Laws. The weights before the first step and the order of the minibatches depend on the module and
-the seed, never on the repair. What is drawn depends on window, seed and epoch. An error of size
-zero changes no bit. torch's own random numbers (dropout) start from the seed, and the process keeps
-those that it had.
+Laws. First weights and the order of minibatches depend on module and seed, never on the repair; an
+error of size zero changes no bit; the process keeps the random numbers of torch that it had.
 """
 
 from __future__ import annotations
@@ -150,13 +148,16 @@ class _Work:
     def __post_init__(self) -> None:
         import torch
 
+        def tensor(array: np.ndarray) -> Tensor:
+            return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
+
         parameter = next(self.net.parameters(), None)
         self.device = torch.device("cpu") if parameter is None else parameter.device
         self.faults: list[Any] = [fault for each in self.repairs for fault in each.faults]
         self.kept = kept(self.repairs)
         self.host_targets = self.data.learned(self.repairs)
-        self.readings = {name: self._tensor(v) for name, v in self.data.readings.items()}
-        self.targets = {name: self._tensor(v) for name, v in named(self.host_targets).items()}
+        self.readings = {name: tensor(v) for name, v in self.data.readings.items()}
+        self.targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
         self.training, self.held_out = self.data.split(self.share)
         if not len(self.training):
             raise UserError("fit: no window is left for training: give more, or validation=0")
@@ -234,11 +235,6 @@ class _Work:
     def _permuted(self, epoch: int) -> np.ndarray:
         """Return the training windows in an epoch's order."""
         return generator("repairs", "minibatches", self.seed, epoch).permutation(self.training)
-
-    def _tensor(self, array: np.ndarray) -> Tensor:
-        import torch
-
-        return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
 
     def _diverged(self, epoch: int, what: str) -> UserError:
         return UserError(
