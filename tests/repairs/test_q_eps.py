@@ -76,6 +76,13 @@ def test_dependence_is_the_correlation_of_two_channels(persistence, dependence, 
     )
 
 
+def test_errors_that_were_named_apart_are_independent() -> None:
+    data = windows(4000, 1, readings={"gain": np.ones(4000), "velocity": np.ones((4000, 1))})
+    apart = [errors({name: 0.1}, dependence=1.0) for name in ("gain", "velocity")]
+    got, _ = delivered(data, apart, data.readings, range(4000), 0, 0)
+    assert correlation(got[GAIN], got[VELOCITY]) == pytest.approx(0.0, abs=0.05)
+
+
 def test_the_papers_noise_is_uniform_and_one_draw_a_window() -> None:
     fault = Fault(channel="gain", intervention=UniformScale(half_range=0.2))
     error = relative_errors(fault)[GAIN]

@@ -24,18 +24,19 @@ class Comparison(Frozen):
     baseline: str
     """Its repair in words, `none` for a plain one."""
     repair: str
+    same_repair: bool
     differences: tuple[str, ...]
     """Beside the repair, a sentence each."""
 
     @property
     def matched(self) -> bool:
         """Whether the repair is the only difference."""
-        return not self.differences and self.baseline != self.repair
+        return not (self.differences or self.same_repair)
 
     def __str__(self) -> str:
         if self.differences:
             return "\n".join(("not matched:", *(f"  - {each}" for each in self.differences)))
-        if self.baseline == self.repair:
+        if self.same_repair:
             return (
                 f"the same fit twice: nothing tells them apart, the repair ({self.repair}) neither"
             )
@@ -58,7 +59,12 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
             f"{one.initial_loss:.6g} in the baseline and {other.initial_loss:.6g} in the repair on "
             "the same correct inputs, so module or loss differ in code that the records cannot see."
         )
-    return Comparison(baseline=one.repair, repair=other.repair, differences=tuple(found))
+    return Comparison(
+        baseline=one.repair,
+        repair=other.repair,
+        same_repair=one.repairs == other.repairs,
+        differences=tuple(found),
+    )
 
 
 def _record(fit: Recorded) -> FitRecord:

@@ -32,7 +32,7 @@ class Repair(Frozen):
     @property
     def words(self) -> str:
         """The repair in a few words."""
-        said = "; ".join(f if isinstance(f, str) else f.describe() for f in self.faults)
+        said = "; ".join(map(_said, self.faults))
         if self.kind == "reconstruction":
             return f"reconstruction of {self.channel}"
         if self.kind == "withholding":
@@ -129,7 +129,7 @@ def errors(
         )
     if not faults:
         raise UserError("errors: magnitude names no channel")
-    return Coupled(name="q_eps", faults=tuple(faults))
+    return Coupled(name=f"q_eps of {listed(magnitude)}", faults=tuple(faults))
 
 
 def withholding(
@@ -157,6 +157,15 @@ def reconstruction(channel: str) -> Repair:
     perturbed by a further repair. The downstream modules stay as they are.
     """
     return Repair(kind="reconstruction", channel=channel)
+
+
+def _said(fault: AnyFault | str) -> str:
+    """Return a fault in a few words, and what ties its errors to those of others."""
+    if isinstance(fault, str):
+        return fault
+    if isinstance(fault, Coupled) or fault.loading == 1.0:
+        return fault.describe()
+    return f"{fault.describe()}, with a loading of {fault.loading:g} on {fault.drawn_from}"
 
 
 def _law(std: float, persistence: Persistence, relative: bool) -> Bias | Noise:
