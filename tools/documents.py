@@ -28,6 +28,7 @@ import learning_blocks
 import map_blocks
 import paper_blocks
 import platform_blocks
+import ray_cost
 import replayed
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images
@@ -49,6 +50,7 @@ KINDS: Mapping[str, Any] = {
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
     "platform": platform_blocks.fill,
+    "ray-cost": ray_cost.fill,
     "replayed": replayed.fill,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""

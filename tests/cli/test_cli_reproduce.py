@@ -20,6 +20,7 @@ from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
 from faultpath.studies.pages import FIGURE_2, table_4
 from faultpath.studies.run import Plan
 from faultpath.tables import MISSING
+from faultpath.work import Here
 
 TOLD = Display(command=("faultpath", "reproduce"))
 ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
@@ -27,7 +28,7 @@ ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> ReproductionRun:
-    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), 0, TOLD)
+    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), Here(), TOLD)
 
 
 def test_every_file_is_there(done: ReproductionRun) -> None:
@@ -75,7 +76,7 @@ def test_the_fault_at_the_reconstruction_hurts_what_trusts_calibration(
 
 
 def test_the_same_command_again_flies_nothing(done: ReproductionRun) -> None:
-    again = carry_out(ASKED, done.folder.parent, 0, TOLD)
+    again = carry_out(ASKED, done.folder.parent, Here(), TOLD)
     provenance = (again.folder / "provenance.json").read_text("utf-8")
     assert '"blocks_computed": 0' in provenance
     assert again.record.tables == done.record.tables
@@ -110,7 +111,7 @@ def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFix
 
 def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
     drawn = Plan((FIGURE_2,), QUICK, {HELD_OUT: SELECTION})
-    done = carry_out(drawn, tmp_path, 0, TOLD)
+    done = carry_out(drawn, tmp_path, Here(), TOLD)
     page = (done.folder / "reproduction.html").read_text("utf-8")
     assert (done.record.trials, done.record.flown) == (0, None)
     assert all(shown.topology in page for shown in done.record.gallery)

@@ -15,6 +15,7 @@ from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import PAGES, table_1, table_2
 from faultpath.studies.results import Results
 from faultpath.studies.run import Plan, conclude, measure_all, plan, read_results, save
+from faultpath.work import Here
 
 TINY = Profile("tiny", scenes=2, seeds=(0,))
 NOMINAL = table_2.cell("wm-a", 0.0)
@@ -35,7 +36,7 @@ def a_plan(*pages: Page) -> Plan:
 
 
 def fly(asked: Plan, folder: Path) -> Flown:
-    return flights.fly(asked.legs(), folder, 0, lambda now: None, lambda text: None)
+    return flights.fly(asked.legs(), folder, Here(), lambda now: None, lambda text: None)
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +91,7 @@ def test_a_run_without_measurements_says_which_is_missing(run: Path) -> None:
 def test_progress_reaches_the_end(tmp_path: Path) -> None:
     seen: list[Pace] = []
     one = Plan((TWO,), Profile("one", 1, (0,)), {HELD_OUT: SELECTION})
-    flights.fly(one.legs(), tmp_path, 0, seen.append, lambda text: None)
+    flights.fly(one.legs(), tmp_path, Here(), seen.append, lambda text: None)
     assert seen[0].trials_done == 0
     assert seen[-1].trials_done == seen[-1].trials_total == 1
 

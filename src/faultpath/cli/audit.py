@@ -6,7 +6,16 @@ from typing import Annotated, Literal
 
 import typer
 
-from faultpath.cli.options import SET, MemoryLimit, TimeLimit, numbers, path, settings, sizes
+from faultpath.cli.options import (
+    SET,
+    Executor,
+    MemoryLimit,
+    TimeLimit,
+    numbers,
+    path,
+    settings,
+    sizes,
+)
 
 FAILED_TRIALS = 1
 
@@ -74,6 +83,7 @@ def command(
             help="Worker processes, 0 for this process alone; default one per core if that helps."
         ),
     ] = None,
+    executor: Executor = "local",
     time_limit: TimeLimit = None,
     memory_limit: MemoryLimit = None,
 ) -> int:
@@ -102,6 +112,7 @@ def command(
         options=options,
         folder=out,
         workers=workers,
+        executor=executor,
         time_limit_s=time_limit,
         memory_limit_gib=memory_limit,
         progress=Display(console, ("faultpath", *sys.argv[1:])),

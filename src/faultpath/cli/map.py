@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, numbers, path, settings, sizes
+from faultpath.cli.options import SET, Executor, TimeLimit, numbers, path, settings, sizes
 
 FAILED_TRIALS = 1
 
@@ -55,6 +55,7 @@ def command(
     workers: Annotated[
         int | None, typer.Option(help="Worker processes, 0 for this process alone.")
     ] = None,
+    executor: Executor = "local",
     time_limit: TimeLimit = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
 ) -> int:
@@ -85,6 +86,7 @@ def command(
         options=options,
         folder=out,
         workers=workers,
+        executor=executor,
         time_limit_s=time_limit,
         progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
     )

@@ -33,6 +33,16 @@ MemoryLimit = Annotated[
 """`--memory-limit` of the verbs that fly."""
 
 
+Executor = Annotated[
+    str,
+    typer.Option(
+        help="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs here, "
+        "else one of its own; ray:HOST:PORT names it."
+    ),
+]
+"""`--executor` of the verbs that fly."""
+
+
 SET = "System option, key=value; for scripts, and where a flag above has the same name."
 """Help of `--set`."""
 

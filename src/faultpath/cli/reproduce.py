@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path
+from faultpath.cli.options import Executor, TimeLimit, path
 
 if TYPE_CHECKING:
     from faultpath.door.reproduction import ReproductionRun
@@ -35,6 +35,7 @@ def command(
     platform: Annotated[
         str | None, typer.Option(help="Frozen platform to fly on; default the quadrotor's.")
     ] = None,
+    executor: Executor = "local",
     time_limit: TimeLimit = None,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and compare the results with it."""
@@ -47,6 +48,7 @@ def command(
         library=library,
         folder=out,
         workers=workers,
+        executor=executor,
         device=device,
         platform=platform,
         time_limit_s=time_limit,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
 from faultpath.door.display import Display, display
-from faultpath.door.systems import Chosen, choose, worker_count
+from faultpath.door.systems import LOCAL, Chosen, choose, hands
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
 from faultpath.faults.sizes import each_size
@@ -49,6 +49,7 @@ def audit(
     after: str | PathLike[str] | None = None,
     metric: str = "",
     thresholds: Sequence[float] = (),
+    executor: str = LOCAL,
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -83,6 +84,8 @@ def audit(
             error; otherwise notices go to the log `faultpath`.
         metric: Of the system's own, told beside success.
         thresholds: Of that metric, at which success is told anew.
+        executor: `local` for processes of this machine, `ray` for the Ray cluster that
+            `RAY_ADDRESS` names or that runs here, else one of the call's own, or `ray:HOST:PORT`.
         after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
 
     Raises:
@@ -97,7 +100,7 @@ def audit(
     called = isinstance(progress, Display) and progress.is_command
     limit = patience(str(system), time_limit_s) if called else nullcontext()
     with limit:
-        chosen = choose(system, options or {}, workers, (baseline, repair))
+        chosen = choose(system, options or {}, workers, (baseline, repair), executor)
         built = chosen.system
         scenes_from = library_of(built, library)
     asked = plan_audit(
@@ -132,8 +135,8 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     held = None if after is None or chosen.own else Path(after)
-    count = worker_count(built, chosen.workers)
-    carry_out(built, asked, place, count, told, time_limit_s, memory_limit_gib, held)
+    with hands(built, chosen.workers, chosen.executor) as workforce:
+        carry_out(built, asked, place, workforce, told, time_limit_s, memory_limit_gib, held)
     run = Run(place, *read_run(place))
     run.report()
     return run

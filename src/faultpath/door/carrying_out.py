@@ -19,6 +19,7 @@ from faultpath.planning import Audit
 from faultpath.store import write_text
 from faultpath.store.sealed import seal
 from faultpath.trials import System, system_shown
+from faultpath.work import Executor
 
 _SHOWN = 5
 """Different errors told one by one."""
@@ -28,7 +29,7 @@ def carry_out(
     system: System,
     audit: Audit,
     folder: Path,
-    workers: int,
+    hands: Executor,
     told: Display,
     time_limit_s: float | None,
     memory_limit_gib: float | None = None,
@@ -46,13 +47,13 @@ def carry_out(
         told.say(f"Computing with {system.backend}.")
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(system, audit, folder, workers, told, time_limit_s, memory_limit_gib, after)
+    result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
     files = seal(folder, MADE_FROM)
-    provenance = run_provenance(result, stopwatch, told.command, workers, system.backend, files)
+    provenance = run_provenance(result, stopwatch, told.command, hands, system.backend, files)
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
 
 
@@ -60,7 +61,7 @@ def _run(
     system: System,
     audit: Audit,
     folder: Path,
-    workers: int,
+    hands: Executor,
     told: Display,
     time_limit_s: float | None,
     memory_limit_gib: float | None,
@@ -76,10 +77,10 @@ def _run(
             return run_study(
                 audit.study,
                 folder,
-                workers,
-                note,
+                progress=note,
                 notice=told.say,
                 system=system,
+                executor=hands,
                 time_limit_s=time_limit_s,
                 memory_limit_gib=memory_limit_gib,
                 after=after,

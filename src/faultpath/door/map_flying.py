@@ -23,7 +23,7 @@ from faultpath.plane.study import MapPlan
 from faultpath.store import write_text
 from faultpath.store.folder import OUTCOMES
 from faultpath.store.sealed import seal
-from faultpath.work import Executor, local
+from faultpath.work import Executor
 
 MADE_FROM = (MAP, OUTCOMES)
 """The files of a map's folder that its pages are made from, and checked against."""
@@ -33,7 +33,7 @@ _KEPT = "Kept "
 
 
 def fly_map(
-    plan: MapPlan, folder: Path, workers: int, told: Display, time_limit_s: float | None
+    plan: MapPlan, folder: Path, hands: Executor, told: Display, time_limit_s: float | None
 ) -> None:
     """Fly, decide and write what the pages of a map are made from.
 
@@ -43,12 +43,12 @@ def fly_map(
     backend = plan.system.backend
     if backend:
         told.say(f"Computing with {backend}.")
-    points, result = _Flying(plan, folder, workers, told, time_limit_s).fly()
+    points, result = _Flying(plan, folder, hands, told, time_limit_s).fly()
     tell_failures(told, result, folder)
     record = conclude(plan, points, result.outcomes, result.findings)
     write_text(folder / MAP, record.model_dump_json(indent=1) + "\n", folder)
     files = seal(folder, MADE_FROM)
-    provenance = run_provenance(result, stopwatch, told.command, workers, backend, files)
+    provenance = run_provenance(result, stopwatch, told.command, hands, backend, files)
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
 
 
@@ -58,7 +58,7 @@ class _Flying:
 
     plan: MapPlan
     folder: Path
-    workers: int
+    hands: Executor
     told: Display
     time_limit_s: float | None
 
@@ -70,10 +70,10 @@ class _Flying:
         asked, points, computed = self.plan.question, list(lattice(COARSE)), 0
         self._announce(points)
         try:
-            with local(self.workers) as executor, self.told.progress("Flying") as show:
+            with self.told.progress("Flying") as show:
                 say = _Once(self.told.say)
                 while True:
-                    result = self._round(points, executor, show, say)
+                    result = self._round(points, show, say)
                     say.next_round()
                     computed += result.blocks_computed
                     compared = self.plan.compared(points, result.outcomes)
@@ -82,7 +82,7 @@ class _Flying:
                     if not new:
                         break
                     points += new
-                result = self._round(points, executor, show, say, recheck=True)
+                result = self._round(points, show, say, recheck=True)
                 trials = len(result.outcomes.rows)
                 show(Now(trials, trials, f"{len(points)} pairs of errors"))
         except Interrupted as stop:
@@ -108,7 +108,6 @@ class _Flying:
     def _round(
         self,
         points: Sequence[Point],
-        executor: Executor,
         show: Show,
         say: Callable[[str], None],
         recheck: bool = False,
@@ -124,12 +123,11 @@ class _Flying:
         return run_study(
             self.plan.study(points),
             self.folder,
-            self.workers,
-            note,
-            say,
-            self.plan.system,
+            progress=note,
+            notice=say,
+            system=self.plan.system,
             shared=True,
-            executor=executor,
+            executor=self.hands,
             time_limit_s=self.time_limit_s,
             recheck=recheck,
         )

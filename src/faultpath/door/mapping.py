@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from faultpath.door.audit import checked_count, checked_seeds, checked_texts, run_folder
 from faultpath.door.display import Display, display
-from faultpath.door.systems import choose, worker_count
+from faultpath.door.systems import LOCAL, choose, hands
 from faultpath.patience import patience
 from faultpath.plane.study import plan_map
 from faultpath.trials import System, library_of
@@ -37,6 +37,7 @@ def reversal_map(
     workers: int | None = None,
     time_limit_s: float | None = None,
     progress: bool | Display = True,
+    executor: str = LOCAL,
 ) -> "MapRun":
     """Map who is ahead over the error at one module and that at another, of the same source.
 
@@ -63,6 +64,7 @@ def reversal_map(
         workers: Worker processes, 0 for this process alone.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As for `audit`.
+        executor: As for `audit`.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -73,7 +75,7 @@ def reversal_map(
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
     called = isinstance(progress, Display) and progress.is_command
     with patience(str(system), time_limit_s) if called else nullcontext():
-        chosen = choose(system, options or {}, workers, (baseline, repair))
+        chosen = choose(system, options or {}, workers, (baseline, repair), executor)
         built = chosen.system
         scenes_from = library_of(built, library)
     plan = plan_map(
@@ -103,7 +105,8 @@ def reversal_map(
     from faultpath.door.map_flying import fly_map
     from faultpath.door.mapped import read_map
 
-    fly_map(plan, place, worker_count(built, chosen.workers), told, time_limit_s)
+    with hands(built, chosen.workers, chosen.executor) as workforce:
+        fly_map(plan, place, workforce, told, time_limit_s)
     run = read_map(place)
     run.report()
     return run

@@ -1,5 +1,6 @@
 """Carrying a reproduction out: fly, measure, conclude, and write its files."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -22,10 +23,11 @@ from faultpath.studies.pages import table_4
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
 from faultpath.studies.shipped import beside
 from faultpath.tables import latex, markdown
+from faultpath.work import Executor
 
 
 def carry_out(
-    plan: Plan, folder: Path, workers: int, told: Display, time_limit_s: float | None = None
+    plan: Plan, folder: Path, hands: Executor, told: Display, time_limit_s: float | None = None
 ) -> ReproductionRun:
     """Fly, measure, conclude and write the files of a plan.
 
@@ -37,8 +39,10 @@ def carry_out(
     if note := plan.substitution():
         told.say(note)
     try:
-        flown = _fly(told, legs, folder, workers, time_limit_s)
-        evidence = _measure(told, plan, folder, workers)
+        flown = _fly(told, legs, folder, hands, time_limit_s)
+        evidence = _measure(
+            told, plan, folder, (os.cpu_count() or 1) if hands.name else hands.count
+        )
     except (Interrupted, KeyboardInterrupt):
         raise Stopped(
             f"interrupted; what is finished is kept in {folder}, and the same {told.called} "
@@ -51,14 +55,14 @@ def carry_out(
     _tell_failures(told, result)
     backend = plan.system.backend
     files = seal(place, (*RESULTS, DELIVERIES))
-    provenance = run_provenance(result, stopwatch, told.command, workers, backend, files)
+    provenance = run_provenance(result, stopwatch, told.command, hands, backend, files)
     write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
     _write_pages(place, plan, found, provenance, flown)
     return ReproductionRun(place, found)
 
 
 def _fly(
-    told: Display, legs: Sequence[Leg], folder: Path, workers: int, time_limit_s: float | None
+    told: Display, legs: Sequence[Leg], folder: Path, hands: Executor, time_limit_s: float | None
 ) -> Flown:
     with told.progress("Flying") as show:
 
@@ -66,7 +70,7 @@ def _fly(
             count = f"{now.trials_done:.0f} of {now.trials_total:.0f} trials"
             show(Now(now.trials_done, now.trials_total, count, now.seconds_left, now.leg))
 
-        return fly(legs, folder, workers, flying, told.say, time_limit_s)
+        return fly(legs, folder, hands, flying, told.say, time_limit_s)
 
 
 def _measure(told: Display, plan: Plan, folder: Path, workers: int) -> EvidenceTable:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from faultpath.door.display import Display, display
 from faultpath.door.reproduced import ReproductionRun
-from faultpath.door.systems import worker_count
+from faultpath.door.systems import LOCAL, check_executor, hands
 from faultpath.studies.run import plan, standing
 
 
@@ -22,6 +22,7 @@ def reproduce(
     time_limit_s: float | None = None,
     progress: bool | Display = True,
     name: str = "reproduction",
+    executor: str = LOCAL,
 ) -> ReproductionRun:
     """Fly every study of the paper, or some of its pages, and compare the results with it.
 
@@ -36,12 +37,14 @@ def reproduce(
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As in `audit`.
         name: Of the run folder.
+        executor: As in `audit`, for the flights; windows are measured on this machine.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     given = dict(locals())
+    check_executor(executor)
     named = (pages,) if isinstance(pages, str) else tuple(pages)
     chosen = {"device": device, "platform": platform}
     options = {option: value for option, value in chosen.items() if value is not None}
@@ -58,4 +61,5 @@ def reproduce(
 
     if other:
         told.say(other)
-    return carry_out(asked, place, worker_count(asked.system, workers), told, time_limit_s)
+    with hands(asked.system, workers, executor) as workforce:
+        return carry_out(asked, place, workforce, told, time_limit_s)

@@ -13,6 +13,10 @@ from faultpath.errors import UserError
 from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
+from faultpath.work import Executor, local
+
+LOCAL, RAY = "local", "ray"
+"""Where trials fly."""
 
 _FACTORY = "create"
 """What builds the system in a file that is named without it."""
@@ -34,6 +38,7 @@ class Chosen:
     system: System
     spec: SystemSpec
     workers: int | None
+    executor: str = LOCAL
     own: bool = False
     """Whether it is an object of the caller's: nothing but this process has it."""
     notice: str = ""
@@ -59,14 +64,16 @@ def choose(
     options: Mapping[str, object],
     workers: int | None,
     variants: Sequence[str],
+    executor: str = LOCAL,
 ) -> Chosen:
     """Return the system to audit, with the parts that its variants name.
 
-    Raises as `load_system`, and for what an object cannot do.
+    Raises as `load_system`, and for what an object cannot do and an executor that there is not.
     """
+    check_executor(executor)
     if not isinstance(system, System):
         spec = with_parts(_spec(system, options), variants)
-        return Chosen(trials.load_system(spec), spec, workers)
+        return Chosen(trials.load_system(spec), spec, workers, executor)
     if options:
         raise UserError(
             "options build a system, and this one is built: give its name with the options, or "
@@ -75,11 +82,11 @@ def choose(
     spec = _loaded(system)
     if spec is not None:
         spec = with_parts(spec, variants)
-        return Chosen(trials.load_system(spec), spec, workers)
-    if workers:
+        return Chosen(trials.load_system(spec), spec, workers, executor)
+    if workers or executor != LOCAL:
         raise UserError(
             "an object cannot be sent to worker processes: put what builds the system into a file "
-            "and name that, as 'my_system.py:create', or leave workers out."
+            "and name that, as 'my_system.py:create', or leave workers and executor out."
         )
     spec = SystemSpec.of_class(type(system))
     check_system(system, spec.name)
@@ -90,11 +97,28 @@ def choose(
     return Chosen(system, spec, 0, own=True, notice=notice)
 
 
-def worker_count(system: System, asked: int | None) -> int:
-    """Return the number of worker processes: one a core where the system gains by several."""
-    if asked is not None:
-        return asked
-    return (os.cpu_count() or 1) if system.parallel else 1
+def check_executor(executor: object) -> None:
+    """Raise `UserError` for what names no executor."""
+    if executor != LOCAL and executor != RAY and not str(executor).startswith(f"{RAY}:"):
+        raise UserError(
+            f"there is no executor {executor!r:.80}: use 'local', 'ray', or 'ray:HOST:PORT' with "
+            "the address of a cluster's head."
+        )
+
+
+def hands(system: System, workers: int | None, executor: str = LOCAL) -> Executor:
+    """Return what flies: processes of this machine, or the workers of a Ray cluster.
+
+    Where `workers` is left out, one for each core or CPU if the system gains by several. Raises
+    `UserError` for an executor that there is not or that cannot be used.
+    """
+    check_executor(executor)
+    count = 1 if workers is None and not system.parallel else workers
+    if executor == LOCAL:
+        return local((os.cpu_count() or 1) if count is None else count)
+    from faultpath.work.ray_cluster import RayWorkers
+
+    return RayWorkers(executor.removeprefix(RAY).removeprefix(":"), count)
 
 
 def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:

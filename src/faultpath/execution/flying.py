@@ -34,6 +34,8 @@ class _Running(Generic[T]):
     since: float
     started: bool = False
     """Whether the system was built; its building has a limit of its own."""
+    lost: int = 0
+    """How many workers were lost over it."""
 
 
 class Flying(Generic[T]):
@@ -47,6 +49,8 @@ class Flying(Generic[T]):
     ) -> None:
         self._executor, self._call, self._limit, self._name = executor, call, limit, name
         self._running: dict[int, _Running[T]] = {}
+        self._again: list[_Running[T]] = []
+        """Whose worker was lost, through no fault of theirs that is known."""
         self._false_starts = 0
         self.undeclared: set[str] = set()
         """Files that the system has read and does not name among its data files."""
@@ -63,22 +67,25 @@ class Flying(Generic[T]):
         """
         while True:
             for worker in self._executor.free():
-                if task := take(worker):
+                if self._again:
+                    again = self._again.pop(0)
+                    self._submit(worker, again.task, again.lost)
+                elif task := take(worker):
                     self._submit(worker, task)
             if not self._running:
                 return
             for worker, end in self._executor.completions(_TICK_S):
                 running = self._running.pop(worker)
-                if isinstance(end, Lost) and not running.started:
-                    self._start_again(worker, running.task, end)
+                if isinstance(end, Lost) and self._worth_another(running, end):
+                    self._again.append(running)
                 else:
                     settle(running.task, _reply(end))
             for task, reply in self._stop_late():
                 settle(task, reply)
             report()
 
-    def _submit(self, worker: int, task: T) -> None:
-        running = self._running[worker] = _Running(task, time.monotonic())
+    def _submit(self, worker: int, task: T, lost: int = 0) -> None:
+        running = self._running[worker] = _Running(task, time.monotonic(), lost=lost)
 
         def told(message: Started | Undeclared) -> None:
             if isinstance(message, Undeclared):
@@ -89,11 +96,15 @@ class Flying(Generic[T]):
 
         self._executor.submit(worker, self._call(task), told)
 
-    def _start_again(self, worker: int, task: T, end: Lost) -> None:
-        self._false_starts += 1
-        if self._false_starts > _FALSE_STARTS:
-            raise WorkerLost(f"worker processes do not come up: {end.how}")
-        self._submit(worker, task)
+    def _worth_another(self, running: _Running[T], end: Lost) -> bool:
+        """Return whether a task whose worker was lost is handed out as if that had not been."""
+        if not running.started:
+            self._false_starts += 1
+            if self._false_starts > _FALSE_STARTS:
+                raise WorkerLost(f"worker processes do not come up: {end.how}")
+            return True
+        running.lost += 1
+        return running.lost <= self._executor.retries
 
     def _stop_late(self) -> list[tuple[T, Died]]:
         late: list[tuple[T, Died]] = []

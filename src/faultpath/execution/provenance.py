@@ -12,6 +12,7 @@ from faultpath.code import Code
 from faultpath.execution.runner import RunResult
 from faultpath.record.provenance import RunProvenance
 from faultpath.version import __version__
+from faultpath.work import Executor
 
 _PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 
@@ -32,11 +33,12 @@ def run_provenance(
     result: RunResult,
     stopwatch: Stopwatch,
     command: Sequence[str],
-    workers: int,
+    hands: Executor,
     backend: str = "",
     files: Mapping[str, str] | None = None,
 ) -> RunProvenance:
-    """Describe the run that has just finished; `files` are digests of what it wrote, by name."""
+    """Describe the run that has just finished on `hands`; `files` are digests of what it
+    wrote, by name."""
     commit, dirty = checkout(Path(__file__).parents[1])
     system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
     return RunProvenance(
@@ -49,7 +51,8 @@ def run_provenance(
         platform=platform.platform(),
         processor=processor(),
         backend=backend,
-        workers=workers,
+        workers=hands.count,
+        executor=hands.name,
         started=stopwatch.started.isoformat(timespec="seconds"),
         finished=datetime.now(UTC).isoformat(timespec="seconds"),
         wall_s=round(stopwatch.seconds(), 3),

@@ -123,6 +123,7 @@ def run_study(
     error of `faultpath.taps` when the audit itself is wrong.
     """
     hands = local(workers) if executor is None else nullcontext(executor)
+    workers = workers if executor is None else executor.count
     for what, asked in (("time", time_limit_s), ("memory", memory_limit_gib)):
         if workers == 0 and asked is not None:
             raise UserError(f"a {what} limit needs worker processes: this one cannot stop itself")

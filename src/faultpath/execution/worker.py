@@ -15,7 +15,7 @@ from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
 from faultpath.trials.system import System
-from faultpath.work import WorkerLost, tell
+from faultpath.work import WorkerLost, elsewhere, tell
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,11 @@ class Built:
     unread: Watch
 
 
+_ALIKE = (
+    "every node needs the same files and packages, from a shared file system, an image, or "
+    "`ray job submit --working-dir`"
+)
+
 _built: list[Built] = []
 """What this worker process has built last."""
 
@@ -95,9 +100,12 @@ def building(brief: Brief) -> Generator[Built]:
             _built.append(_build(brief))
             hold_to(brief.memory_gib)
         except (Exception, SystemExit) as error:
-            if mistake := explained(error):
-                raise mistake from error
-            raise
+            mistake = explained(error) or error
+            if elsewhere() and isinstance(mistake, UserError | OSError | ImportError):
+                raise WorkerLost(f"on {elsewhere()}: {mistake} ({_ALIKE})") from error
+            if mistake is error:
+                raise
+            raise mistake from error
     built = _built[0]
     tell(Started())
     yield built
@@ -126,11 +134,14 @@ def _build(brief: Brief) -> Built:
     reads.forget(opened)  # scenes have a hash of their own
     _check_same(before, code.state)
     if (code.state, library.content_hash) != (brief.state, brief.library_hash):
+        differ = named(brief.state.changed(code.state) or ("the library",))
+        other = f"system {brief.system.name!r} is another one"
+        if place := elsewhere():
+            raise WorkerLost(f"{other} on {place} than here ({differ})")
         _check_same(brief.state, code.state)
-        differ = brief.state.changed(code.state) or ("the library",)
         raise WorkerLost(
-            f"system {brief.system.name!r} is another one in a worker process than here "
-            f"({named(differ)}): nothing of it may depend on the process that builds it"
+            f"{other} in a worker process than here ({differ}): nothing of it may depend on the "
+            "process that builds it"
         )
     return Built(brief, system, code, code.unread())
 

@@ -49,6 +49,8 @@ class RunProvenance(BaseModel):
     backend: str = ""
     """What computed the trials, where a system says so."""
     workers: int
+    executor: str = ""
+    """On what they were, where that is not this machine; platform and processor are this one's."""
     started: str
     finished: str
     wall_s: float

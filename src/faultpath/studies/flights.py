@@ -13,7 +13,7 @@ from faultpath.faults import parse_fault
 from faultpath.studies.cells import Cell, Profile, Setting
 from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
-from faultpath.work import local
+from faultpath.work import Executor
 
 SYSTEM = "quadrotor"
 FLIGHTS = "flights"
@@ -108,7 +108,7 @@ def plan_legs(
 def fly(
     legs: Sequence[Leg],
     folder: Path,
-    workers: int,
+    hands: Executor,
     progress: Callable[[Pace], None],
     notice: Callable[[str], None],
     time_limit_s: float | None = None,
@@ -119,25 +119,22 @@ def fly(
     """
     clock = _Clock(sum(leg.trials for leg in legs), progress)
     results: list[RunResult] = []
-    with local(workers) as executor:
-        for leg in legs:
-            clock.begin(leg.title)
-            place, system = folder / FLIGHTS / leg.folder, leg.system
-            results.append(
-                run_study(
-                    leg.study,
-                    place,
-                    workers,
-                    clock.show,
-                    notice,
-                    system,
-                    shared=True,
-                    executor=executor,
-                    time_limit_s=time_limit_s,
-                    recheck=False,
-                )
+    for leg in legs:
+        clock.begin(leg.title)
+        results.append(
+            run_study(
+                leg.study,
+                folder / FLIGHTS / leg.folder,
+                progress=clock.show,
+                notice=notice,
+                system=leg.system,
+                shared=True,
+                executor=hands,
+                time_limit_s=time_limit_s,
+                recheck=False,
             )
-            clock.end(leg.trials)
+        )
+        clock.end(leg.trials)
     return Flown(tuple(legs), tuple(results), _written(folder, legs))
 
 

@@ -10,6 +10,7 @@ from faultpath.work.executor import (
     Lost,
     Returned,
     WorkerLost,
+    elsewhere,
     run_all,
     run_each,
     tell,

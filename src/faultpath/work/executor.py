@@ -63,6 +63,16 @@ class Executor(ABC):
 
     in_process = False
     """Whether calls run in this process: nothing is pickled, and no call can be cancelled."""
+    retries = 0
+    """How often a call is worth handing out again whose worker was lost: machines come and go, and
+    only where a call loses one after the other is it the call's fault."""
+    name = ""
+    """On what calls run, in words, where that is not this machine."""
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of workers; 0 for this process."""
 
     @abstractmethod
     def free(self) -> Sequence[int]:
@@ -125,6 +135,19 @@ def run_all(executor: Executor, calls: Sequence[Callable[[], T]]) -> Iterator[tu
         yield place, end.value
 
 
+_places: list[str] = []
+
+
+def live_on(place: str) -> None:
+    """Say where this worker process is, in words, where that is not its caller's machine."""
+    _places[:] = [place]
+
+
+def elsewhere() -> str:
+    """Return where this worker process is; empty on the machine of its caller."""
+    return _places[0] if _places else ""
+
+
 _told: ContextVar[Told] = ContextVar("told", default=ignore)
 
 
@@ -156,6 +179,11 @@ class Here(Executor):
 
     def __init__(self) -> None:
         self._waiting: tuple[Call, Told] | None = None
+
+    @property
+    def count(self) -> int:
+        """No worker beside this process."""
+        return 0
 
     def free(self) -> Sequence[int]:
         """Return 0 unless a call waits."""

@@ -13,7 +13,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.errors import Notice
-from faultpath.work.executor import Failed, Returned, ended, tell
+from faultpath.work.executor import Failed, Returned, Told, ended, tell
 
 
 def main(channel: int, lifeline: int) -> None:
@@ -25,17 +25,18 @@ def main(channel: int, lifeline: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what Ctrl-C means
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     faulthandler.enable()
-    warnings.showwarning = _show
+    warnings.showwarning = show
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     with Connection(channel) as parent, suppress(EOFError, ConnectionError):
         while True:
-            parent.send_bytes(_served(parent, parent.recv_bytes()))
+            packed = parent.recv_bytes()
+            parent.send_bytes(served(packed, lambda message: parent.send((message,))))
 
 
 _shown = warnings.showwarning
 
 
-def _show(message: Warning | str, *more: Any, **named: Any) -> None:
+def show(message: Warning | str, *more: Any, **named: Any) -> None:
     """Hand a notice to the parent, which shows it once; show other warnings as Python does."""
     if isinstance(message, Notice):
         tell(message)
@@ -43,13 +44,13 @@ def _show(message: Warning | str, *more: Any, **named: Any) -> None:
         _shown(message, *more, **named)
 
 
-def _served(parent: "Connection[Any, Any]", packed: bytes) -> memoryview:
-    """Run a call and return its end, packed."""
+def served(packed: bytes, told: Told) -> memoryview:
+    """Run a packed call of the parent's and return its end, packed; `told` gets what it tells."""
     try:
-        call = pickle.loads(packed)  # of the parent, over a socket that nobody else has: no file
+        call = pickle.loads(packed)  # of the parent, on a way that nobody else has: no file
     except Exception as error:
         return _packed(Failed(error))
-    return _packed(ended(call, lambda message: parent.send((message,))))
+    return _packed(ended(call, told))
 
 
 def _packed(end: Returned | Failed) -> memoryview:

@@ -44,6 +44,11 @@ class Processes(Executor):
         self._processes: dict[int, _Process] = {}
         self._busy: dict[int, Told] = {}
 
+    @property
+    def count(self) -> int:
+        """Number of processes, started or not."""
+        return self._count
+
     def free(self) -> Sequence[int]:
         """Return the workers without a call, started or not."""
         return [worker for worker in range(self._count) if worker not in self._busy]

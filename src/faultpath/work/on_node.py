@@ -1,0 +1,54 @@
+"""What runs on a node of a Ray cluster: the calls that its driver sends, one after the other."""
+
+import os
+import socket
+import sys
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from multiprocessing.reduction import ForkingPickler
+from queue import SimpleQueue
+
+import ray
+
+from faultpath.version import __version__
+from faultpath.work.executor import live_on
+from faultpath.work.process import served, show
+
+
+class OnNode:
+    """An actor of Ray's: the counterpart of a local worker process.
+
+    `folder` is the working directory of the driver, entered where the node has it too; `path`
+    names folders that modules are looked for in beside the node's own.
+    """
+
+    def __init__(self, folder: str, path: Sequence[str]) -> None:
+        if os.path.isdir(folder):
+            os.chdir(folder)
+        sys.path += [each for each in path if each not in sys.path]
+        warnings.showwarning = show
+        self._place = f"node {socket.gethostname()} of the Ray cluster"
+        live_on(self._place)
+        self._thread = ThreadPoolExecutor(1)  # always the same: some libraries bind to theirs
+
+    def ready(self) -> tuple[str, str, str]:
+        """Return where this is in words, the node's id, and the version of faultpath."""
+        return self._place, ray.get_runtime_context().get_node_id(), __version__
+
+    def serve(self, packed: bytes) -> Iterator[bytes]:
+        """Run a call; yield what it tells as it tells it, and its end last."""
+        news: SimpleQueue[tuple[bytes, bool]] = SimpleQueue()
+        self._thread.submit(_run, packed, news.put)
+        last = False
+        while not last:
+            message, last = news.get()
+            yield message
+
+
+def _run(packed: bytes, put: Callable[[tuple[bytes, bool]], None]) -> None:
+    try:
+        end = served(packed, lambda told: put((bytes(ForkingPickler.dumps((told,))), False)))
+        put((bytes(end), True))
+    except BaseException:  # as a process ends that cannot go on
+        os._exit(1)

@@ -1,0 +1,56 @@
+"""What `--executor ray` says where there is no cluster to fly on."""
+
+import sys
+from unittest.mock import patch
+
+import pytest
+from cli_runs import audit
+
+pytestmark = pytest.mark.filterwarnings("ignore::FutureWarning", "ignore::ResourceWarning")
+
+
+@pytest.mark.parametrize(
+    ("executor", "workers", "says"),
+    [
+        ("slurm", 1, "there is no executor 'slurm': use 'local', 'ray', or 'ray:HOST:PORT'"),
+        ("ray", 0, "the number of workers is 0: on Ray use 1 or more"),
+        ("ray:10.0.0.1", 1, "'10.0.0.1' is no address of a Ray cluster: give HOST:PORT"),
+        ("ray:ray://head:10001", 1, "'ray://head:10001' is no address of a Ray cluster"),
+        ("ray:127.0.0.1:1", 1, "no Ray cluster answers at 127.0.0.1:1"),
+    ],
+)
+def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, says, tmp_path):
+    pytest.importorskip("ray")
+    ended = audit(executor=executor, workers=workers, out=tmp_path / "run")
+    assert says in ended.refused()
+
+
+def test_a_missing_extra_is_a_sentence(tmp_path):
+    with patch.dict(sys.modules, {"ray": None}):
+        ended = audit(executor="ray", workers=1, out=tmp_path / "run")
+    assert "pip install 'faultpath[ray]'" in ended.refused()
+
+
+def test_another_version_on_the_cluster_is_a_sentence(tmp_path):
+    pytest.importorskip("ray")
+    says = "Version mismatch: The cluster was started with:\n    Ray: 2.1\n    Python: 3.9\n"
+    with patch("ray.init", side_effect=RuntimeError(says)):
+        ended = audit(executor="ray:auto", workers=1, out=tmp_path / "run")
+    assert (
+        "cluster auto: Version mismatch: The cluster was started with: Ray: 2.1" in ended.refused()
+    )
+
+
+def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(tmp_path, monkeypatch):
+    pytest.importorskip("ray")
+    monkeypatch.delenv("RAY_ADDRESS", raising=False)
+    asked = []
+
+    def init(address, **more):
+        asked.append((address, more.get("num_cpus")))
+        raise ConnectionError("none runs") if address == "auto" else Exception("no room\n")
+
+    with patch("ray.init", side_effect=init):
+        ended = audit(executor="ray", workers=3, out=tmp_path / "run")
+    assert asked == [("auto", None), ("local", 3)]
+    assert "Ray does not start on this machine: no room" in ended.refused()

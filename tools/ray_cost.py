@@ -1,0 +1,222 @@
+"""What trials cost on Ray workers of this machine, and what a million of them would.
+
+    python tools/ray_cost.py [toy] [quadrotor]    default both, on a quiet machine
+    python tools/ray_cost.py toy --try            a few trials; nothing is kept
+
+Each audit is made twice, with few trials and with more, by processes and by Ray workers. What the
+longer one takes beyond the shorter is the price of trials; the rest is the price of starting.
+Writes `docs/reference/ray-cost.json`, of which `docs/many-trials.md` makes its tables.
+"""
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from blocks import REFERENCE, Run, parsed, tabled
+from flown_code import ROOT
+from pydantic import BaseModel
+
+import faultpath
+from faultpath.execution.provenance import checkout, processor
+
+RESULT = REFERENCE / "ray-cost.json"
+MANY = 1_000_000
+WORKERS = (1, 2, 4)
+FARTHER = (64, 256, 1024)
+"""Workers for which times are extrapolated."""
+CASES: Mapping[str, tuple[Mapping[str, Any], Mapping[str, Any], Mapping[str, Any]]] = {
+    "toy": (
+        {
+            "system": ROOT / "examples" / "toy.py",
+            "baseline": "calibrated",
+            "repair": "blind",
+            "fault": "gain:scale=0.6",
+            "library": "carts",
+        },
+        {"seeds": range(5)},
+        {"seeds": range(40)},
+    ),
+    "quadrotor": (
+        {
+            "system": "quadrotor",
+            "baseline": "gru",
+            "repair": "gru+dcc",
+            "fault": "calibration=+0.1",
+            "library": "selection",
+            "options": {"wind": "L3"},
+        },
+        {"scenes": 8},
+        {"scenes": 24},
+    ),
+}
+"""What is audited, with few trials and with more."""
+
+
+class Spent(BaseModel):
+    """What one audit took."""
+
+    trials: int
+    wall_s: float
+    driver_s: float
+    """Processor time of the process that hands trials out and stores them."""
+
+
+class Timed(BaseModel):
+    """One audit with few trials and with more, on so many workers."""
+
+    case: str
+    executor: str
+    workers: int
+    few: Spent
+    more: Spent
+
+    @property
+    def trials(self) -> int:
+        """How many more."""
+        return self.more.trials - self.few.trials
+
+    @property
+    def trial_s(self) -> float:
+        """Seconds by the clock that one trial more takes."""
+        return (self.more.wall_s - self.few.wall_s) / self.trials
+
+    @property
+    def driver_s(self) -> float:
+        """Of the driver's processor time."""
+        return (self.more.driver_s - self.few.driver_s) / self.trials
+
+
+class Cost(BaseModel):
+    """All that was measured, and on what."""
+
+    date: str
+    processor: str
+    cores: int
+    load: float
+    """Of the machine before the first run."""
+    ray: str
+    commit: str | None
+    dirty: bool | None
+    timed: tuple[Timed, ...]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure; return the exit status."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("cases", nargs="*", choices=[*CASES, []], help="default all")
+    parser.add_argument("--try", dest="brief", action="store_true", help="few trials, none kept")
+    asked = parser.parse_args(arguments)
+    commit, dirty = checkout(ROOT / "src" / "faultpath")
+    load = os.getloadavg()[0]
+    timed = [
+        _timed(case, executor, workers, asked.brief)
+        for case in asked.cases or CASES
+        for workers in WORKERS
+        for executor in ("local", "ray")
+    ]
+    cost = Cost(
+        date=datetime.now(UTC).date().isoformat(),
+        processor=processor(),
+        cores=len(os.sched_getaffinity(0)),
+        load=load,
+        ray=version("ray"),
+        commit=commit,
+        dirty=dirty,
+        timed=tuple(timed),
+    )
+    print(_measured(cost) if asked.brief else f"Written: {RESULT}")
+    if not asked.brief:
+        RESULT.write_text(cost.model_dump_json(indent=1) + "\n", "utf-8")
+    return 0
+
+
+def _timed(case: str, executor: str, workers: int, brief: bool) -> Timed:
+    common, few, more = CASES[case]
+    if brief:
+        few, more = {"scenes": 2}, {"scenes": 6}
+    spent = [_spent(common | size, executor, workers) for size in (few, more)]
+    found = Timed(case=case, executor=executor, workers=workers, few=spent[0], more=spent[1])
+    print(f"{case}, {executor}, {workers}: {1000 * found.trial_s:.2f} ms a trial", flush=True)
+    return found
+
+
+def _spent(asked: Mapping[str, Any], executor: str, workers: int) -> Spent:
+    with tempfile.TemporaryDirectory() as folder:
+        wall, driver = time.monotonic(), time.process_time()
+        run = faultpath.audit(
+            folder=Path(folder) / "run", executor=executor, workers=workers, progress=False, **asked
+        )
+        return Spent(
+            trials=Run("", run.record, run.provenance).trials,
+            wall_s=time.monotonic() - wall,
+            driver_s=time.process_time() - driver,
+        )
+
+
+def fill() -> str:
+    """Return the tables of the page."""
+    if not RESULT.exists():
+        return "*Not measured yet: `python tools/ray_cost.py` does it.*"
+    cost = parsed(RESULT, Cost, "run python tools/ray_cost.py")
+    return "\n\n".join([_where(cost), _measured(cost), _extrapolated(cost)])
+
+
+def _where(cost: Cost) -> str:
+    changed = " with uncommitted changes" if cost.dirty else ""
+    busy = "" if cost.load < 0.3 else " **The machine was busy**: all times are too long."
+    return (
+        f"Measured on {cost.date}: {cost.processor}, {cost.cores} cores, load {cost.load:.1f} "
+        f"before the first run, Ray {cost.ray}, "
+        f"commit `{(cost.commit or 'unknown')[:12]}`{changed}.{busy}"
+    )
+
+
+def _measured(cost: Cost) -> str:
+    rows = [
+        {
+            "name": each.case,
+            "on": "processes" if each.executor == "local" else "Ray",
+            "workers": each.workers,
+            "starting": each.few.wall_s - each.few.trials * each.trial_s,
+            "rate": 1 / each.trial_s,
+            "driver": 1000 * each.driver_s,
+            "hours": MANY * each.trial_s / 3600,
+        }
+        for each in cost.timed
+    ]
+    columns = {
+        "on": "{on}",
+        "workers": "{workers}",
+        "start and end, s": "{starting:.1f}",
+        "trials a second": "{rate:.1f}",
+        "driver a trial, ms": "{driver:.2f}",
+        f"{MANY:,} trials, h".replace(",", " "): "{hours:.1f}",
+    }
+    return tabled("audit", rows, columns, code=True)
+
+
+def _extrapolated(cost: Cost) -> str:
+    """Return the hours of many workers: those of one, shared out, as far as the driver keeps up."""
+    rows: list[Mapping[str, Any]] = []
+    for each in cost.timed:
+        if (each.executor, each.workers) == ("ray", 1):
+            hours = {f"on{n}": MANY * max(each.trial_s / n, each.driver_s) / 3600 for n in FARTHER}
+            busy = each.trial_s / each.driver_s if each.driver_s > 0 else float("inf")
+            rows.append(
+                {"name": each.case, "one": MANY * each.trial_s / 3600, "busy": busy} | hours
+            )
+    columns = {"worker hours": "{one:.1f}"}
+    columns |= {f"{n} workers, h": f"{{on{n}:.2f}}" for n in FARTHER}
+    columns |= {"the driver keeps up with": "{busy:.0f} workers"}
+    return tabled(f"{MANY:,} trials of".replace(",", " "), rows, columns, code=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
