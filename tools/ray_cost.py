@@ -1,7 +1,7 @@
 """What trials cost on Ray workers of this machine, and what a million of them would.
 
-    python tools/ray_cost.py [toy] [quadrotor]    default both, on a quiet machine
-    python tools/ray_cost.py toy --try            a few trials; nothing is kept
+    python tools/ray_cost.py                     on a quiet machine
+    python tools/ray_cost.py --only toy --try    a few trials; nothing is kept
 
 Each audit is made twice, with few trials and with more, by processes and by Ray workers. What the
 longer one takes beyond the shorter is the price of trials; the rest is the price of starting.
@@ -110,14 +110,14 @@ class Cost(BaseModel):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure; return the exit status."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("cases", nargs="*", choices=[*CASES, []], help="default all")
+    parser.add_argument("--only", choices=CASES, help="one of the audits")
     parser.add_argument("--try", dest="brief", action="store_true", help="few trials, none kept")
     asked = parser.parse_args(arguments)
     commit, dirty = checkout(ROOT / "src" / "faultpath")
     load = os.getloadavg()[0]
     timed = [
         _timed(case, executor, workers, asked.brief)
-        for case in asked.cases or CASES
+        for case in ([asked.only] if asked.only else CASES)
         for workers in WORKERS
         for executor in ("local", "ray")
     ]

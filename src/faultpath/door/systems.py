@@ -84,9 +84,10 @@ def choose(
         spec = with_parts(spec, variants)
         return Chosen(trials.load_system(spec), spec, workers, executor)
     if workers or executor != LOCAL:
+        idle = "workers" if workers else "executor"
         raise UserError(
             "an object cannot be sent to worker processes: put what builds the system into a file "
-            "and name that, as 'my_system.py:create', or leave workers and executor out."
+            f"and name that, as 'my_system.py:create', or leave {idle} out."
         )
     spec = SystemSpec.of_class(type(system))
     check_system(system, spec.name)

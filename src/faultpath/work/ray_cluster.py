@@ -49,6 +49,11 @@ class _Worker:
     """What its call tells and returns; `None` without a call."""
     told: Told = ignore
 
+    @property
+    def awaited(self) -> Any:
+        """What is to come of it next; `None` where it is free."""
+        return self.stream if self.starting is None else self.starting
+
 
 class RayWorkers(Executor):
     """Runs calls on a Ray cluster.
@@ -96,8 +101,8 @@ class RayWorkers(Executor):
         """Return the workers that run and have no call; wait for one where none has a call."""
         since, said = time.monotonic(), False
         while True:
-            free = [n for n, each in self._workers.items() if not each.starting and not each.stream]
-            if free or any(each.stream for each in self._workers.values()):
+            free = [number for number, each in self._workers.items() if each.awaited is None]
+            if free or any(each.stream is not None for each in self._workers.values()):
                 return free
             if not said and time.monotonic() - since > _SAY_AFTER_S:
                 warnings.warn(Notice("waiting for a free CPU of the Ray cluster."), stacklevel=1)
@@ -108,8 +113,7 @@ class RayWorkers(Executor):
     def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
         """Send the call to an actor that runs."""
         chosen = self._workers[worker]
-        assert not chosen.starting
-        assert not chosen.stream
+        assert chosen.awaited is None
         chosen.stream = chosen.actor.serve.remote(bytes(ForkingPickler.dumps(call)))
         chosen.told = told
 
@@ -117,7 +121,7 @@ class RayWorkers(Executor):
         """Wait for the actors; one that was lost is asked for anew."""
         for number in self._heard(timeout_s):
             worker = self._workers[number]
-            if worker.starting:
+            if worker.starting is not None:
                 self._welcome(number)
                 continue
             message = self._message(worker)
@@ -160,9 +164,9 @@ class RayWorkers(Executor):
     def _heard(self, timeout_s: float) -> list[int]:
         """Return the workers of which something is to be had, after waiting for one at most."""
         awaited = {
-            id(ref): (number, ref)
+            id(each.awaited): (number, each.awaited)
             for number, each in self._workers.items()
-            if (ref := each.starting or each.stream) is not None
+            if each.awaited is not None
         }
         refs = [ref for _, ref in awaited.values()]
         if not refs:
