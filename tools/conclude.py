@@ -15,6 +15,7 @@ from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
 
 from faultpath.door.saved import RECORD, SYSTEM, TRACES
+from faultpath.faults import parse_fault
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
 from faultpath.report.html import write_report
@@ -57,8 +58,12 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     asked = Question.model_validate(before["question"])
     place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
     system = load_system(SystemSpec(name=place, options=asked.options))
+    presets, dt_s = system.fault_presets, system.control_dt_s
     asked = asked.model_copy(
         update={
+            "faults": parse_fault(asked.fault, system.interface, presets, dt_s).resolved(
+                system.interface
+            ),
             "trained": system.trained,
             "ends": {status.value: words for status, words in system.ends.items()},
             "metrics": dict(system.metrics),

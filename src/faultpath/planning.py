@@ -145,6 +145,7 @@ def plan_audit(
         baseline=baseline,
         repair=repair,
         fault=fault_text,
+        faults=fault.resolved(system.interface),
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(chosen),

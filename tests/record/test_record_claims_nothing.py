@@ -9,9 +9,11 @@ from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 from faultpath.errors import UserError
 from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide
 from faultpath.record.model import Change, Effect
+from faultpath.record.plain import about, decided_words, plain_words
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
+SIDES = ((REPAIR, 1), (BASELINE, -1))
 Statuses = dict[str, list[Status]]
 PATHS = {
     "one path": (CORRECT,),
@@ -127,6 +129,7 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
     yield made.verdict.headline
     yield from made.verdict.sentences
     yield from made.verdict.would_change
+    yield from plain_words(made).values()
 
 
 def holm(p_values: list[float]) -> list[float]:
@@ -173,7 +176,7 @@ def claimed(text: str, who: str) -> bool:
 def check(made: DecisionRecord) -> None:
     effects, changes = may_be_said(made)
     whole = " ".join(sentences(made))
-    for who, sign in ((REPAIR, 1), (BASELINE, -1)):
+    for who, sign in SIDES:
         assert claimed(whole, who) == (sign in effects.values()), whole
         headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
         assert not claimed(made.verdict.headline, who) or headed
@@ -192,6 +195,22 @@ def check(made: DecisionRecord) -> None:
     turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
     extreme = {e.path for e in made.effects if e.extreme}
     assert ("Do not" in whole) == bool(turned - extreme and SHARED not in extreme)
+    plain = plain_words(made)
+    advised = "Ask which" in " ".join(plain.values())
+    if made.scenes < made.scenes_needed:
+        assert list(plain) == ["Not decided", "How sure"]
+        assert plain["Not decided"].startswith("Too few scenes to decide")
+        assert not advised
+    else:
+        assert advised == bool(turned - extreme and SHARED not in extreme)
+        favoured = plain["What follows"].partition("in favour of ")[2]
+        told = {sign for path, sign in effects.items() if sign and path not in extreme}
+        assert favoured in ("", *(f"{who}." for who, s in SIDES if told == {s}))
+    known = about(made)
+    for effect in made.effects:
+        short = decided_words(known, effect)
+        for who, side in SIDES:
+            assert claimed(short, who) == (effects.get(effect.path, 0) == side)
     for item in made.break_even:
         ends = {effects.get(CORRECT, 0), effects.get(item.path, 0)} - {0}
         for who, sign in ((REPAIR, 1), (BASELINE, -1)):

@@ -6,7 +6,7 @@ struck, behind when the fault is shared. Names a user may give carry markup, to 
 
 import os
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -91,10 +91,13 @@ def make_input(
     void: bool = True,
     library: str = "held-out " + NASTY,
     lost: str = "",
+    chances: Mapping[str, tuple[float, float]] = CHANCES,
 ) -> ReportInput:
     """Build the audit; everything follows from the arguments. `lost`: every trial there failed."""
     paths = _paths()
-    rows = tuple(_lose(row) if row.path == lost else row for row in _rows(seeds, n_scenes, void))
+    rows = tuple(
+        _lose(row) if row.path == lost else row for row in _rows(seeds, n_scenes, void, chances)
+    )
     question = Question(
         system="quadrotor",
         options={"wind": "L3", "predictor": "wm-a"},
@@ -212,12 +215,14 @@ def _scene(index: int) -> str:
     return f"{TOPOLOGIES[index % 5]}-{index:03d}"
 
 
-def _rows(seeds: tuple[int, ...], n_scenes: int, void: bool) -> Iterator[TrialRow]:
+def _rows(
+    seeds: tuple[int, ...], n_scenes: int, void: bool, law: Mapping[str, tuple[float, float]]
+) -> Iterator[TrialRow]:
     for seed in seeds:
         for index in range(n_scenes):
             rng = np.random.default_rng([seed, index])
             hard = 0.8 * np.random.default_rng([99, index]).random() + 0.2 * rng.random()
-            for path, chances in CHANCES.items():
+            for path, chances in law.items():
                 for variant, chance in zip((BASELINE, REPAIR), chances, strict=True):
                     failed = (
                         void

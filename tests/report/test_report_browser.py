@@ -70,6 +70,27 @@ def test_key_numbers_are_visible(page: Page, three_seeds: ReportInput) -> None:
         assert page.locator("svg text", has_text=words).first.is_visible()
 
 
+def test_the_story_can_be_read_and_the_rest_unfolds_by_key(page: Page) -> None:
+    texts = page.evaluate(
+        """() => [...document.querySelectorAll(".forks svg")].flatMap((svg) => {
+          const whole = svg.getBoundingClientRect();
+          const scale = whole.width / svg.viewBox.baseVal.width;
+          return [...svg.querySelectorAll("text")].map((text) => {
+            const box = text.getBoundingClientRect();
+            const inside = box.left >= whole.left - 1 && box.right <= whole.right + 1;
+            return [inside, parseFloat(getComputedStyle(text).fontSize) * scale];
+          });
+        })"""
+    )
+    assert len(texts) > 40
+    assert all(inside and size >= 10 for inside, size in texts)
+    first = page.locator("details.more p").first
+    assert not first.is_visible()
+    page.locator("details.more summary").focus()
+    page.keyboard.press("Enter")
+    assert first.is_visible()
+
+
 def test_forest_plot_fits_the_screen(page: Page) -> None:
     visible = [page.locator(which).is_visible() for which in (".for-wide", ".for-narrow")]
     wide = (page.viewport_size or {"width": 0})["width"] > 800

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from faultpath.record.model import Change, Effect
-from faultpath.record.words import About, capital, margin, no_pair, where
+from faultpath.record.words import About, capital, margin, no_pair, series, where
 
 
 def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change]) -> str:
@@ -45,14 +45,10 @@ def _saturated(tested: Sequence[Effect]) -> str:
 
 
 def _reversal(about: About, tested: Sequence[Effect], changes: Sequence[Change]) -> str:
-    of = {effect.path: effect for effect in tested}
-    turned = [
-        of[change.isolated]
-        for change in changes
-        if change.turn == "reversal" and of[change.isolated].leads and of[change.shared].leads
-    ]
+    turned = reversed_at(tested, changes)
     if not turned:
         return ""
+    of = {effect.path: effect for effect in tested}
     shared = of[changes[0].shared]
     primary = about.question.primary
     lead = ""
@@ -65,6 +61,16 @@ def _reversal(about: About, tested: Sequence[Effect], changes: Sequence[Change])
         f"{about.winner(turned[0].sign)} is ahead; with the fault shared, "
         f"{about.winner(shared.sign)} is{_models(about)}."
     )
+
+
+def reversed_at(tested: Sequence[Effect], changes: Sequence[Change]) -> list[Effect]:
+    """Return the isolated effects that sharing reverses, where advice may rest on both."""
+    of = {effect.path: effect for effect in tested}
+    return [
+        of[change.isolated]
+        for change in changes
+        if change.turn == "reversal" and of[change.isolated].leads and of[change.shared].leads
+    ]
 
 
 def _led(about: About, main: Effect, effects: Sequence[Effect]) -> str:
@@ -123,7 +129,4 @@ def _models(about: About) -> str:
 
 
 def _places(effects: Sequence[Effect]) -> str:
-    places = [where(effect.path) for effect in effects]
-    if len(places) < 3:
-        return " and ".join(places)
-    return f"{', '.join(places[:-1])} and {places[-1]}"
+    return series([where(effect.path) for effect in effects])

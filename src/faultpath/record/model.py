@@ -4,6 +4,7 @@ from typing import Any, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, model_validator
 
+from faultpath.faults import Fault
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 
@@ -43,6 +44,9 @@ class Question(_Frozen):
     repair: str
     fault: str
     """The fault in words, as given on the command line."""
+    faults: tuple[Fault, ...] = ()
+    """The same spelled out, channel by channel, at every consumer that it names; empty in records
+    that do not say."""
     library: str
     library_hash: str
     n_scenes: int

@@ -60,6 +60,11 @@ def capital(words: str) -> str:
     return words[:1].upper() + words[1:]
 
 
+def series(items: Sequence[str]) -> str:
+    """Return `a`, `a and b` or `a, b and c`."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))
+
+
 def estimand(question: Question) -> str:
     """Return what intervals and tests speak of."""
     if question.generalise == "models":

@@ -6,8 +6,10 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.record.model import Cell, DecisionRecord, Effect
-from faultpath.report import wording
+from faultpath.record.plain import plain_words
+from faultpath.report import story, wording
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
+from faultpath.report.figures.fork import fork_panels
 from faultpath.report.figures.frequency import frequency_panel, shared_range
 from faultpath.report.figures.outcomes import outcome_bars
 from faultpath.report.figures.pairs import pair_grid, pair_key
@@ -39,6 +41,7 @@ def report_page(source: ReportInput) -> str:
         asked=source.record.question,
         provenance=source.provenance,
         paths=_path_titles(source.record),
+        story=_story(source),
         tiles=_tiles(source.record),
         pictures=_pictures(source, pairs),
         struck=struck_paths(source.record),
@@ -80,6 +83,18 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     for name, make in makers.items():
         write_text(folder / name, make(), folder)
     return [folder / name for name in makers]
+
+
+def _story(source: ReportInput) -> Mapping[str, object]:
+    """Return what the first screen tells, beside the headline and the tiles."""
+    return {
+        "fault": story.fault_story(source),
+        "variants": list(zip(("baseline", "repair"), source.variants, strict=True)),
+        "meaning": story.isolation_words(source),
+        "out_of_reach": story.out_of_reach(source),
+        "panels": [Markup(panel) for panel in fork_panels(story.forks(source))],
+        "plain": plain_words(source.record),
+    }
 
 
 def _path_titles(record: DecisionRecord) -> dict[str, str]:

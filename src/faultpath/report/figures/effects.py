@@ -58,7 +58,7 @@ def forest(rows: Sequence[EffectRow], baseline: str, repair: str, narrow: bool =
     """
     told = "; ".join(f"{r.label}: {wording.with_interval(r.effect)} pp" for r in rows)
     title = f"Success of {repair} minus success of {baseline}, percentage points"
-    axis = covering(_extent(rows), least=10.0)
+    axis = covering(extent(rows), least=10.0)
     return (_narrow if narrow else _wide)(rows, axis, title, told).render()
 
 
@@ -77,7 +77,7 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
     svg.text(
         768, 34, "by the repair" + (", by seed" if "/" in rows[0].wins_losses else ""), "small soft"
     )
-    _directions(svg, plot, 34)
+    directions(svg, plot, 34)
     for i, row in enumerate(rows):
         y = top + pitch * (i + 0.5)
         lines = wrapped(row.label, 146, 12, 2)
@@ -88,7 +88,7 @@ def _wide(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg:
             svg.text(0, y + 4 + 15 * (last / 2), row.note, "small soft")
         svg.text(214, y + 4, wording.plain(row.baseline_percent), "", "end")
         svg.text(266, y + 4, wording.plain(row.repair_percent), "", "end")
-        _mark(svg, plot, row.effect, y, row.sign, row.band_pp)
+        mark(svg, plot, row.effect, y, row.sign, row.band_pp)
         _numbers(svg, 612, y + 4, row)
         svg.text(768, y + 4, row.wins_losses)
     _footnote(svg, rows, bottom + 40, 292)
@@ -101,14 +101,14 @@ def _narrow(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg
     svg = Svg(350, bottom + 46, title, told)
     plot = axis.at(8, 342)
     draw_uprights(svg, plot, top - 4, bottom, 6)
-    _directions(svg, plot, 12)
+    directions(svg, plot, 12)
     for i, row in enumerate(rows):
         y = top + pitch * i
         with svg.group():
             svg.rect(0, y + 2, 350, 20, "paper")
             svg.text(0, y + 16, shortened(row.label, 195, 12), "bold", tip=row.label)
             svg.text(350, y + 16, wording.with_interval(row.effect), "", "end")
-        _mark(svg, plot, row.effect, y + 38, row.sign, row.band_pp)
+        mark(svg, plot, row.effect, y + 38, row.sign, row.band_pp)
         rates = f"{wording.plain(row.baseline_percent)} → {wording.plain(row.repair_percent)} %"
         svg.rect(0, y + 54, 350, 18, "paper")
         svg.text(0, y + 67, f"{rates}{f', {row.note}' if row.note else ''}", "small soft")
@@ -152,7 +152,8 @@ def _secondary_mark(svg: Svg, plot: Axis, e: Estimate, y: float) -> None:
     svg.line((plot(e.value), y - 5), (plot(e.value), y + 5), "seed")
 
 
-def _extent(rows: Sequence[EffectRow]) -> list[float]:
+def extent(rows: Sequence[EffectRow]) -> list[float]:
+    """Return all that an axis for these effects has to cover."""
     ends: list[float] = []
     for row in rows:
         ends += [v for v in (row.effect.value, row.effect.low, row.effect.high) if v is not None]
@@ -165,7 +166,8 @@ def _all_95(rows: Sequence[EffectRow]) -> bool:
     return all(abs(row.effect.level - 0.95) < 1e-9 for row in rows)
 
 
-def _directions(svg: Svg, plot: Axis, y: float) -> None:
+def directions(svg: Svg, plot: Axis, y: float) -> None:
+    """Say on which side of zero which arm is better."""
     zero = plot(0.0)
     if zero - plot.start > 96:
         svg.text(zero - 8, y, "← baseline better", "small baseline", "end")
@@ -173,7 +175,7 @@ def _directions(svg: Svg, plot: Axis, y: float) -> None:
         svg.text(zero + 8, y, "repair better →", "small repair", "start")
 
 
-def _mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: float | None) -> None:
+def mark(svg: Svg, plot: Axis, e: Estimate, y: float, winner: int, band_pp: float | None) -> None:
     """Draw one interval in the colour of the arm that it speaks for.
 
     Dot, whiskers, a tick for each seed, and the undetectable band where one is given. `winner` is

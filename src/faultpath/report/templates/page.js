@@ -30,4 +30,7 @@
       else part.querySelector(".tap").classList.toggle("hit", hit);
     }
   });
+
+  // What is folded is printed.
+  addEventListener("beforeprint", () => document.querySelectorAll("details.more").forEach((d) => (d.open = true)));
 }

@@ -1,0 +1,142 @@
+"""What a record says in three plain sentences: what follows, how sure it is, what stays open.
+
+They are made from decisions, as all other words of a record, and are what a reader sees who opens
+nothing else. So whatever qualifies a decision is said here too.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
+
+from faultpath.record.headline import reversed_at
+from faultpath.record.model import DecisionRecord, Effect
+from faultpath.record.words import (
+    About,
+    barely_acted,
+    capital,
+    margin,
+    series,
+    where,
+)
+
+
+def about(record: DecisionRecord) -> About:
+    """Return what sentences need to know of a finished record."""
+    small = frozenset(record.stopped.small if record.stopped else ())
+    return About(record.question, record.scenes, record.scenes_needed, small)
+
+
+def plain_words(record: DecisionRecord) -> dict[str, str]:
+    """Return `What follows`, `How sure` and `Not decided`, each with a sentence or a few.
+
+    With too few scenes nothing follows, and only the other two are there.
+    """
+    known = about(record)
+    if known.few:
+        scenes = f"{known.scenes} scene{'' if known.scenes == 1 else 's'}"
+        few = (
+            f"Too few scenes to decide: {scenes} compared, and this question needs at least "
+            f"{known.needed}. The numbers tell of {'it' if known.scenes == 1 else 'them'} alone."
+        )
+        return {"Not decided": few, "How sure": " ".join(_qualified(record))}
+    return {
+        "What follows": _follows(known, record),
+        "How sure": " ".join(_sure(record)),
+        "Not decided": " ".join(_left_open(known, record)),
+    }
+
+
+def decided_words(known: About, effect: Effect | None) -> str:
+    """Say in a few words what is decided of one path."""
+    if effect is None:
+        return "no pair of trials to compare"
+    if not effect.acted:
+        return "the fault never acted: not tested"
+    if effect.detected:
+        at = f", but at the {effect.extreme}" if effect.extreme else ""
+        return f"{known.winner(effect.sign)} succeeds more often{at}"
+    if known.few:
+        return "too few scenes to decide"
+    if effect.path in known.small and known.question.stop:
+        return f"differ by less than {margin(known.question.stop)}"
+    return "no difference detected"
+
+
+def _follows(known: About, record: DecisionRecord) -> str:
+    tested = [effect for effect in record.effects if effect.acted]
+    turned = reversed_at(tested, record.changes)
+    if turned:
+        places = " or the ".join(effect.path for effect in turned)
+        sign = turned[0].sign
+        return (
+            f"Ask which fault your system will meet: with only the {places} struck, "
+            f"{known.winner(sign)} succeeds more often; where the modules share it, "
+            f"{known.winner(-sign)} succeeds more often."
+        )
+    leading = {effect.sign for effect in tested if effect.leads}
+    if len(leading) == 2:
+        return _depends(record)
+    if leading:
+        sides = {effect.sign for effect in tested if effect.detected}
+        apart = "away from floor and ceiling, " if sides != leading else ""
+        winner = known.winner(leading.pop())
+        return capital(f"{apart}every difference that is decided is in favour of {winner}.")
+    if any(effect.detected for effect in tested):
+        return "What is decided lies at the floor or the ceiling, where no choice can rest on it."
+    return "Nothing that was tested gives a reason to prefer either."
+
+
+def _depends(record: DecisionRecord) -> str:
+    """Say that the paths disagree, and what is decided of the primary fault's frequency."""
+    words = "Which is better depends on which fault occurs, and how often: the paths disagree."
+    told = [each for each in record.break_even if each.path == record.question.primary]
+    if told and told[0].words:
+        words += f" By the share of trials with the fault, {where(told[0].path)}: {told[0].words}."
+    return words
+
+
+def _qualified(record: DecisionRecord) -> Iterator[str]:
+    """Return what the record says before its numbers (their reach, seeds that repeat, how it
+    stopped), and where the fault hardly acted."""
+    effects = {effect.words for effect in record.effects}
+    yield from takewhile(lambda sentence: sentence not in effects, record.verdict.sentences)
+    yield from barely_acted(record.question, record.paths, record.cells)
+
+
+def _sure(record: DecisionRecord) -> Iterator[str]:
+    yield from _qualified(record)
+    if record.question.generalise == "scenes" and any(each.detected for each in record.effects):
+        yield "Of audits of two equal systems, at most 5 % would decide anything."
+
+
+def _left_open(known: About, record: DecisionRecord) -> Iterator[str]:
+    idle = [where(effect.path) for effect in record.effects if not effect.acted]
+    if idle:
+        yield f"The fault never acted {series(idle)}: nothing was tested there."
+    undecided = [
+        effect
+        for effect in record.effects
+        if effect.acted and not effect.detected and effect.path not in known.small
+    ]
+    if undecided:
+        yield f"No difference is detected {series(_missed(undecided))}."
+    same = [change.isolated for change in record.changes if change.turn == "none"]
+    if same:
+        places = " or the ".join(same)
+        yield f"No change is detected from the fault at the {places} alone to the shared fault."
+    yield "Another size or sign of the fault, another library and another wiring were not flown."
+
+
+def _missed(effects: Sequence[Effect]) -> list[str]:
+    """Return the places of undecided effects, each with what could have been seen there."""
+    said: list[str] = []
+    for effect in effects:
+        least = effect.minimum_detectable_pp
+        if effect.extreme:
+            ends = "fail" if effect.extreme == "floor" else "succeed"
+            aside = f" (both nearly always {ends})"
+        else:
+            found = f"a true one of {math.ceil(least or 0)} pp would be found in 8 of 10 audits"
+            aside = "" if least is None else f" ({found})"
+        said.append(where(effect.path) + aside)
+    return said

@@ -1,0 +1,218 @@
+"""What the first screen tells: what the fault does, to whom, and what came of it on each path.
+
+Which taps were struck comes from receipts, who reads from the wiring of the variants, and what may
+be said from the record.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from faultpath.interface import module_of
+from faultpath.record import CORRECT, SHARED
+from faultpath.record.fault_words import fault_words, spelled_out
+from faultpath.record.model import Path, StruckTap
+from faultpath.record.plain import about, decided_words
+from faultpath.record.words import capital, series
+from faultpath.report import wording
+from faultpath.report.figures.effects import EffectRow, effect_rows
+from faultpath.report.inputs import ReportInput
+from faultpath.report.interface_layout import Tap
+from faultpath.trials import VariantShown
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A module that may read what the fault strikes, in one arm."""
+
+    module: str
+    taps: frozenset[Tap]
+    """At which its variant reads it; empty where it does not."""
+    struck: frozenset[Tap]
+    """Of these, where receipts show the fault in force."""
+    changed: bool
+    """Whether the fault changed a reading at one of them."""
+
+    @property
+    def state(self) -> str:
+        """Say what reaches the module."""
+        if not self.taps:
+            return "does not read it"
+        if not self.struck:
+            return "correct reading"
+        if not self.changed:
+            return "struck, unchanged"
+        return f"{_of(self.struck, self.taps)} struck"
+
+
+@dataclass(frozen=True)
+class Arm:
+    """One variant on one path."""
+
+    role: str
+    """`baseline` or `repair`."""
+    name: str
+    success_percent: float
+    readers: tuple[Reader, ...]
+
+
+@dataclass(frozen=True)
+class Fork:
+    """One path of the fault: a source, the modules that it splits to, and what came of it."""
+
+    title: str
+    channels: tuple[str, ...]
+    everywhere: bool
+    """Whether the fault was at every tap at which either variant reads, as from a faulty source."""
+    arms: tuple[Arm, ...]
+    effect: EffectRow | None
+    """`None` where no pair of trials is left."""
+    decided: str
+
+    @property
+    def told(self) -> str:
+        """Say all that the picture shows."""
+        said = [
+            f"{arm.role.capitalize()} {arm.name}: {series([_told(r) for r in arm.readers])}; "
+            f"{wording.plain(arm.success_percent)} % success."
+            for arm in self.arms
+        ]
+        shown = f"{wording.with_interval(self.effect.effect)} pp, " if self.effect else ""
+        return " ".join((*said, f"Repair minus baseline: {shown}{self.decided}."))
+
+
+def channels(source: ReportInput) -> tuple[str, ...]:
+    """Return what the fault is put on: as it is spelled out, or else by the receipts."""
+    record = source.record
+    faults = spelled_out(record.question, source.interface, source.traces.dt_s)
+    struck = (tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck))
+    return tuple(dict.fromkeys([fault.channel for fault in faults] or struck))
+
+
+def forks(source: ReportInput) -> tuple[Fork, ...]:
+    """Return every path of the fault, isolated ones first; none where no tap is known."""
+    record, names = source.record, channels(source)
+    reads = {variant.name: _reads(source, variant, names) for variant in source.variants}
+    every = frozenset[Tap]().union(*reads.values())
+    rows = dict(zip((e.path for e in record.effects), effect_rows(record), strict=True))
+    effects = {effect.path: effect for effect in record.effects}
+    known = about(record)
+
+    def fork(path: Path) -> Fork:
+        hit = {(tap.channel, tap.consumer) for tap in (*path.struck, *path.baseline_struck)}
+        return Fork(
+            title=path.title,
+            channels=names,
+            everywhere=every <= hit,
+            arms=_arms(source, path, reads, every),
+            effect=rows.get(path.name),
+            decided=decided_words(known, effects.get(path.name)),
+        )
+
+    faulty = [path for path in record.paths if path.name != CORRECT]
+    return tuple(map(fork, faulty)) if every else ()
+
+
+def isolation_words(source: ReportInput) -> dict[str, str]:
+    """Say what isolated and shared mean in this system."""
+    names = [path.name for path in source.record.paths]
+    modules = [_named(name) for name in names if name not in (CORRECT, SHARED)]
+    told = {"Isolated": f"The fault at one module alone: the {' or the '.join(modules)}."}
+    reading = {
+        module_of(consumer)
+        for variant in source.variants
+        for _, consumer in _reads(source, variant, channels(source))
+    }
+    spared = sorted(reading - set(names))
+    if SHARED in names:
+        told["Isolated"] += " All others get the correct reading."
+        told["Shared"] = (
+            f"The fault at {series([f'the {each}' for each in modules])} at once, as if their "
+            "common source were wrong."
+        )
+    elif not spared:
+        told["Isolated"] += " No other module reads it, so there is nothing to share."
+    if spared:
+        others = series([f"the {_named(each)}" for each in spared])
+        reads = "reads it too and gets" if len(spared) == 1 else "read it too and get"
+        told["Isolated"] += f" {capital(others)} {reads} the correct reading on every path."
+    return told
+
+
+def out_of_reach(source: ReportInput) -> tuple[str, ...]:
+    """Say on which paths the fault cannot reach a variant, and what stands in."""
+    said: list[str] = []
+    asked = source.record.question
+    for path in source.record.paths:
+        for name, planned in (
+            (asked.baseline, path.baseline_consumers),
+            (asked.repair, path.consumers),
+        ):
+            if path.name not in (CORRECT, SHARED) and not planned:
+                said.append(
+                    f"The {_named(path.name)} of {name} reads nothing that the fault strikes: with "
+                    f"only the {_named(path.name)} struck, the trials of {name} under correct "
+                    "inputs stand in."
+                )
+    return tuple(said)
+
+
+def fault_story(source: ReportInput) -> str:
+    """Say what the fault does, in numbers and units."""
+    asked = source.record.question
+    said = fault_words(asked, source.interface, source.traces.dt_s)
+    if said:
+        return said
+    names = [f"'{name}'" for name in channels(source)]
+    strikes = f"; it strikes {series(names)}" if names else ""
+    return f"A fault that the system names, of which this record does not say more{strikes}."
+
+
+def _reads(source: ReportInput, variant: VariantShown, names: Sequence[str]) -> frozenset[Tap]:
+    return frozenset(
+        (name, consumer)
+        for name in names
+        for consumer in source.interface.channel(name).consumers
+        if consumer in variant.consumers
+    )
+
+
+def _arms(
+    source: ReportInput, path: Path, reads: dict[str, frozenset[Tap]], every: frozenset[Tap]
+) -> tuple[Arm, ...]:
+    asked = source.record.question
+    modules = dict.fromkeys(sorted(module_of(consumer) for _, consumer in every))
+    rates = {(c.variant, c.path): c.success_percent for c in source.record.cells}
+    return tuple(
+        Arm(
+            role,
+            name,
+            rates[name, path.name],
+            tuple(_reader(module, reads[name], struck) for module in modules),
+        )
+        for role, name, struck in (
+            ("baseline", asked.baseline, path.baseline_struck),
+            ("repair", asked.repair, path.struck),
+        )
+    )
+
+
+def _reader(module: str, reads: frozenset[Tap], struck: Sequence[StruckTap]) -> Reader:
+    here = [tap for tap in struck if module_of(tap.consumer) == module]
+    hit = frozenset((tap.channel, tap.consumer) for tap in here)
+    # Receipts come before the wiring: a tap that was struck was read.
+    taps = hit | frozenset(tap for tap in reads if module_of(tap[1]) == module)
+    return Reader(module, taps, hit, any(tap.altered_steps for tap in here))
+
+
+def _of(some: frozenset[Tap], every: frozenset[Tap]) -> str:
+    count = wording.counted(len(every), "tap")
+    return count if some == every else f"{len(some)} of {count}"
+
+
+def _told(reader: Reader) -> str:
+    places = ", ".join(f"{channel} at {consumer}" for channel, consumer in sorted(reader.struck))
+    return f"{_named(reader.module)} {reader.state}{f' ({places})' if places else ''}"
+
+
+def _named(module: str) -> str:
+    return module.replace("_", " ")

@@ -1,0 +1,182 @@
+"""The first screen tells what was struck and decided, and nothing else."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path as FilePath
+
+import pytest
+
+from faultpath.faults import parse_fault
+from faultpath.planning import plan_audit
+from faultpath.record import DecisionRecord, Path
+from faultpath.report.figures.fork import fork_panels
+from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput
+from faultpath.report.story import Fork, fault_story, forks, isolation_words, out_of_reach
+from faultpath.trials import SystemSpec, library_of, load_system
+
+TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
+IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
+EQUAL = dict.fromkeys(("correct", "predictor", "reconstruction", "shared"), (0.5, 0.5))
+
+
+def screen(source: ReportInput) -> str:
+    """Return the words of the first screen."""
+    page = report_page(source)
+    found = page[page.index("<h1") : page.index('<section aria-labelledby="interface"')]
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", found))
+
+
+def states(fork: Fork) -> list[list[str]]:
+    return [[f"{r.module}: {r.state}" for r in arm.readers] for arm in fork.arms]
+
+
+def with_paths(source: ReportInput, change: Callable[[Path], Path]) -> ReportInput:
+    paths = tuple(map(change, source.record.paths))
+    return replace(source, record=source.record.model_copy(update={"paths": paths}))
+
+
+def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
+    told = {fork.title: fork for fork in forks(one_seed)}
+    assert list(told) == ["Predictor only", "Reconstruction only", "Shared fault"]
+    alone = ["predictor: correct reading", "reconstruction: 2 taps struck"]
+    assert states(told["Reconstruction only"]) == [alone, alone]
+    both = ["predictor: 5 taps struck", "reconstruction: 2 taps struck"]
+    assert states(told["Shared fault"]) == [both, both]
+    assert [fork.everywhere for fork in told.values()] == [False, False, True]
+    assert "mass at reconstruction.head, thrust_scale at reconstruction.head" in (
+        told["Reconstruction only"].told
+    )
+    effect = next(e for e in one_seed.record.effects if e.path == "shared")
+    assert told["Shared fault"].decided == "gru succeeds more often"
+    panel = fork_panels(list(told.values()))[-1]
+    assert f"{effect.success.value:+.1f}".replace("-", "−") in panel
+    assert "wrong for all" in panel
+
+
+def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: ReportInput) -> None:
+    baseline, repair = one_seed.variants
+    kept = tuple(name for name in repair.consumers if name != "reconstruction.head")
+    blind = replace(one_seed, variants=(baseline, repair.model_copy(update={"consumers": kept})))
+
+    def unstruck(path: Path) -> Path:
+        update = {
+            "consumers": tuple(c for c in path.consumers if c in kept),
+            "struck": tuple(tap for tap in path.struck if tap.consumer in kept),
+        }
+        return path.model_copy(update=update)
+
+    blind = with_paths(blind, unstruck)
+    (_, alone, shared) = forks(blind)
+    assert states(alone)[1] == ["predictor: correct reading", "reconstruction: does not read it"]
+    assert shared.everywhere
+    assert 'class="absent"' in fork_panels([alone])[0]
+    assert out_of_reach(blind) == (
+        "The reconstruction of gru-dcc reads nothing that the fault strikes: with only the "
+        "reconstruction struck, the trials of gru-dcc under correct inputs stand in.",
+    )
+    assert out_of_reach(blind)[0] in screen(blind)
+
+
+def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
+    def silent(path: Path) -> Path:
+        taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in path.struck)
+        return path.model_copy(update={"struck": taps[:3], "baseline_struck": ()})
+
+    shared = forks(with_paths(one_seed, silent))[-1]
+    assert not shared.everywhere
+    assert states(shared) == [
+        ["predictor: correct reading", "reconstruction: correct reading"],
+        ["predictor: struck, unchanged", "reconstruction: correct reading"],
+    ]
+    some = with_paths(one_seed, lambda p: p.model_copy(update={"struck": p.struck[:3]}))
+    assert states(forks(some)[-1])[1][0] == "predictor: 3 of 5 taps struck"
+
+
+def test_the_story_names_modules_and_what_the_fault_does(one_seed: ReportInput) -> None:
+    assert isolation_words(one_seed) == {
+        "Isolated": "The fault at one module alone: the predictor or the reconstruction. All "
+        "others get the correct reading.",
+        "Shared": "The fault at the predictor and the reconstruction at once, as if their common "
+        "source were wrong.",
+    }
+    assert fault_story(one_seed) == (
+        "A fault that the system names, of which this record does not say more; it strikes "
+        "'mass' and 'thrust_scale'."
+    )
+    text = "calibration:scale=1.1"
+    fault = parse_fault(text, one_seed.interface, {}, 0.05).resolved(one_seed.interface)
+    asked = one_seed.record.question.model_copy(update={"faults": fault})
+    told = replace(one_seed, record=one_seed.record.model_copy(update={"question": asked}))
+    assert "Mass is supplied 10 % too high (times 1.1); thrust scale is" in screen(told)
+
+
+def test_a_single_module_has_nothing_to_share(one_seed: ReportInput) -> None:
+    record = one_seed.record
+    paths = tuple(p for p in record.paths if p.name in ("correct", "reconstruction"))
+    alone = replace(one_seed, record=record.model_copy(update={"paths": paths}))
+    assert isolation_words(alone) == {
+        "Isolated": "The fault at one module alone: the reconstruction. The predictor reads it too "
+        "and gets the correct reading on every path."
+    }
+
+
+def test_an_audit_keeps_its_fault_spelled_out() -> None:
+    toy = load_system(SystemSpec(name=f"{TOY}:create"))
+    fault = parse_fault("gain:scale=0.6", toy.interface, {}, toy.control_dt_s)
+    asked = plan_audit(
+        toy,
+        SystemSpec(name="toy"),
+        baseline="calibrated",
+        repair="blind",
+        fault=fault,
+        fault_text="gain:scale=0.6",
+        library=library_of(toy, "carts"),
+        scenes=4,
+    ).question
+    assert asked.faults == fault.resolved(toy.interface)
+    assert type(asked).model_validate_json(asked.model_dump_json()) == asked
+
+
+@pytest.mark.parametrize("n", [1, 2, 4])
+@pytest.mark.parametrize("ties", [False, True])
+def test_with_too_few_scenes_the_screen_says_so_and_asks_for_nothing(
+    n: int, ties: bool, make: Callable[..., ReportInput]
+) -> None:
+    source = make(
+        void=False, n_scenes=n, library="held-out", **({"chances": EQUAL} if ties else {})
+    )
+    said = screen(source)
+    assert "Too few scenes to decide" in said
+    assert said.count("too few scenes to decide") == 2 * 3  # in words and for those who hear it
+    assert "succeeds more often" not in said
+    assert "What follows" not in said
+    assert not IMPERATIVE.search(said)
+
+
+def _said(record: DecisionRecord) -> set[str]:
+    return {effect.path for effect in record.effects if effect.detected}
+
+
+def test_ties_favour_nobody(make: Callable[..., ReportInput]) -> None:
+    source = make(void=False, library="held-out", chances=EQUAL)
+    assert not _said(source.record)
+    said = screen(source)
+    assert "Nothing that was tested gives a reason to prefer either." in said
+    assert "succeeds more often" not in said
+    assert not IMPERATIVE.search(said)
+
+
+def test_without_a_pair_on_a_path_the_picture_says_so(make: Callable[..., ReportInput]) -> None:
+    source = make(void=False, n_scenes=40, lost="shared")
+    assert forks(source)[-1].decided == "no pair of trials to compare"
+    assert "no pair of trials to compare" in screen(source)
+
+
+def test_what_qualifies_a_decision_is_not_folded(one_seed: ReportInput) -> None:
+    said = screen(one_seed)
+    open_ = said[: said.index("Every sentence of the record")]
+    assert one_seed.record.verdict.sentences[0] in open_
+    assert "Ask which fault your system will meet" in open_
+    assert "at most 5 %" in open_
