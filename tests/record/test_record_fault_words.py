@@ -8,7 +8,7 @@ from faultpath.interface import read_interface
 from faultpath.record.fault_words import fault_words
 
 INTERFACE = read_interface("""
-name: made up
+name: made_up
 sources:
 - {name: scales, unit: kg, provenance: estimated, correlation_group: calibration}
 - {name: gain_estimate, unit: '1', provenance: estimated, correlation_group: calibration}
@@ -122,8 +122,9 @@ def test_several_channels_and_a_sequence_are_told_one_by_one() -> None:
         "(times 0.9). These errors have one cause."
     )
     turns = Sequence(parts=(Noise(std=0.02), Scale(factor=1.5)))
-    faults = (Fault(channel="mass", intervention=turns, onset_step=3), preset.faults[1])
-    asked = question().model_copy(update={"faults": faults})
+    later = Fault(channel="mass", intervention=turns, onset_step=3)
+    faults = [each.resolved(INTERFACE)[0] for each in (later, preset.faults[1])]
+    asked = question().model_copy(update={"faults": tuple(faults)})
     assert fault_words(asked, INTERFACE, 0.1) == (
         "Mass is supplied with noise drawn at each step, standard deviation 0.02 kg, then "
         "supplied 50 % too high (times 1.5), in force from step 3 (0.3 s); thrust scale is "

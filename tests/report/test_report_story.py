@@ -149,7 +149,7 @@ def test_with_too_few_scenes_the_screen_says_so_and_asks_for_nothing(
     )
     said = screen(source)
     assert "Too few scenes to decide" in said
-    assert said.count("too few scenes to decide") == 2 * 3  # in words and for those who hear it
+    assert said.count("too few scenes to decide") == 3 * 3  # seen, heard and pointed at
     assert "succeeds more often" not in said
     assert "What follows" not in said
     assert not IMPERATIVE.search(said)
