@@ -13,6 +13,7 @@ from faultpath.version import __version__
 if TYPE_CHECKING:
     from faultpath.door.audit import audit
     from faultpath.door.mapping import reversal_map
+    from faultpath.door.planned import plan
     from faultpath.door.reproduced import ReproductionRun
     from faultpath.door.reproduction import reproduce
     from faultpath.door.run import Run, open_run
@@ -32,6 +33,7 @@ __all__ = [
     "audits",
     "load_system",
     "open_run",
+    "plan",
     "reproduce",
     "reversal_map",
 ]
@@ -46,6 +48,7 @@ _HOMES = {
     "audits": "faultpath.door.sizes",
     "load_system": "faultpath.door.systems",
     "open_run": "faultpath.door.run",
+    "plan": "faultpath.door.planned",
     "reproduce": "faultpath.door.reproduction",
     "reversal_map": "faultpath.door.mapping",
 }

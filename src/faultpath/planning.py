@@ -20,6 +20,7 @@ from faultpath.record import (
     primary_path,
     stops,
 )
+from faultpath.record.factorial import JOINED, check_factors, factorial, path_of, subsets
 from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
@@ -49,6 +50,8 @@ class Audit:
     question: Question
     paths: tuple[Path, ...]
     study: Study
+    factors: tuple[str, ...] = ()
+    """Modules of a factorial, where one was asked for."""
 
     def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.record.decide`."""
@@ -62,7 +65,10 @@ class Audit:
             )
             for path in self.paths
         ]
-        return decide(asked, paths, table, findings=deliveries.findings)
+        record = decide(asked, paths, table, findings=deliveries.findings)
+        if not self.factors:
+            return record
+        return record.model_copy(update={"factorial": factorial(asked, self.factors, table)})
 
     def stops(self, table: OutcomeTable) -> bool:
         """Return whether a sequential audit ends with these trials."""
@@ -100,6 +106,7 @@ def plan_audit(
     thresholds: Sequence[float] = (),
     stop_when: StopWhen | None = None,
     margin_pp: float | None = None,
+    full: bool = False,
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
@@ -108,12 +115,14 @@ def plan_audit(
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
     trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
     `stop_when` makes the audit sequential: scenes come in a random order, and `scenes` is the most
-    that it takes; `margin_pp` is what counts as no difference then.
+    that it takes; `margin_pp` is what counts as no difference then. `full` strikes every subset of
+    the modules, for a factorial.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
     of scenes that the library does not have, no seed, a fault that reaches neither variant, a
     primary path that does not exist, newly trained models of a system that trains none, from one
-    seed or in a sequential audit, or a margin that is none.
+    seed or in a sequential audit, a margin that is none, or a factorial that is sequential or of
+    one module or very many.
     """
     variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
@@ -121,8 +130,14 @@ def plan_audit(
     chosen = scenes_of(library, scenes, in_order=stop_when is None)
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")
-    strikes = _strikes(system.interface, fault, variants)
-    paths = [_path(name, system.interface, struck, variants) for name, struck in strikes.items()]
+    if full and stop_when:
+        raise UserError("a factorial flies all of its scenes: leave --stop-when out.")
+    strikes = _strikes(system.interface, fault, variants, full)
+    paths = [
+        _path(name, system.interface, struck, variants)
+        for name, struck in strikes.items()
+        if JOINED not in name
+    ]
     rows = [
         Row(variant=variant.name, path=path, seed=seed, arm=_arm(system, variant, struck, seed))
         for path, struck in strikes.items()
@@ -159,7 +174,8 @@ def plan_audit(
         thresholds=tuple(sorted(set(thresholds))),
         stop=_stop_rule(stop_when, margin_pp, study),
     )
-    return Audit(question, tuple(paths), study)
+    isolated = (path.name for path in paths if path.name not in (CORRECT, SHARED))
+    return Audit(question, tuple(paths), study, factors=tuple(isolated) if full else ())
 
 
 def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
@@ -232,9 +248,10 @@ def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tup
 
 
 def _strikes(
-    interface: Interface, fault: AnyFault, variants: Sequence[Variant]
+    interface: Interface, fault: AnyFault, variants: Sequence[Variant], full: bool
 ) -> dict[str, AnyFault | None]:
-    """Return the fault of each path; `None` under correct inputs."""
+    """Return the fault of each path; `None` under correct inputs. With a single module there is
+    nothing to share: the isolated fault is all of it."""
     reached = [c for variant in variants for c in _struck(interface, fault, variant)]
     if not reached:
         names = " nor ".join(f"'{variant.name}'" for variant in variants)
@@ -246,18 +263,21 @@ def _strikes(
         places = by_module.setdefault(module_of(consumer), [])
         if consumer not in places:
             places.append(consumer)
-    strikes: dict[str, AnyFault | None] = {CORRECT: None}
-    for module in sorted(by_module):
-        if module in (CORRECT, SHARED):
-            raise UserError(
-                f"the interface calls a module '{module}', which is the name of a path of every "
-                "audit: rename the module."
-            )
-        strikes[module] = fault.striking(*by_module[module])
-    # With a single module there is nothing to share: the isolated fault is all of it.
-    if len(by_module) > 1:
-        strikes[SHARED] = fault.striking(*(c for places in by_module.values() for c in places))
-    return strikes
+    factors = tuple(sorted(by_module))
+    for reserved in {CORRECT, SHARED} & set(factors):
+        raise UserError(
+            f"the interface calls a module '{reserved}', which is the name of a path of every "
+            "audit: rename the module."
+        )
+    if full:
+        check_factors(factors)
+    return {
+        path_of(struck, factors): fault.striking(*(c for each in struck for c in by_module[each]))
+        if struck
+        else None
+        for struck in subsets(factors)
+        if full or len(struck) in (0, 1, len(factors))
+    }
 
 
 def _struck(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:

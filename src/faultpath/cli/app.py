@@ -18,11 +18,13 @@ from faultpath.cli import (
     interface,
     log,
     map,
+    plan,
     probe,
     report,
     reproduce,
     scenes,
     selfcheck,
+    study,
     trace,
     train,
 )
@@ -47,6 +49,8 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     for panel, verbs in _PANELS.items():
         for name in verbs:
             command = _COMMANDS[name]
+            if name == "audit" and any(part.partition("=")[0] == "--study" for part in rest):
+                command = study.command  # the file says all that the verb takes otherwise
             shown: dict[str, Any] = {
                 "rich_help_panel": panel,
                 "epilog": f"Example: {EXAMPLES[name]}",
@@ -56,13 +60,13 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
                 continue
             # Typer would keep the line breaks of a docstring.
             said = " ".join((getdoc(command) or "").split())
-            if name == verb and name in _OF_SYSTEMS:
+            if name == verb and name in _OF_SYSTEMS and command is not study.command:
                 command = with_system_flags(name, command, rest)
             app.command(name, help=said, **shown)(command)
     return app
 
 
-_OF_SYSTEMS = ("audit", "check", "interface", "map", "probe", "trace")
+_OF_SYSTEMS = ("audit", "check", "interface", "map", "plan", "probe", "trace")
 _COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
     "audit": audit.command,
     "check": check.command,
@@ -71,6 +75,7 @@ _COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
     "interface": interface.command,
     "log": log.command,
     "map": map.command,
+    "plan": plan.command,
     "probe": probe.command,
     "report": report.command,
     "reproduce": reproduce.command,
@@ -81,7 +86,7 @@ _COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
 }
 _PANELS = {
     "Your system": ("init", "interface", "trace", "check"),
-    "Audits": ("audit", "map", "probe", "log", "report"),
+    "Audits": ("plan", "audit", "map", "probe", "log", "report"),
     "The paper and its quadrotor": ("claims", "reproduce", "scenes", "train"),
     "faultpath itself": ("selfcheck",),
 }
@@ -96,6 +101,8 @@ EXAMPLES = {
     "log": "faultpath log flight.ulg --columns px4 --mass 1.5",
     "map": "faultpath map examples/toy.py:create --baseline calibrated --repair blind "
     "--fault gain:scale --against controller,observer --up-to 0.4 --library carts",
+    "plan": "faultpath plan examples/toy.py:create --baseline calibrated --repair blind "
+    "--fault gain:scale=0.6 --library carts",
     "probe": "faultpath probe quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
     "report": "faultpath report runs/mine",
     "reproduce": "faultpath reproduce table-4",

@@ -1,8 +1,9 @@
 """`faultpath audit`: run the arms of one question, decide, report."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -16,6 +17,10 @@ from faultpath.cli.options import (
     settings,
     sizes,
 )
+
+if TYPE_CHECKING:
+    from faultpath.door.display import SafeConsole
+    from faultpath.door.run import Run
 
 FAILED_TRIALS = 1
 
@@ -88,7 +93,9 @@ def command(
     memory_limit: MemoryLimit = None,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
-    alone, and under the shared fault."""
+    alone, and under the shared fault.
+
+    `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
     every_seed, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
     from faultpath.door.display import Display, SafeConsole
@@ -118,16 +125,23 @@ def command(
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
-    from faultpath.report.sizes import by_size
+    status = tell(console, runs)
+    if len(runs) > 1:
+        from faultpath.report.sizes import by_size
+        from faultpath.tables.terminal import drawn
+
+        console.print()
+        console.print(drawn(by_size([run.record for run in runs])))
+    return status
+
+
+def tell(console: "SafeConsole", runs: "Sequence[Run]") -> int:
+    """Print what was decided in each run, and return the status of the command."""
     from faultpath.report.terminal import decision
-    from faultpath.tables.terminal import drawn
 
     for run in runs:
         if len(runs) > 1:
             console.print(f"\nFault {run.record.question.fault}", markup=False)
         console.print(decision(run.record))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
-    if len(runs) > 1:
-        console.print()
-        console.print(drawn(by_size([run.record for run in runs])))
     return FAILED_TRIALS if any(run.failed for run in runs) else 0

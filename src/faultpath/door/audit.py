@@ -50,6 +50,7 @@ def audit(
     metric: str = "",
     thresholds: Sequence[float] = (),
     executor: str = LOCAL,
+    factorial: bool = False,
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -87,6 +88,7 @@ def audit(
         executor: `local` for processes of this machine, `ray` for the Ray cluster that
             `RAY_ADDRESS` names or that runs here, else one of the call's own, or `ray:HOST:PORT`.
         after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
+        factorial: Strike every subset of the modules, for main effects and interactions.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -119,6 +121,7 @@ def audit(
         thresholds=thresholds,
         stop_when=_checked_rule(stop_when),
         margin_pp=_checked_margin(margin_pp),
+        full=factorial,
     )
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
     told = display(progress, "audit", given | said)
@@ -130,7 +133,7 @@ def audit(
 
     named = [asked.study.name, fault, Path(library).stem]
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
-    named += _until(asked.question.stop)
+    named += _until(asked.question.stop) + ["factorial"] * factorial
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)

@@ -50,7 +50,9 @@ def carry_out(
     result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
-    write_text(folder / RECORD, json.dumps(record.model_dump(mode="json"), indent=2) + "\n", folder)
+    absent = {"factorial"} if record.factorial is None else None
+    content = record.model_dump(mode="json", exclude=absent)
+    write_text(folder / RECORD, json.dumps(content, indent=2) + "\n", folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
     files = seal(folder, MADE_FROM)
     provenance = run_provenance(result, stopwatch, told.command, hands, system.backend, files)

@@ -89,6 +89,8 @@ def _doubts(
     paths = {path.name for path in record.paths}
     cells = {(cell.variant, cell.path): cell for cell in record.cells}
     wanted = {(variant, path) for variant in arms for path in paths}
+    more = record.factorial.paths if record.factorial else ()
+    flown = wanted | {(variant, path) for variant in arms for path in more}
     trials = Counter((row.variant, row.path) for row in outcomes.rows)
     solved = Counter(
         (row.variant, row.path) for row in outcomes.rows if row.outcome.status == "success"
@@ -99,7 +101,7 @@ def _doubts(
         return "record and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != arms:
         return "the system's variants are not those of the question"
-    if not paths or set(cells) != wanted or set(trials) != wanted:
+    if not paths or set(cells) != wanted or set(trials) != flown:
         return "the record and the outcomes have different arms"
     if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
         return "the record and the outcomes count different successes"

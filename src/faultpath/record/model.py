@@ -5,6 +5,7 @@ from typing import Any, Literal, cast
 from pydantic import BaseModel, ConfigDict, model_validator
 
 from faultpath.faults import Fault
+from faultpath.record.factors import Factorial
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 
@@ -264,6 +265,8 @@ class DecisionRecord(_Frozen):
     results that do not repeat or depend on their block, consumers that never read."""
     stopped: Stopped | None = None
     """Of a sequential audit."""
+    factorial: Factorial | None = None
+    """Where one was asked for."""
 
     @property
     def flown(self) -> str:

@@ -8,6 +8,7 @@ from markupsafe import Markup
 from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.record.plain import plain_words
 from faultpath.report import story, wording
+from faultpath.report.factorial import by_factors
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
 from faultpath.report.figures.fork import fork_panels
 from faultpath.report.figures.frequency import frequency_panel, shared_range
@@ -144,6 +145,7 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
         "secondary": _secondary(record),
         "measured": "distance and clearance" if set(asked.metrics) <= set(VEHICLE) else "metrics",
         "thresholds": Markup(html(told)) if (told := by_threshold(record)) else "",
+        "factorial": Markup(html(table)) if (table := by_factors(record)) else "",
     }
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report import wording
+from faultpath.report.factorial import by_factors
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
@@ -151,8 +152,8 @@ def _corrected(record: DecisionRecord) -> str:
 
 def markdown_table(record: DecisionRecord) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    told = by_threshold(record)
-    return "\n\n".join(map(block, filter(None, (whole_table(record), told))))
+    tables = (whole_table(record), by_threshold(record), by_factors(record))
+    return "\n\n".join(map(block, filter(None, tables)))
 
 
 def latex_table(record: DecisionRecord) -> str:

@@ -6,6 +6,7 @@ from rich.text import Text
 
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
+from faultpath.report.factorial import by_factors
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import Line, Table, line
@@ -26,7 +27,10 @@ def decision(record: DecisionRecord) -> RenderableType:
     parts += _list("Found in the run", record.findings, "bold red")
     parts += [Text(""), drawn(success, one_line=True), Text(""), drawn(effects, one_line=True)]
     told = by_threshold(record)
-    parts += [Text(""), drawn(told)] if told else []
+    factors = by_factors(record)
+    for table in filter(None, (told, factors)):
+        parts += [Text(""), drawn(table)]
+    parts += [Text(note) for note in factors.notes] if factors else []
     parts += _list("What would change this", record.verdict.would_change, "bold")
     return Group(*parts)
 

@@ -1,0 +1,88 @@
+"""`faultpath plan`: what to audit first, as a study file that `faultpath audit --study` flies."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import SET, numbers, path, settings
+
+
+def command(
+    system: Annotated[
+        str, typer.Argument(help="As for `audit`; --help after it shows its own options too.")
+    ],
+    baseline: Annotated[str, typer.Option(help="Variant to compare with.")],
+    repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
+    fault: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Expected error of a source that declares none, or another one: "
+            "`gain:scale=1.1`; repeat the option for more."
+        ),
+    ] = None,
+    module: Annotated[
+        list[str] | None,
+        typer.Option(help="Module that the repair changes, where its reads do not tell."),
+    ] = None,
+    factorial: Annotated[
+        bool,
+        typer.Option(
+            "--factorial",
+            help="Strike every subset of the modules that read the first source, for main effects "
+            "and interactions.",
+        ),
+    ] = False,
+    library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
+    scenes: Annotated[int | None, typer.Option(help="Plan for only the first N scenes.")] = None,
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the noise, and of trained models where there are any.")
+    ] = "0",
+    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    out: Annotated[Path, typer.Option(parser=path, help="Study file to write.")] = Path(
+        "study.yaml"
+    ),
+    workers: Annotated[
+        int | None, typer.Option(help="Worker processes that the time is told for.")
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+) -> None:
+    """Rank the uncertain sources, propose the audits of a repair with their trials and time, and
+    write them as a study file for `faultpath audit --study`."""
+    drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
+
+    from faultpath.door.display import Display, SafeConsole
+    from faultpath.door.planned import plan
+
+    found = plan(
+        system,
+        baseline=baseline,
+        repair=repair,
+        faults=tuple(fault or ()),
+        modules=tuple(module or ()),
+        factorial=factorial,
+        library=library,
+        scenes=scenes,
+        seeds=drawn,
+        options=options,
+        workers=workers,
+        progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),
+    )
+    written = found.write(out)
+
+    from faultpath.report.proposal import by_audit, by_rank
+    from faultpath.tables.terminal import drawn as in_terminal
+
+    if as_json:
+        typer.echo(found.plan.model_dump_json(indent=2))
+        return
+    console = SafeConsole()
+    for table in (by_rank(found.plan), by_audit(found.plan)):
+        console.print(in_terminal(table))
+        for note in table.notes:
+            console.print(note, markup=False)
+        console.print()
+    for sentence in found.sentences:
+        console.print(sentence, markup=False)
+    console.print(f"Written: {written}", markup=False, soft_wrap=True)

@@ -1,0 +1,35 @@
+"""`faultpath audit --study FILE`: the audits of a study file, one after the other."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.audit import tell
+from faultpath.cli.options import MemoryLimit, TimeLimit, path
+
+
+def command(
+    study: Annotated[Path, typer.Option(parser=path, help="Study file of `faultpath plan`.")],
+    out: Annotated[
+        Path | None,
+        typer.Option(parser=path, help="Folder with a run folder for each audit; default runs/."),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(
+            help="Worker processes, 0 for this process alone; default one per core if that helps."
+        ),
+    ] = None,
+    time_limit: TimeLimit = None,
+    memory_limit: MemoryLimit = None,
+) -> int:
+    """Carry out the audits of a study file. The file says system, variants, faults, scenes and
+    seeds; the same command resumes."""
+    from faultpath.door.display import Display, SafeConsole
+    from faultpath.door.planned import audit_study
+
+    console = SafeConsole()
+    progress = Display(console, ("faultpath", *sys.argv[1:]))
+    return tell(console, audit_study(study, out, workers, time_limit, memory_limit, progress))

@@ -1,0 +1,199 @@
+"""`faultpath.plan`: what to audit first, as a study file; and carrying such a file out."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from faultpath.door.audit import audit, checked_count, checked_seeds, checked_texts
+from faultpath.door.display import Display, Now, display
+from faultpath.door.systems import choose, worker_count
+from faultpath.errors import UserError
+from faultpath.patience import patience
+from faultpath.planning import plan_audit
+from faultpath.proposal.plan import Plan, Proposal
+from faultpath.proposal.sources import parsed
+from faultpath.proposal.study import StudyFile, check_arms, read_study
+from faultpath.proposal.words import sentences
+from faultpath.store import write_text
+from faultpath.store.atomic import check_writable
+from faultpath.trials import System, library_of
+
+if TYPE_CHECKING:
+    from faultpath.door.run import Run
+
+
+@dataclass(frozen=True, repr=False)
+class Planned:
+    """A plan that can be written as a study file, or carried out."""
+
+    plan: Plan
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """Why the first source is first, what is left open, trials and time."""
+        return sentences(self.plan)
+
+    def write(self, file: str | PathLike[str]) -> Path:
+        """Write the study file and return its path; `UserError` where another one stands."""
+        path, text = Path(file), self.plan.study.yaml()
+        if path.exists() and (not path.is_file() or path.read_bytes() != text.encode()):
+            raise UserError(f"{path} is there already, and is another: give another file.")
+        check_writable(path)
+        write_text(path, text)
+        return path
+
+    def audit(
+        self,
+        folder: str | PathLike[str] | None = None,
+        workers: int | None = None,
+        progress: bool | Display = True,
+    ) -> "tuple[Run, ...]":
+        """Carry the study out, as `faultpath audit --study` does; the same call resumes."""
+        return carry_out_study(self.plan.study, folder, workers, None, None, progress)
+
+    def __repr__(self) -> str:
+        """Return the audits and the first sentence."""
+        names = ", ".join(each.name for each in self.plan.study.audits)
+        return f"<Plan of {names}: {self.sentences[0]}>"
+
+
+def plan(
+    system: str | PathLike[str] | System,
+    *,
+    baseline: str,
+    repair: str,
+    faults: str | Sequence[str] = (),
+    modules: str | Sequence[str] = (),
+    factorial: bool = False,
+    library: str = "held-out",
+    scenes: int | None = None,
+    seeds: int | Sequence[int] = 0,
+    options: Mapping[str, object] | None = None,
+    workers: int | None = None,
+    progress: bool | Display = True,
+) -> Planned:
+    """Rank the uncertain sources of a system, and propose the audits of a repair.
+
+    Flies a block of scenes of both variants to tell the time, and where faultpath runs the
+    system's modules itself a few scenes to probe sources; nothing is decided from them.
+
+    Args:
+        system: As for `audit`, but by name: a study file has to build it again.
+        baseline: Variant to compare with.
+        repair: Variant that is meant to help.
+        faults: Expected errors, as faults of one size (`gain:scale=1.1`): for sources that declare
+            none, and in place of what others declare.
+        modules: Modules that the repair changes, where what the variants read does not tell.
+        factorial: Strike every subset of the modules that read the first source.
+        library: Library of scenes.
+        scenes: How many of its first scenes; `None` for all.
+        seeds: Of the audits.
+        options: The system's own options.
+        workers: Worker processes that the time is told for.
+        progress: As for `audit`.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+    """
+    given = dict(locals())
+    checked_texts(baseline=baseline, repair=repair, library=library)
+    drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
+    called = isinstance(progress, Display) and progress.is_command
+    with patience(str(system), None) if called else nullcontext():
+        chosen = choose(system, options or {}, workers, (baseline, repair))
+        scenes_from = library_of(chosen.system, library)
+    if chosen.own:
+        raise UserError(
+            "a study file cannot hold an object: put what builds the system into a file and name "
+            "that, as 'my_system.py:create'."
+        )
+    said = {"system": chosen.spec.name, "options": chosen.spec.options}
+    told = display(progress, "plan", given | said)
+    asked = Proposal(
+        chosen.system,
+        chosen.spec,
+        baseline,
+        repair,
+        scenes_from,
+        count,
+        drawn,
+        (faults,) if isinstance(faults, str) else tuple(faults),
+        (modules,) if isinstance(modules, str) else tuple(modules),
+        factorial,
+    )
+    with told.progress("Probing") as show:
+
+        def note(done: int, total: int) -> None:
+            show(Now(done, total, f"{done} of {total} flights"))
+
+        return Planned(asked.make(worker_count(chosen.system, chosen.workers), note))
+
+
+def audit_study(
+    file: str | PathLike[str],
+    folder: str | PathLike[str] | None,
+    workers: int | None,
+    time_limit_s: float | None,
+    memory_limit_gib: float | None,
+    progress: bool | Display,
+) -> "tuple[Run, ...]":
+    """Carry out the audits of a study file; raises as `audit`, and for a file that does not fit."""
+    study = read_study(Path(file))
+    return carry_out_study(study, folder, workers, time_limit_s, memory_limit_gib, progress)
+
+
+def carry_out_study(
+    study: StudyFile,
+    folder: str | PathLike[str] | None,
+    workers: int | None,
+    time_limit_s: float | None,
+    memory_limit_gib: float | None,
+    progress: bool | Display,
+) -> "tuple[Run, ...]":
+    """Audit one after the other, once all fit the system; arms that the first has fly once."""
+    _check(study)
+    runs: list[Run] = []
+    for each in study.audits:
+        run = audit(
+            study.system,
+            baseline=study.baseline,
+            repair=study.repair,
+            fault=each.fault,
+            library=study.library,
+            scenes=study.scenes,
+            seeds=study.seeds,
+            factorial=each.factorial,
+            options=study.options,
+            folder=None if folder is None else Path(folder) / each.name,
+            workers=workers,
+            time_limit_s=time_limit_s,
+            memory_limit_gib=memory_limit_gib,
+            progress=progress,
+            after=runs[0].folder if runs else None,
+        )
+        runs.append(run)
+    return tuple(runs)
+
+
+def _check(study: StudyFile) -> None:
+    """Raise `UserError` unless the system has what every audit of the file names."""
+    checked_seeds(study.seeds)
+    chosen = choose(study.system, study.options, None, (study.baseline, study.repair))
+    library = library_of(chosen.system, study.library)
+    for each in study.audits:
+        laid = plan_audit(
+            chosen.system,
+            chosen.spec,
+            baseline=study.baseline,
+            repair=study.repair,
+            fault=parsed(chosen.system, each.fault),
+            fault_text=each.fault,
+            library=library,
+            scenes=study.scenes,
+            seeds=study.seeds,
+            full=each.factorial,
+        )
+        check_arms(study, each, laid)

@@ -1,0 +1,96 @@
+"""Which source comes first, and which others the same repair has to be audited against."""
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+
+from faultpath.errors import UserError
+from faultpath.interface import Interface, module_of, modules
+from faultpath.proposal.sources import Candidate, bound
+from faultpath.text import unknown
+from faultpath.trials import LoopSystem, System, Variant
+
+
+def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Return candidates, the one with most consumers and then the largest probe response first.
+
+    This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
+    both share a rank, and stand in the order of declaration. Those without a fault come last.
+    """
+
+    def key(each: Candidate) -> tuple[int, float]:
+        return -len(each.consumers), -1.0 if each.response is None else -each.response
+
+    sized = sorted((each for each in found if each.fault), key=key)
+    out: list[Candidate] = []
+    for _, alike in groupby(sized, key):
+        rank = len(out) + 1
+        out += [each.model_copy(update={"rank": rank}) for each in alike]
+    unsized = sorted((each for each in found if not each.fault), key=lambda e: -len(e.consumers))
+    return (*out, *unsized)
+
+
+def repaired_modules(
+    system: System, baseline: Variant, repair: Variant, named: Sequence[str]
+) -> tuple[str, ...]:
+    """Return the modules that the repair changes: as `named`, else as far as can be seen.
+
+    Seen is what reads at other places, writes a source that feeds a channel in one of the variants
+    only, or is of another class. Weights and settings are not seen. `UserError` for a name that is
+    no module's.
+    """
+    interface = system.interface
+    known = modules(interface)
+    for name in named:
+        if name not in known:
+            raise UserError(f"{system.name}: {unknown('module', name, known)}")
+    found = {module_of(consumer) for consumer in baseline.consumers ^ repair.consumers}
+    for channel in interface.channels:
+        fed = {bound(variant, interface, channel.name) for variant in (baseline, repair)}
+        if len(fed) > 1:
+            found |= {module for module, made in interface.reconstructions if made in fed}
+    if isinstance(system, LoopSystem):
+        one, two = (
+            {(each.name, type(each)) for each in system.modules(variant.name, None)}
+            for variant in (baseline, repair)
+        )
+        found |= {name for name, _ in one ^ two}
+    return tuple(named) or tuple(name for name in known if name in found)
+
+
+def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:
+    """Return each module that makes a source which another one reads, with these sources."""
+    found: dict[str, dict[str, None]] = {}
+    for module, made in interface.reconstructions:
+        for variant in variants:
+            for channel in interface.channels:
+                readers = variant.consumers.intersection(channel.consumers)
+                if bound(variant, interface, channel.name) == made and any(
+                    module_of(reader) != module for reader in readers
+                ):
+                    found.setdefault(module, {})[made] = None
+    return {module: tuple(sources) for module, sources in found.items()}
+
+
+def recursion(
+    found: Sequence[Candidate],
+    made_by: Mapping[str, Sequence[str]],
+    start: Sequence[str],
+) -> dict[str, str]:
+    """Return the candidates that modules in `start` lead to, by name, each with why.
+
+    The paper's rule is recursive: what a module makes is a source of others, and depends on what
+    it reads, "which require the same audit as its output". So do the inputs of a module that makes
+    one of these inputs, and so on.
+    """
+    why: dict[str, str] = {}
+    waiting = [module for module in start if module in made_by]
+    for module in waiting:  # grows while it is gone through
+        makes = ", ".join(made_by[module])
+        for each in found:
+            if set(each.sources) & set(made_by[module]):
+                why.setdefault(each.name, f"output of {module}")
+            elif any(module_of(consumer) == module for consumer in each.consumers):
+                why.setdefault(each.name, f"input of {module}, which makes {makes}")
+                behind = (m for m, sources in made_by.items() if set(sources) & set(each.sources))
+                waiting += [m for m in behind if m not in waiting]
+    return why

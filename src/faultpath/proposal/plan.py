@@ -1,0 +1,229 @@
+"""A plan: sources in order, the audits of a study, how many trials they take and how long."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from faultpath.errors import UserError
+from faultpath.execution.attempt import Raised, Wrong, attempt
+from faultpath.frozen import Frozen
+from faultpath.planning import Audit, plan_audit, variant_of
+from faultpath.proposal.order import makers, ranked, recursion, repaired_modules
+from faultpath.proposal.probing import command_responses
+from faultpath.proposal.sources import Candidate, candidates, parsed
+from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
+from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
+
+PROBED_SCENES = 8
+"""A probe is a look at where to begin, and no result."""
+Note = Callable[[int, int], None]
+"""Takes how many flights are done, and of how many."""
+
+
+class Timing(Frozen, allow_inf_nan=False):
+    """What the study will take, from one block of each variant under correct inputs."""
+
+    scenes: int
+    """Of the block."""
+    block_s: dict[str, float]
+    """Seconds that it took here, by variant."""
+    workers: int
+    seconds: float
+    """Of the whole study, all workers together at work on it."""
+
+
+class Plan(Frozen):
+    """What `faultpath plan --json` prints."""
+
+    format: int = 1
+    study: StudyFile
+    candidates: tuple[Candidate, ...]
+    """Ranked; those without a fault last."""
+    repaired: tuple[str, ...]
+    """Modules that the repair changes, as far as is known."""
+    unplanned: dict[str, str]
+    """Sources that the recursion leads to and that have no fault, each with why it leads there."""
+    probed: int
+    """Scenes of the probe; 0 where there was none."""
+    trials: tuple[int, ...]
+    """Of each audit, beyond those that an earlier one flies."""
+    timing: Timing
+
+    @property
+    def total(self) -> int:
+        """Trials of the whole study."""
+        return sum(self.trials)
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What is asked for, and the system that is asked."""
+
+    system: System
+    spec: SystemSpec
+    baseline: str
+    repair: str
+    library: Library
+    scenes: int | None = None
+    seeds: tuple[int, ...] = (0,)
+    faults: tuple[str, ...] = ()
+    """In place of declared sizes."""
+    repaired: tuple[str, ...] = ()
+    """Modules; empty for what can be seen."""
+    factorial: bool = False
+    variants: tuple[Variant, Variant] = field(init=False)
+
+    def __post_init__(self) -> None:
+        pair = variant_of(self.system, self.baseline), variant_of(self.system, self.repair)
+        object.__setattr__(self, "variants", pair)
+
+    def make(self, workers: int, note: Note = lambda done, total: None) -> Plan:
+        """Rank, lay the audits out, probe and time.
+
+        `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
+        variant that does not run.
+        """
+        found = candidates(self.system, self.variants, self.faults)
+        if not any(each.fault for each in found):
+            raise UserError(_nothing_sized(self.system, found))
+        repaired = repaired_modules(self.system, *self.variants, self.repaired)
+        chosen = self._audit(next(each for each in found if each.fault)).study.scenes
+        probes = isinstance(self.system, LoopSystem) and sum(bool(c.fault) for c in found) > 1
+        total, done = 4 if probes else 2, 0
+        note(done, total)
+        if isinstance(self.system, LoopSystem) and probes:
+            for variant in self.variants:
+                found = self._probed(self.system, found, variant.name, chosen[:PROBED_SCENES])
+                note(done := done + 1, total)
+        order = ranked(found)
+        first, why = self._reasons(order, repaired)
+        named = [each for each in order if each.fault and each.name in why]
+        named.sort(key=lambda each: each.name != first)
+        laid = [self._audit(each, self.factorial and each.name == first) for each in named]
+        block_s: dict[str, float] = {}
+        block = chosen[: self.system.block_size]
+        for variant in self.variants:
+            block_s[variant.name] = self._seconds(variant.name, block)
+            note(done := done + 1, total)
+        fresh = _fresh(laid)
+        return Plan(
+            study=StudyFile(
+                system=self.spec.name,
+                options=self.spec.options,
+                baseline=self.baseline,
+                repair=self.repair,
+                library=self.library.name,
+                library_hash=self.library.content_hash,
+                scenes=len(chosen),
+                seeds=self.seeds,
+                audits=tuple(
+                    StudyAudit(
+                        name=each.name,
+                        fault=each.fault,
+                        why=why[each.name],
+                        factorial=bool(audit.factors),
+                        arms=arms_of(audit, repaired),
+                    )
+                    for each, audit in zip(named, laid, strict=True)
+                ),
+            ),
+            candidates=order,
+            repaired=repaired,
+            unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
+            probed=min(len(chosen), PROBED_SCENES) if probes else 0,
+            trials=tuple(len(arms) * len(chosen) for arms in fresh),
+            timing=_timing(fresh, block_s, len(block), len(chosen), workers),
+        )
+
+    def _audit(self, each: Candidate, full: bool = False) -> Audit:
+        return plan_audit(
+            self.system,
+            self.spec,
+            baseline=self.baseline,
+            repair=self.repair,
+            fault=parsed(self.system, each.fault),
+            fault_text=each.fault,
+            library=self.library,
+            scenes=self.scenes,
+            seeds=self.seeds,
+            full=full,
+        )
+
+    def _probed(
+        self,
+        system: LoopSystem,
+        found: Sequence[Candidate],
+        variant: str,
+        scenes: Sequence[str],
+    ) -> tuple[Candidate, ...]:
+        """Return the candidates with responses of a variant, path by path as an audit has them."""
+        arms = {
+            (each.name, row.path): row.arm.faults
+            for each in found
+            if each.fault
+            for row in self._audit(each).study.rows
+            if row.variant == variant and row.arm.faults
+        }
+        moved = command_responses(system, variant, arms, scenes, self.seeds[0])
+
+        def responses(name: str) -> dict[str, float]:
+            return {path: value for (source, path), value in moved.items() if source == name}
+
+        return tuple(
+            each.model_copy(update={"responses": each.responses | {variant: responses(each.name)}})
+            for each in found
+        )
+
+    def _reasons(
+        self, order: Sequence[Candidate], repaired: tuple[str, ...]
+    ) -> tuple[str, dict[str, str]]:
+        """Return the source that comes first, and why each that is audited is."""
+        first = order[0]
+        struck = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
+        made_by = makers(self.system.interface, self.variants)
+        more = recursion(order, made_by, (*repaired, *struck))
+        return first.name, {first.name: "first by rank"} | {
+            name: why for name, why in more.items() if name != first.name
+        }
+
+    def _seconds(self, variant: str, block: Sequence[str]) -> float:
+        """Return what a block takes once all that it needs is loaded, as one scene has shown."""
+        attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), block[:1])
+        done = attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), block)
+        if isinstance(done, Wrong):
+            raise done.error
+        if isinstance(done, Raised):
+            raise UserError(f"variant '{variant}' does not run: {done.error}")
+        return done.seconds
+
+
+def _fresh(laid: Sequence[Audit]) -> list[list[Arm]]:
+    """Return the arms of each audit that the first one has not got: those it shares are taken
+    over."""
+    held = {arm.key() for arm in laid[0].study.arms()}
+    more = ([a for a in each.study.arms() if a.key() not in held] for each in laid[1:])
+    return [list(laid[0].study.arms()), *more]
+
+
+def _timing(
+    arms: Sequence[Sequence[Arm]], block_s: dict[str, float], block: int, scenes: int, workers: int
+) -> Timing:
+    each = [block_s[arm.variant] for audit in arms for arm in audit]
+    blocks = -(-scenes // block)
+    lanes = max(1, min(workers, blocks * len(arms[0])))
+    return Timing(
+        scenes=block,
+        block_s=block_s,
+        workers=lanes,
+        seconds=sum(each) * scenes / block / lanes,
+    )
+
+
+def _nothing_sized(system: System, found: Sequence[Candidate]) -> str:
+    if not found:
+        return f"{system.name}: neither variant reads a source that may err: nothing to plan."
+    why = "; ".join(f"{each.name} {each.unsized}" for each in found)
+    channel = next((c for each in found for c in each.channels), "CHANNEL")
+    return (
+        f"{system.name}: no source says how large its errors are ({why}): declare it in the "
+        f"interface, or give the expected error, for example --fault {channel}:scale=1.1"
+    )
