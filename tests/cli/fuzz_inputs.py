@@ -65,7 +65,7 @@ FAULTS = (
     "gain:scale=0.6,for=1,recover=-1",
 )
 
-OF_SYSTEMS = ("audit", "check", "interface", "map", "trace")
+OF_SYSTEMS = ("audit", "check", "interface", "map", "plan", "trace")
 
 VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
     "audit": (
@@ -135,6 +135,21 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--out": ("m", "folder", "text.txt"),
         },
     ),
+    "plan": (
+        [TOY],
+        {
+            "--baseline": ("calibrated", "nobody"),
+            "--repair": ("blind", "calibrated"),
+            "--fault": FAULTS,
+            "--module": ("observer", "nobody"),
+            "--library": ("carts",),
+            "--scenes": ("1", "0"),
+            "--seeds": ("0", "1,1"),
+            "--factorial": (None,),
+            "--out": ("s.yaml", "folder", "text.txt"),
+            "--json": (None,),
+        },
+    ),
     "probe": ([TOY], {"--variants": ("a,b",), "--seeds": ("0",), "--out": ("probe",)}),
     "init": (["my_rover"], {"--with": ("numpy", "gymnasium", "jax")}),
     "claims": ([], {"--run": ("folder", "text.txt"), "--profile": ("x",), "--device": ("cuda",)}),
@@ -169,9 +184,7 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
         for _ in range(rng.randint(0, 2)):
             name = rng.choice([*options, "system", "more", "less"] if options else ["system"])
             if name == "system" and words:
-                words[0] = rng.choice(
-                    SYSTEMS if verb in ("audit", "check", "interface", "map", "trace") else JUNK
-                )
+                words[0] = rng.choice(SYSTEMS if verb in OF_SYSTEMS else JUNK)
             elif name == "more":
                 given[rng.choice(("--set", "--wind", "--device", "--nothing"))] = rng.choice(JUNK)
             elif name == "less":

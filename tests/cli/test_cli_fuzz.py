@@ -12,12 +12,14 @@ from pathlib import Path
 
 import pytest
 import typer
-from cli_runs import audit
+from cli_runs import TOY, audit
 from fuzz_inputs import JUNK, VERBS, commands, documents, texts, wrong
 
+from faultpath import plan
 from faultpath.cli.app import build
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
+from faultpath.proposal.study import read_study
 from faultpath.selfcheck import PROFILES
 from faultpath.selfcheck.run import Profile, Task
 
@@ -104,6 +106,24 @@ def test_interface_texts(fuzz_seed: int) -> None:
             read, said = read + 1, ""
             assert read_interface(interface_yaml(interface)) == interface, (fuzz_seed, text)
         assert "\n" not in said, (fuzz_seed, text)
+    assert 0 < read < 290
+
+
+def test_study_texts(here: Path, fuzz_seed: int) -> None:
+    rng = random.Random(fuzz_seed)
+    given = {"faults": "gain:scale=0.6", "library": "carts", "scenes": 2}
+    made = plan(TOY, baseline="calibrated", repair="blind", progress=False, **given)
+    read = 0
+    for text in texts(rng, made.plan.study.yaml(), 300):
+        path = here / "study.yaml"
+        path.write_bytes(text.encode("utf-8", "surrogatepass"))
+        try:
+            read_study(path)
+        except UserError:
+            continue
+        except Exception as error:
+            raise AssertionError(f"seed {fuzz_seed}: {error!r} for {text!r}") from error
+        read += 1
     assert 0 < read < 290
 
 

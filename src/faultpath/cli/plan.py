@@ -53,8 +53,9 @@ def command(
     drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
     from faultpath.door.display import Display, SafeConsole
-    from faultpath.door.planned import plan
+    from faultpath.door.planned import check_new, plan
 
+    check_new(out)
     found = plan(
         system,
         baseline=baseline,

@@ -132,6 +132,13 @@ def plan(
         return Planned(asked.make(worker_count(chosen.system, chosen.workers), note))
 
 
+def check_new(file: Path) -> None:
+    """Raise `UserError` unless a file can be written there and none stands in its place."""
+    check_writable(file)
+    if file.exists():
+        raise UserError(f"{file} is there already: give another file with --out, or remove it.")
+
+
 def audit_study(
     file: str | PathLike[str],
     folder: str | PathLike[str] | None,

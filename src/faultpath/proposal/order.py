@@ -18,7 +18,7 @@ def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """
 
     def key(each: Candidate) -> tuple[int, float]:
-        return -len(each.consumers), -1.0 if each.response is None else -each.response
+        return -len(each.consumers), 1.0 if each.response is None else -each.response
 
     sized = sorted((each for each in found if each.fault), key=key)
     out: list[Candidate] = []

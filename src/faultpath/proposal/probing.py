@@ -3,7 +3,7 @@
 The probe of the paper, Section III-B, asked of the whole controller: `A_s = median |u(s') - u(s)|`.
 A loop flies under correct inputs. Beside it, step by step, its modules run again on what its plant
 senses and on the commands that it has executed, with the fault in force: histories are those of the
-flight, and only what the modules make of the faulty input differs, what they carry from step to step
+flight, and only what modules make of the faulty input differs, what they carry from step to step
 included. The median is over the steps of all scenes while they run, of the distance between both
 commands, each component as a fraction of its root mean square in the flight.
 """

@@ -59,11 +59,16 @@ def _first(plan: Plan, sized: Sequence[Candidate]) -> str:
             f"{first.name} and {names} tie: {count} each, {equal}{own}. {first.name} is audited "
             "first because it is declared first."
         )
-    said = "unknown" if alike[0].response is None else f"{alike[0].response:.3g}"
+    known = [each.response for each in alike if each.response is not None]
+    open_ = [each.name for each in alike if each.response is None]
+    moved = f"a probe response ({first.response:.3g})"
+    if known:
+        moved = f"the largest probe response ({first.response:.3g}, next {known[0]:.3g})"
     return (
-        f"{first.name} comes first: {count}, as {names}, and the larger probe response "
-        f"({first.response:.3g}, next {said}). These are point estimates from "
-        f"{_counted(plan.probed, 'scene')}; no test compares them."
+        f"{first.name} comes first: {count}, as {names}, and {moved}"
+        + (f"; none is known of {_both(open_)}" if open_ else "")
+        + f". These are point estimates from {_counted(plan.probed, 'scene')}; no test compares "
+        "them."
     )
 
 

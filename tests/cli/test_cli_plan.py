@@ -1,0 +1,91 @@
+"""`faultpath plan` and `faultpath audit --study` from end to end."""
+
+import json
+from pathlib import Path
+
+import pytest
+from cli_runs import TOY, Ended, faultpath, shards
+
+from faultpath.proposal.plan import Plan
+from faultpath.proposal.study import read_study
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "120")
+
+
+def plan(*more: object, **changes: object) -> Ended:
+    given = {
+        "baseline": "calibrated",
+        "repair": "blind",
+        "fault": "gain:scale=1.25",
+        "library": "carts",
+        "scenes": 12,
+    } | changes
+    return faultpath("plan", TOY, *(p for k, v in given.items() for p in (f"--{k}", v)), *more)
+
+
+def test_a_plan_is_told_written_flown_and_resumed() -> None:
+    ended = plan("--fault", "slope:offset=0.2")
+    assert ended.status == 0
+    assert "gain_estimate comes first: 2 consumers, more than any other" in ended.out
+    assert "output of observer" in ended.out
+    assert "Written: study.yaml" in ended.out
+    assert [each.name for each in read_study(Path("study.yaml")).audits] == [
+        "gain_estimate",
+        "observed_slope",
+    ]
+    flown = faultpath("audit", "--study", "study.yaml", "--workers", 0, "--out", "runs")
+    assert flown.status == 0
+    assert "Fault gain:scale=1.25" in flown.out
+    assert "Fault slope:offset=0.2" in flown.out
+    before = {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")}
+    assert len(shards(Path("runs/gain_estimate"))) > 0
+    again = faultpath("audit", "--study=study.yaml", "--workers", 0, "--out", "runs")
+    assert again.status == 0
+    assert "Kept" in again.out
+    assert {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")} == before
+
+
+def test_json_is_the_plan_and_nothing_else_on_the_standard_output() -> None:
+    ended = plan("--json", "--out", "p.yaml")
+    assert ended.status == 0
+    found = Plan.model_validate(json.loads(ended.out))
+    assert found.study == read_study(Path("p.yaml"))
+    assert found.candidates[0].rank == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"repair": "calibrated"}, "name two different variants"),
+        ({"repair": "bland"}, "did you mean 'blind'"),
+        ({"fault": "gain:scale=1.1@observer"}, "strikes every module by itself"),
+        ({"fault": "odometer"}, "unknown"),
+        ({"module": "nobody"}, "unknown module 'nobody'"),
+        ({"scenes": 0}, "choose 1 to 100"),
+        ({"seeds": "1,1"}, "each of them once"),
+        ({"out": "."}, "is there already"),
+    ],
+)
+def test_mistakes_are_a_sentence(changes: dict[str, object], said: str) -> None:
+    assert said in plan(**changes).refused()
+    assert not list(Path().glob("*"))
+
+
+def test_a_factorial_needs_two_readers() -> None:
+    ended = plan("--factorial", repair="blind", fault="slope:offset=0.2")
+    assert "a factorial takes 2" in ended.refused()
+
+
+def test_a_study_takes_no_options_that_its_file_says() -> None:
+    assert "`faultpath audit --help`" in faultpath("audit", TOY, "--study", "s.yaml").refused()
+    assert "--seeds" in faultpath("audit", "--study", "s.yaml", "--seeds", "0").refused()
+    assert "cannot be read" in faultpath("audit", "--study", "s.yaml").refused()
+
+
+def test_the_help_of_audit_names_study() -> None:
+    assert "--study" in faultpath("audit", "--help").out
+    assert "--study" in faultpath("audit", "--study", "x", "--help").out

@@ -1,0 +1,177 @@
+"""Study files: what is written is what is flown, and nothing else."""
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+import faultpath
+from faultpath.door.planned import Planned, audit_study
+from faultpath.errors import UserError
+from faultpath.proposal.study import StudyFile, read_study
+
+SYSTEMS = Path(__file__).resolve().parent / "declared_toy.py"
+
+
+@pytest.fixture(scope="module")
+def planned() -> Planned:
+    return faultpath.plan(
+        f"{SYSTEMS}:logged",
+        baseline="calibrated",
+        repair="logged",
+        library="carts",
+        scenes=20,
+        factorial=True,
+        progress=False,
+    )
+
+
+@pytest.fixture
+def file(planned: Planned, tmp_path: Path) -> Path:
+    return planned.write(tmp_path / "study.yaml")
+
+
+def changed(file: Path, change) -> Path:
+    data = yaml.safe_load(file.read_text())
+    change(data)
+    file.write_text(yaml.safe_dump(data, sort_keys=False))
+    return file
+
+
+def fly(file: Path, folder: Path | None = None) -> tuple[faultpath.Run, ...]:
+    return audit_study(file, folder, 0, None, None, False)
+
+
+def test_a_file_reads_back_as_what_was_written(planned, file):
+    assert read_study(file) == planned.plan.study
+    assert read_study(file).faultpath_study == 1
+    again = StudyFile.model_validate(yaml.safe_load(planned.plan.study.yaml()))
+    assert again == planned.plan.study
+
+
+def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
+    assert planned.write(file) == file  # the same text
+    file.write_text(file.read_text() + "# mine\n")
+    with pytest.raises(UserError, match="is there already, and is another"):
+        planned.write(file)
+    with pytest.raises(UserError, match="is there already"):
+        planned.write(tmp_path)
+
+
+def test_the_factorial_flies_every_subset_of_the_first_source(planned, file, tmp_path):
+    gain, *others = planned.plan.study.audits
+    assert [arm.path for arm in gain.arms if arm.role == "factorial"] == [
+        "controller+logger",
+        "controller+observer",
+        "logger+observer",
+    ]
+    assert not any(other.factorial for other in others)
+    changed(file, lambda data: data["audits"].__delitem__(slice(1, None)))
+    (run,) = fly(file, tmp_path / "runs")
+    held = run.record.factorial
+    assert held is not None
+    assert held.factors == ("controller", "logger", "observer")
+    rates: dict[str, list[float]] = {}
+    for row in run.table().to_pylist():
+        if row["variant"] == "calibrated":
+            rates.setdefault(row["path"], []).append(row["status"] == "success")
+    assert set(rates) == set(held.paths)
+    assert len(rates) == 8
+    mean = {path: 100 * sum(won) / len(won) for path, won in rates.items()}
+    every = "controller", "logger", "observer"
+    names = {path: every if path == "shared" else tuple(path.split("+")) for path in mean}
+    for factor in every:
+        struck = [v for path, v in mean.items() if factor in names[path]]
+        spared = [v for path, v in mean.items() if factor not in names[path]]
+        (told,) = (e for e in held.effects if e.of == "baseline" and e.factors == (factor,))
+        assert told.effect.value == pytest.approx(sum(struck) / 4 - sum(spared) / 4)
+    again = faultpath.open_run(run.folder)
+    assert again.record == run.record
+    page, table = ((run.folder / name).read_text() for name in ("report.html", "table.md"))
+    for text in (page, table):
+        assert "controller × logger × observer" in text
+        assert "Holm&#39;s correction is for these 21 effects" in text or (
+            "Holm's correction is for these 21 effects" in text
+        )
+    plain = faultpath.audit(
+        f"{SYSTEMS}:logged",
+        baseline="calibrated",
+        repair="logged",
+        library="carts",
+        scenes=20,
+        fault=gain.fault,
+        folder=tmp_path / "plain",
+        workers=0,
+        progress=False,
+        after=run.folder,
+    )
+    assert plain.record == run.record.model_copy(update={"factorial": None})
+    assert b"factorial" not in (plain.folder / "record.json").read_bytes()
+
+
+def test_a_run_without_the_arms_of_its_factorial_does_not_open(planned, file, tmp_path):
+    changed(file, lambda data: data["audits"].__delitem__(slice(1, None)))
+    (run,) = fly(file, tmp_path / "runs")
+    record = run.record.factorial.model_copy(update={"paths": run.record.factorial.paths[:-2]})
+    from faultpath.door.saved import _doubts
+
+    lost = run.record.model_copy(update={"factorial": record})
+    held = run._held
+    shown = type("Shown", (), {"variants": held.variants, "interface": held.interface})()
+    assert _doubts(run.record, held.provenance, shown, held.outcomes) == ""
+    assert "different arms" in _doubts(lost, held.provenance, shown, held.outcomes)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda d: d["audits"][0]["arms"].pop(), "plan anew"),
+        (lambda d: d["audits"][0]["arms"][1].update(repair=[]), "other arms than the system now"),
+        (lambda d: d["audits"][0].update(factorial=False), "controller[+]logger"),
+        (lambda d: d.update(library_hash="other"), "library 'carts' is not the one"),
+        (lambda d: d.update(faultpath_study=2), "faultpath_study: input should be 1"),
+        (lambda d: d.update(more=1), "more: extra inputs are not permitted"),
+        (lambda d: d.pop("repair"), "repair: field required"),
+        (lambda d: d.update(audits=[]), "audits"),
+        (lambda d: d.update(audits=d["audits"] + d["audits"]), "two audits have one name"),
+        (lambda d: d["audits"][0].update(name="../out"), "audits.0.name"),
+        (lambda d: d["audits"][0].update(fault="gian:scale=2"), "unknown channel 'gian'"),
+        (lambda d: d.update(repair="blnd"), "unknown variant 'blnd'"),
+        (lambda d: d.update(scenes=1000), "cannot run 1000 scenes"),
+        (lambda d: d.update(seeds=[-1]), "-1 is not a seed"),
+        (lambda d: d.update(system="nowhere.py:create"), "there is no file 'nowhere.py'"),
+    ],
+)
+def test_what_the_system_does_not_have_is_refused_before_anything_flies(
+    file, tmp_path, change, said
+):
+    with pytest.raises(UserError, match=said):
+        fly(changed(file, change), tmp_path / "runs")
+    assert not (tmp_path / "runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"", "input should be"),
+        (b"- 1\n", "input should be"),
+        (b"a: [", "is not plain YAML"),
+        (b"a: !!python/name:os.system x", "is not plain YAML"),
+        (b"a: 2001-99-99", "is not plain YAML"),
+        (b"[" * 5000, "is not plain YAML"),
+        (b"\xff\xfe", "cannot be read"),
+        (b"#" * 1_000_001, "it is too long"),
+    ],
+)
+def test_files_that_are_no_studies(tmp_path, text, said):
+    path = tmp_path / "study.yaml"
+    path.write_bytes(text)
+    with pytest.raises(UserError, match=said):
+        read_study(path)
+
+
+@pytest.mark.parametrize("name", ["nowhere.yaml", ".", "/dev/zero"])
+def test_places_that_are_no_files(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(UserError, match="study file"):
+        read_study(Path(name))
