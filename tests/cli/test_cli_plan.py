@@ -67,7 +67,7 @@ def test_json_is_the_plan_and_nothing_else_on_the_standard_output() -> None:
         ({"module": "nobody"}, "unknown module 'nobody'"),
         ({"scenes": 0}, "choose 1 to 100"),
         ({"seeds": "1,1"}, "each of them once"),
-        ({"out": "."}, "is there already"),
+        ({"out": "."}, "cannot write . (it is a folder"),
     ],
 )
 def test_mistakes_are_a_sentence(changes: dict[str, object], said: str) -> None:
