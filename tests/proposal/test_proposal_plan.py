@@ -138,6 +138,11 @@ def test_wrong_errors_are_refused(text, said):
         found(Sized(), text)
 
 
+def test_two_errors_of_one_source_are_refused():
+    with pytest.raises(UserError, match="gyro has been given an error already"):
+        found(Sized(), "rate:scale=1.5", "rate:offset=3")
+
+
 def test_a_channel_that_two_sources_feed_is_noted():
     assert found(Sized(), variants=("all", "told"))["odometer"].note == (
         "A fault on 'place' strikes odometer in all and truth in told, which feed it there."

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.audit import tell
-from faultpath.cli.options import MemoryLimit, TimeLimit, path
+from faultpath.cli.options import Executor, MemoryLimit, TimeLimit, path
 
 
 def command(
@@ -24,12 +24,22 @@ def command(
     ] = None,
     time_limit: TimeLimit = None,
     memory_limit: MemoryLimit = None,
+    executor: Executor = "local",
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.planned import audit_study
+    from faultpath.proposal.study import read_study
 
     console = SafeConsole()
-    progress = Display(console, ("faultpath", *sys.argv[1:]))
-    return tell(console, audit_study(study, out, workers, time_limit, memory_limit, progress))
+    runs = audit_study(
+        read_study(study),
+        folder=out,
+        workers=workers,
+        time_limit_s=time_limit,
+        memory_limit_gib=memory_limit,
+        executor=executor,
+        progress=Display(console, ("faultpath", *sys.argv[1:])),
+    )
+    return tell(console, runs)

@@ -5,17 +5,17 @@ from contextlib import nullcontext
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit, checked_count, checked_seeds, checked_texts
 from faultpath.door.display import Display, Now, display
-from faultpath.door.systems import choose, worker_count
+from faultpath.door.systems import choose, hands
 from faultpath.errors import UserError
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.proposal.plan import Plan, Proposal
 from faultpath.proposal.sources import parsed
-from faultpath.proposal.study import StudyFile, check_arms, read_study
+from faultpath.proposal.study import StudyFile, check_arms
 from faultpath.proposal.words import sentences
 from faultpath.store import write_text
 from faultpath.store.atomic import check_writable
@@ -52,7 +52,7 @@ class Planned:
         progress: bool | Display = True,
     ) -> "tuple[Run, ...]":
         """Carry the study out, as `faultpath audit --study` does; the same call resumes."""
-        return carry_out_study(self.plan.study, folder, workers, None, None, progress)
+        return audit_study(self.plan.study, folder=folder, workers=workers, progress=progress)
 
     def __repr__(self) -> str:
         """Return the audits and the first sentence."""
@@ -129,7 +129,7 @@ def plan(
         def note(done: int, total: int) -> None:
             show(Now(done, total, f"{done} of {total} flights"))
 
-        return Planned(asked.make(worker_count(chosen.system, chosen.workers), note))
+        return Planned(asked.make(hands(chosen.system, chosen.workers).count, note))
 
 
 def check_new(file: Path) -> None:
@@ -140,67 +140,42 @@ def check_new(file: Path) -> None:
 
 
 def audit_study(
-    file: str | PathLike[str],
-    folder: str | PathLike[str] | None,
-    workers: int | None,
-    time_limit_s: float | None,
-    memory_limit_gib: float | None,
-    progress: bool | Display,
-) -> "tuple[Run, ...]":
-    """Carry out the audits of a study file; raises as `audit`, and for a file that does not fit."""
-    study = read_study(Path(file))
-    return carry_out_study(study, folder, workers, time_limit_s, memory_limit_gib, progress)
-
-
-def carry_out_study(
     study: StudyFile,
-    folder: str | PathLike[str] | None,
-    workers: int | None,
-    time_limit_s: float | None,
-    memory_limit_gib: float | None,
-    progress: bool | Display,
+    *,
+    folder: str | PathLike[str] | None = None,
+    progress: bool | Display = True,
+    **flying: Any,
 ) -> "tuple[Run, ...]":
-    """Audit one after the other, once all fit the system; arms that the first has fly once."""
-    _check(study)
+    """Carry out the audits of a study, once all fit the system; arms that the first has fly once.
+
+    `flying` is what `audit` takes of how to fly: workers and limits. Raises as `audit`, and for a
+    file that does not fit the system any more.
+    """
+    asked: dict[str, Any] = {
+        "baseline": study.baseline,
+        "repair": study.repair,
+        "scenes": study.scenes,
+        "seeds": checked_seeds(study.seeds),
+    }
+    chosen = choose(study.system, study.options, None, (study.baseline, study.repair))
+    library = library_of(chosen.system, study.library)
+    for each in study.audits:
+        fault, text = parsed(chosen.system, each.fault), each.fault
+        laid = {"fault": fault, "fault_text": text, "library": library, "full": each.factorial}
+        check_arms(study, each, plan_audit(chosen.system, chosen.spec, **laid, **asked))
     runs: list[Run] = []
     for each in study.audits:
         run = audit(
             study.system,
-            baseline=study.baseline,
-            repair=study.repair,
             fault=each.fault,
             library=study.library,
-            scenes=study.scenes,
-            seeds=study.seeds,
             factorial=each.factorial,
             options=study.options,
             folder=None if folder is None else Path(folder) / each.name,
-            workers=workers,
-            time_limit_s=time_limit_s,
-            memory_limit_gib=memory_limit_gib,
             progress=progress,
             after=runs[0].folder if runs else None,
+            **asked,
+            **flying,
         )
         runs.append(run)
     return tuple(runs)
-
-
-def _check(study: StudyFile) -> None:
-    """Raise `UserError` unless the system has what every audit of the file names."""
-    checked_seeds(study.seeds)
-    chosen = choose(study.system, study.options, None, (study.baseline, study.repair))
-    library = library_of(chosen.system, study.library)
-    for each in study.audits:
-        laid = plan_audit(
-            chosen.system,
-            chosen.spec,
-            baseline=study.baseline,
-            repair=study.repair,
-            fault=parsed(chosen.system, each.fault),
-            fault_text=each.fault,
-            library=library,
-            scenes=study.scenes,
-            seeds=study.seeds,
-            full=each.factorial,
-        )
-        check_arms(study, each, laid)

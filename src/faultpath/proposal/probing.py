@@ -9,126 +9,139 @@ commands, each component as a fraction of its root mean square in the flight.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.arrays import is_array, to_numpy
+from faultpath.arrays import Array, is_array, to_numpy
 from faultpath.execution.attempt import taps_of
 from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Arm, LoopSystem
 
-Floats = NDArray[np.float64]
+Floats: TypeAlias = NDArray[np.float64]
+Key: TypeAlias = tuple[str, str]
+"""What the caller calls an arm."""
 
 
 def command_responses(
     system: LoopSystem,
     variant: str,
-    faults: Mapping[tuple[str, str], Sequence[AnyFault]],
+    faults: Mapping[Key, Sequence[AnyFault]],
     scenes: Sequence[str],
     seed: int,
-) -> dict[tuple[str, str], float]:
+) -> dict[Key, float]:
     """Return the response to each arm's faults that do not stop the variant's modules.
 
-    Arms are named as the caller likes. Empty where nothing that faultpath sees reaches the plant.
-    Raises what the flight raises.
+    Empty where nothing that faultpath sees reaches the plant. Raises what the flight raises.
     """
-    lead = _Lead()
-    batch = Batch(tuple(scenes), seed, system.control_dt_s)
-    flight = _taps(system, Arm(variant=variant, seed=seed), scenes, lead, leads=True)
+    beside = _Beside(system, variant, faults, scenes, seed)
     loop = system.loop(variant, seed)
-    lead.past = {
+    heard = _with_plant(loop, _Heard(loop.graph.plant, beside))
+    beside.past = {
         (port.channel, f"{part.name}.{port.place}")
         for part in loop.graph.parts
         for port in part.reads_past
     }
-    beside: dict[tuple[str, str], Any] = {}
-    for name, struck in faults.items():
-        arm = Arm(variant=variant, faults=tuple(struck), seed=seed)
-        other = system.loop(variant, seed)
-        told = _with_plant(other, _Told(other.graph.plant, lead))
-        beside[name] = told.execute(batch, _taps(system, arm, scenes, lead, leads=False))
-    moved: dict[tuple[str, str], list[Floats]] = {name: [] for name in beside}
-    commands: list[Floats] = []
-    running: list[NDArray[np.bool_]] = []
-    for instant in _with_plant(loop, _Heard(loop.graph.plant, lead)).execute(batch, flight):
-        if not len(instant.inputs):
-            break
-        commands.append(_command(instant.inputs, len(scenes)))
-        assert lead.progress is not None
-        running.append(np.asarray(to_numpy(lead.progress.running), dtype=bool))
-        for name in list(beside):
+    # So all runs as the system runs its loop, in whatever contexts it does so.
+    vars(system)["loop"] = lambda *_: heard
+    try:
+        system.run(variant, scenes, beside.taps((), leads=True), seed)
+    finally:
+        del vars(system)["loop"]
+    return beside.medians()
+
+
+class _Beside:
+    """What the flight shows of itself, and the modules that run beside it."""
+
+    def __init__(
+        self,
+        system: LoopSystem,
+        variant: str,
+        faults: Mapping[Key, Sequence[AnyFault]],
+        scenes: Sequence[str],
+        seed: int,
+    ) -> None:
+        self._system, self._variant, self._faults = system, variant, faults
+        self._scenes, self._seed = tuple(scenes), seed
+        self.past: set[tuple[str, str]] = set()
+        """Taps, by channel and consumer, at which a port reads what was held one step before."""
+        self.readings: dict[tuple[str, str], Reading] = {}
+        """Of the past, at the flight's present step."""
+        self.sensed: Mapping[str, Any] = {}
+        self.progress: Progress | None = None
+        self._others: dict[Key, Any] = {}
+        self._moved: dict[Key, list[Floats]] = {key: [] for key in faults}
+        self._commands: list[Floats] = []
+        self._running: list[NDArray[np.bool_]] = []
+
+    def taps(self, faults: Sequence[AnyFault], leads: bool) -> Taps:
+        arm = Arm(variant=self._variant, faults=tuple(faults), seed=self._seed)
+        return taps_of(self._system, arm, self._scenes, _Taps, beside=self, leads=leads)
+
+    def step(self, inputs: Inputs) -> None:
+        """Take in a command of the flight, and let the others make theirs."""
+        if not self._commands:
+            self._others = {key: self._begin(faults) for key, faults in self._faults.items()}
+        assert self.progress is not None
+        self._commands.append(self._command(inputs))
+        self._running.append(np.array(to_numpy(self.progress.running), dtype=bool))
+        for key in list(self._others):
             try:
-                moved[name].append(_command(next(beside[name]).inputs, len(scenes)))
+                self._moved[key].append(self._command(next(self._others[key]).inputs))
             except Exception:  # whatever modules do that were not made for such an input
-                del beside[name], moved[name]
-    if not commands or commands[0].shape[1] == 0:
-        return {}
-    return _medians(np.stack(commands), moved, np.stack(running))
+                del self._others[key], self._moved[key]
 
+    def _begin(self, faults: Sequence[AnyFault]) -> Any:
+        loop = type(self._system).loop(self._system, self._variant, self._seed)
+        batch = Batch(self._scenes, self._seed, self._system.control_dt_s)
+        told = _with_plant(loop, _Told(loop.graph.plant, self))
+        return told.execute(batch, self.taps(faults, leads=False))
 
-def _medians(
-    commands: Floats,
-    moved: Mapping[tuple[str, str], Sequence[Floats]],
-    running: NDArray[np.bool_],
-) -> dict[tuple[str, str], float]:
-    """Return the median distances; `commands` `[T, B, D]`, `running` `[T, B]`."""
-    size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
-    size[size == 0.0] = 1.0
-    found: dict[tuple[str, str], float] = {}
-    for name, others in moved.items():
-        apart = (np.stack(others) - commands)[running] / size
-        response = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
-        if np.isfinite(response):
-            found[name] = response
-    return found
+    def _command(self, inputs: Inputs) -> Floats:
+        """Return what reaches the plant, `[B, D]`."""
+        n = len(self._scenes)
+        parts = [
+            np.array(to_numpy(inputs[port]), dtype=np.float64).reshape(n, -1)
+            for port in inputs
+            if is_array(inputs[port])
+        ]
+        return np.concatenate(parts, axis=1) if parts else np.empty((n, 0))
 
-
-def _command(inputs: Inputs, scenes: int) -> Floats:
-    """Return what reaches the plant, `[B, D]`."""
-    parts = [
-        np.asarray(to_numpy(inputs[port]), dtype=np.float64).reshape(scenes, -1)
-        for port in inputs
-        if is_array(inputs[port])
-    ]
-    return np.concatenate(parts, axis=1) if parts else np.empty((scenes, 0))
-
-
-@dataclass
-class _Lead:
-    """What the flight shows of itself at the present step."""
-
-    past: set[tuple[str, str]] = field(default_factory=set[tuple[str, str]])
-    """Taps, by channel and consumer, at which a port reads what was held one step before."""
-    sensed: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    progress: Progress | None = None
-    readings: dict[tuple[str, str], Reading] = field(default_factory=dict[tuple[str, str], Reading])
-    """Of the past, by tap."""
+    def medians(self) -> dict[Key, float]:
+        """Return the median distances, where they are finite."""
+        if not self._commands or self._commands[0].shape[1] == 0:
+            return {}
+        commands, running = np.stack(self._commands), np.stack(self._running)
+        size = np.sqrt(np.mean(commands[running] ** 2, axis=0))
+        size[size == 0.0] = 1.0
+        found: dict[Key, float] = {}
+        for key, moved in self._moved.items():
+            apart = (np.stack(moved) - commands)[running] / size
+            median = float(np.median(np.sqrt(np.mean(apart**2, axis=1))))
+            found[key] = float(f"{median:.6g}")  # what rounding parts is equal
+        return {key: value for key, value in found.items() if np.isfinite(value)}
 
 
 class _Taps(Taps):
     """Taps that note the flight's readings of the past, or deliver these in place of their own."""
 
-    def __init__(self, *given: Any, lead: _Lead, leads: bool, **named: Any) -> None:
+    def __init__(self, *given: Any, beside: _Beside, leads: bool, **named: Any) -> None:
         super().__init__(*given, **named)
-        self._lead, self._leads = lead, leads
+        self._beside, self._leads = beside, leads
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
         """Deliver as `Taps` does."""
         tap = (channel, consumer)
-        if tap in self._lead.past:
+        if tap in self._beside.past:
             if self._leads:
-                self._lead.readings[tap] = reading
-            reading = self._lead.readings[tap]
+                self._beside.readings[tap] = reading
+            reading = self._beside.readings[tap]
         return super().deliver(channel, consumer, reading, step)
-
-
-def _taps(system: LoopSystem, arm: Arm, scenes: Sequence[str], lead: _Lead, leads: bool) -> _Taps:
-    return taps_of(system, arm, scenes, _Taps, lead=lead, leads=leads)
 
 
 def _with_plant(loop: Loop, plant: Plant) -> Loop:
@@ -136,33 +149,37 @@ def _with_plant(loop: Loop, plant: Plant) -> Loop:
 
 
 class _Heard(Plant):
-    """The plant of the flight, which lets others hear what it senses."""
+    """The plant of the flight; others hear what it senses, and run before it moves."""
 
-    def __init__(self, plant: Plant, lead: _Lead) -> None:
+    def __init__(self, plant: Plant, beside: _Beside) -> None:
         self.name, self.steps = plant.name, plant.steps
         self.reads, self.reads_past = plant.reads, plant.reads_past
         self.senses, self.shows = plant.senses, plant.shows
-        self._plant, self._lead = plant, lead
+        self._plant, self._beside = plant, beside
 
     def start(self, batch: Batch) -> Any:
         return self._plant.start(batch)
 
     def sense(self, state: Any) -> Mapping[str, Any]:
-        self._lead.sensed = self._plant.sense(state)
-        return self._lead.sensed
+        self._beside.sensed = self._plant.sense(state)
+        return self._beside.sensed
 
     def advance(self, state: Any, inputs: Inputs) -> Any:
+        self._beside.step(inputs)
         return self._plant.advance(state, inputs)
 
     def progress(self, state: Any) -> Progress:
-        self._lead.progress = self._plant.progress(state)
-        return self._lead.progress
+        self._beside.progress = self._plant.progress(state)
+        return self._beside.progress
+
+    def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
+        return self._plant.conditions(state)
 
     def over(self, state: Any, step: int) -> bool:
         return self._plant.over(state, step)
 
-    def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
-        return self._plant.conditions(state)
+    def position(self, state: Any) -> Array | None:
+        return self._plant.position(state)
 
 
 class _Told(_Heard):
@@ -172,14 +189,14 @@ class _Told(_Heard):
         return None
 
     def sense(self, state: Any) -> Mapping[str, Any]:
-        return self._lead.sensed
+        return self._beside.sensed
 
     def advance(self, state: Any, inputs: Inputs) -> Any:
         return state
 
     def progress(self, state: Any) -> Progress:
-        assert self._lead.progress is not None
-        return self._lead.progress
+        assert self._beside.progress is not None
+        return self._beside.progress
 
     def over(self, state: Any, step: int) -> bool:
         return False

@@ -52,7 +52,8 @@ def candidates(
     """Return the uncertain sources that a variant reads, in the order of declaration.
 
     Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
-    faults `given` take the place of declared sizes. `UserError` for one that strikes nobody.
+    faults `given` take the place of declared sizes. `UserError` for one that strikes nobody, and
+    for two of one source.
     """
     members: dict[str, list[Source]] = {}
     for source in system.interface.sources:
@@ -63,6 +64,8 @@ def candidates(
     for text in given:
         made = _given(system, variants, text)
         replaced = [each for each in found if set(each.channels) <= set(made.channels)]
+        if any(each.fault in given for each in replaced):
+            raise UserError(f"fault '{text}': {replaced[0].name} has been given an error already.")
         if len(replaced) == 1:
             made = made.model_copy(update={"name": replaced[0].name})
         at = found.index(replaced[0]) if replaced else len(found)

@@ -31,7 +31,7 @@ class StudyArm(Frozen):
 class StudyAudit(Frozen):
     """One audit of the repair: a fault, and its arms."""
 
-    name: Annotated[str, StringConstraints(pattern=r"^[a-z0-9_][a-z0-9_.-]{0,99}$")]
+    name: Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$")]
     """Names its folder."""
     fault: str
     why: str = ""
