@@ -142,7 +142,6 @@ def test_uncertainty_training_pays_where_the_uncertain_input_errs() -> None:
     baseline = fit(Sum, data, schedule=schedule)
     repair = fit(Sum, data, repair=uncertainty_training(law), schedule=schedule)
     assert evaluate(repair, data, faults=(law,)) < 0.2 * evaluate(baseline, data, faults=(law,))
-    assert evaluate(baseline, data) < evaluate(repair, data)  # the nominal cost
 
 
 def test_an_episode_is_on_one_side_of_the_split() -> None:
