@@ -6,7 +6,10 @@ from subprocess import CompletedProcess
 
 import pytest
 
-QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
+QUICK = {
+    "own_model.py": ("--episodes", "40", "--epochs", "1"),
+    "learned_pendulum.py": ("--windows", "60", "--epochs", "1"),
+}
 """Arguments of examples that would take their time without."""
 EXAMPLES = sorted((Path(__file__).resolve().parents[2] / "examples").glob("*.py"))
 
