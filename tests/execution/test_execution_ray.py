@@ -113,7 +113,7 @@ def test_an_audit_on_a_cluster_is_that_of_this_machine(head, tmp_path, monkeypat
     asked |= {"library": "carts", "scenes": 6, "progress": False}
     alone = faultpath.audit(TOY, folder=tmp_path / "alone", workers=0, **asked)
     monkeypatch.setenv("RAY_ADDRESS", head.address)
-    there = faultpath.audit(TOY, folder=tmp_path / "there", executor="ray", **asked)
+    there = faultpath.audit(TOY, folder=tmp_path / "there", executor="ray", workers=1, **asked)
     assert there.provenance.outcomes_sha256 == alone.provenance.outcomes_sha256
     assert there.record == alone.record
     assert (there.provenance.workers, alone.provenance.executor) == (1, "")
@@ -126,7 +126,7 @@ def test_an_audit_on_a_cluster_is_that_of_this_machine(head, tmp_path, monkeypat
         ("PATH", r"is another one on node \S+ of the Ray cluster than here \(what fingerprint"),
         (
             "PLACE",
-            r"on node \S+ of the Ray cluster: .*PLACE is not set.* every node needs the same",
+            r"on node \S+ of the Ray cluster: .*PLACE is not set.*every node needs the same",
         ),
     ],
 )
