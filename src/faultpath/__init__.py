@@ -12,6 +12,7 @@ from faultpath.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.door.audit import audit
+    from faultpath.door.comparing import compare
     from faultpath.door.mapping import reversal_map
     from faultpath.door.planned import plan
     from faultpath.door.reproduced import ReproductionRun
@@ -31,6 +32,7 @@ __all__ = [
     "__version__",
     "audit",
     "audits",
+    "compare",
     "load_system",
     "open_run",
     "plan",
@@ -46,6 +48,7 @@ _HOMES = {
     "UserError": "faultpath.errors",
     "audit": "faultpath.door.audit",
     "audits": "faultpath.door.sizes",
+    "compare": "faultpath.door.comparing",
     "load_system": "faultpath.door.systems",
     "open_run": "faultpath.door.run",
     "plan": "faultpath.door.planned",

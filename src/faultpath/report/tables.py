@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from faultpath.record.model import DecisionRecord, Effect
+from faultpath.record.model import DecisionRecord, Effect, Question
 from faultpath.report import wording
 from faultpath.report.factorial import by_factors
 from faultpath.report.thresholds import by_threshold
@@ -36,11 +36,7 @@ class _Of:
 
     def decided(self) -> Entry:
         """Return the arm that the family decides for, with what keeps it out of a headline."""
-        if not self.effect.acted:
-            return Entry(text="not tested")
-        asked = self.record.question
-        arm = {1: asked.repair, -1: asked.baseline}.get(self.effect.sign, MISSING)
-        return Entry(text=arm, aside=self.effect.extreme or "")
+        return decided_for(self.record.question, self.effect)
 
     def void(self) -> Entry:
         """Return the number of void pairs."""
@@ -56,6 +52,14 @@ class _Of:
         """Return the fault frequencies at which neither arm is decided to be ahead."""
         found = {b.path: wording.break_even(b.result) for b in self.record.break_even}
         return Entry(text=found.get(self.effect.path, MISSING))
+
+
+def decided_for(asked: Question, effect: Effect) -> Entry:
+    """Return the arm that the family decides for, with what keeps it out of a headline."""
+    if not effect.acted:
+        return Entry(text="not tested")
+    arm = {1: asked.repair, -1: asked.baseline}.get(effect.sign, MISSING)
+    return Entry(text=arm, aside=effect.extreme or "")
 
 
 DIFFERENCE = ("difference", "interval", "won")

@@ -7,6 +7,7 @@ The bytes depend on the rows and on the version of pyarrow alone.
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 # pyright: reportUnknownVariableType=false, reportUnknownArgumentType=false
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import pyarrow as pa
@@ -45,6 +46,14 @@ def read_table(data: bytes) -> pa.Table:
     shuts down ends the process with an abort.
     """
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
+
+
+def rows_in(path: Path) -> int:
+    """Return how many rows a Parquet file has, from its footer; `Unreadable` for anything else."""
+    try:
+        return pq.read_metadata(path).num_rows
+    except (pa.ArrowException, OSError) as error:
+        raise Unreadable(str(error)) from error
 
 
 def numbers_in(data: bytes) -> list[str]:

@@ -1,0 +1,114 @@
+"""Audits side by side, as a table, on the terminal, and as one page that needs no network."""
+
+from collections.abc import Sequence
+
+from markupsafe import Markup
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.text import Text
+
+from faultpath.report import wording
+from faultpath.report.comparison import facts, words
+from faultpath.report.comparison.runs import Compared, titles
+from faultpath.report.figures.effects import effect_rows
+from faultpath.report.figures.multiples import Rows, multiple, shared_axis
+from faultpath.report.frame import render
+from faultpath.report.tables import decided_for
+from faultpath.tables import MISSING, Entry, Line, Table, line
+from faultpath.tables.escapes import markdown as escaped
+from faultpath.tables.html import html
+from faultpath.tables.markdown import block
+from faultpath.tables.terminal import drawn
+from faultpath.version import __version__
+
+_BLANK = Entry(text=MISSING)
+
+
+def effects(runs: Sequence[Compared]) -> Table:
+    """Return the effect of every run on every path; bold is decided, by its own audit."""
+    labels = dict(zip(runs, facts.labels(runs), strict=True))
+    levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
+    return Table(
+        title="Success, each run by itself",
+        corner="Run",
+        columns=(
+            "Baseline, %",
+            "Repair, %",
+            "Difference, pp",
+            levels.pop() if len(levels) == 1 else "Interval",
+            "Decided for",
+        ),
+        lines=tuple(
+            each
+            for path, title in titles(runs).items()
+            for each in (line(title), *(_line(run, labels[run], path) for run in runs))
+        ),
+        words=("Decided for",),
+    )
+
+
+def _line(run: Compared, label: str, path: str) -> Line:
+    effect = run.effect(path)
+    if effect is None:
+        return line(label, _BLANK, _BLANK, _BLANK, _BLANK, "no such path")
+    return line(
+        label,
+        wording.plain(effect.baseline_percent),
+        wording.plain(effect.repair_percent),
+        Entry(text=wording.signed(effect.success.value), detected=effect.detected),
+        wording.interval(effect.success) or MISSING,
+        decided_for(run.asked, effect),
+        aside="primary" if path == run.asked.primary else "",
+    )
+
+
+def shown(runs: Sequence[Compared]) -> RenderableType:
+    """Return the comparison for a terminal."""
+    found = facts.differing(runs)
+    parts: list[RenderableType] = [Text(words.headline(runs), style="bold"), Text("")]
+    for run in runs:
+        about = Group(Text(run.folder), Text(run.record.verdict.headline))
+        parts += [Text(str(run.number)), Padding(about, (0, 0, 0, 2))]
+    parts += [Text(""), drawn(effects(runs)), Text("")]
+    parts += [drawn(facts.table(runs, found))] if found else [Text(words.same(runs))]
+    return Group(*parts, Text(""), *map(Text, words.sentences(runs)))
+
+
+def markdown(runs: Sequence[Compared]) -> str:
+    """Return the comparison as Markdown, for a notebook."""
+    found = facts.differing(runs)
+    parts = (effects(runs), *([facts.table(runs, found)] if found else []))
+    said = (escaped(each) for each in (words.headline(runs), *words.sentences(runs)))
+    return "\n\n".join((*said, *map(block, parts)))
+
+
+def page(runs: Sequence[Compared]) -> str:
+    """Return the comparison as one page."""
+    found, panels = facts.differing(runs), _panels(runs)
+    axis = shared_axis([rows for _, rows in panels])
+    return render(
+        "comparison.html.j2",
+        ("tokens.css", "svg.css", "page.css"),
+        (),
+        version=__version__,
+        headline=words.headline(runs),
+        sentences=words.sentences(runs),
+        runs=runs,
+        panels=[Markup(multiple(title, rows, axis)) for title, rows in panels],
+        effects=Markup(html(effects(runs))),
+        facts=Markup(html(facts.table(runs, found))) if found else "",
+        same=words.same(runs),
+        w=wording,
+    )
+
+
+def _panels(runs: Sequence[Compared]) -> list[tuple[str, Rows]]:
+    """Return the title of each path with what every run has there."""
+    rows = [
+        (label, dict(zip((e.path for e in run.record.effects), effect_rows(run.record), strict=True)))
+        for label, run in zip(facts.labels(runs), runs, strict=True)
+    ]
+    return [
+        (title, [(label, own.get(path)) for label, own in rows])
+        for path, title in titles(runs).items()
+    ]
