@@ -88,6 +88,8 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
         {"--svg": ("a.svg", "folder"), "--yaml": ("a.yaml", "text.txt/a"), "--set": ("a=1",)},
     ),
     "report": (["folder"], {}),
+    "runs": (["folder"], {"--json": (None,)}),
+    "compare": (["folder", "text.txt"], {"--out": ("page.html", "folder", "nowhere/page.html")}),
     "log": (
         ["text.csv"],
         {

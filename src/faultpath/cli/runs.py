@@ -55,7 +55,7 @@ def _told(each: "Listed") -> "RenderableType":
     from rich.text import Text
 
     about = Text(f"{each.kind}, ").append(each.state, _STYLES[each.state]).append(_rest(each))
-    return Padding(Group(about, Text(each.words)), (0, 0, 0, 2))
+    return Padding.indent(Group(about, Text(each.words)), 2)
 
 
 def _rest(each: "Listed") -> str:

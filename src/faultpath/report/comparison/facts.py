@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from faultpath.code import named
 from faultpath.record.provenance import RunProvenance
@@ -53,14 +54,14 @@ def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
     """Return a label for each run: its number, with what of the question tells all of them apart
     if one thing does, and otherwise with its folder."""
     facts = [fact for fact in _asked(runs) if len(set(fact.values)) == len(runs)]
-    told = facts[0].values if facts else tuple(run.folder for run in runs)
+    told = facts[0].values if facts else tuple(Path(run.folder).name for run in runs)
     return tuple(f"{run.number}  {text}" for run, text in zip(runs, told, strict=True))
 
 
 def table(runs: Sequence[Compared], facts: Sequence[Fact]) -> Table:
     """Return what differs, each value with the runs that have it."""
     return Table(
-        title="What differs between the runs",
+        title="What differs",
         corner="Value",
         columns=("Runs",),
         lines=tuple(each for fact in facts for each in _lines(runs, fact)),

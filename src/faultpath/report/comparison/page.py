@@ -1,6 +1,7 @@
 """Audits side by side, as a table, on the terminal, and as one page that needs no network."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from markupsafe import Markup
 from rich.console import Group, RenderableType
@@ -10,7 +11,7 @@ from rich.text import Text
 from faultpath.report import wording
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.runs import Compared, titles
-from faultpath.report.figures.effects import effect_rows
+from faultpath.report.figures.effects import EffectRow, effect_rows
 from faultpath.report.figures.multiples import Rows, multiple, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.tables import decided_for
@@ -21,23 +22,16 @@ from faultpath.tables.markdown import block
 from faultpath.tables.terminal import drawn
 from faultpath.version import __version__
 
-_BLANK = Entry(text=MISSING)
-
 
 def effects(runs: Sequence[Compared]) -> Table:
     """Return the effect of every run on every path; bold is decided, by its own audit."""
     labels = dict(zip(runs, facts.labels(runs), strict=True))
     levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
+    interval = levels.pop() if len(levels) == 1 else "interval"
     return Table(
-        title="Success, each run by itself",
+        title="Each run by itself; bold is decided",
         corner="Run",
-        columns=(
-            "Baseline, %",
-            "Repair, %",
-            "Difference, pp",
-            levels.pop() if len(levels) == 1 else "Interval",
-            "Decided for",
-        ),
+        columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Decided for"),
         lines=tuple(
             each
             for path, title in titles(runs).items()
@@ -50,16 +44,10 @@ def effects(runs: Sequence[Compared]) -> Table:
 def _line(run: Compared, label: str, path: str) -> Line:
     effect = run.effect(path)
     if effect is None:
-        return line(label, _BLANK, _BLANK, _BLANK, _BLANK, "no such path")
-    return line(
-        label,
-        wording.plain(effect.baseline_percent),
-        wording.plain(effect.repair_percent),
-        Entry(text=wording.signed(effect.success.value), detected=effect.detected),
-        wording.interval(effect.success) or MISSING,
-        decided_for(run.asked, effect),
-        aside="primary" if path == run.asked.primary else "",
-    )
+        return line(label, MISSING, MISSING, run.absent(path))
+    rates = map(wording.plain, (effect.baseline_percent, effect.repair_percent))
+    difference = Entry(text=wording.with_interval(effect.success), detected=effect.detected)
+    return line(label, " → ".join(rates), difference, decided_for(run.asked, effect))
 
 
 def shown(runs: Sequence[Compared]) -> RenderableType:
@@ -67,8 +55,8 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     found = facts.differing(runs)
     parts: list[RenderableType] = [Text(words.headline(runs), style="bold"), Text("")]
     for run in runs:
-        about = Group(Text(run.folder), Text(run.record.verdict.headline))
-        parts += [Text(str(run.number)), Padding(about, (0, 0, 0, 2))]
+        verdict = Padding.indent(Text(run.record.verdict.headline), 3)
+        parts += [Text(f"{run.number}  {run.folder}"), verdict]
     parts += [Text(""), drawn(effects(runs)), Text("")]
     parts += [drawn(facts.table(runs, found))] if found else [Text(words.same(runs))]
     return Group(*parts, Text(""), *map(Text, words.sentences(runs)))
@@ -88,7 +76,7 @@ def page(runs: Sequence[Compared]) -> str:
     axis = shared_axis([rows for _, rows in panels])
     return render(
         "comparison.html.j2",
-        ("tokens.css", "svg.css", "page.css"),
+        ("tokens.css", "svg.css", "page.css", "comparison.css"),
         (),
         version=__version__,
         headline=words.headline(runs),
@@ -104,11 +92,16 @@ def page(runs: Sequence[Compared]) -> str:
 
 def _panels(runs: Sequence[Compared]) -> list[tuple[str, Rows]]:
     """Return the title of each path with what every run has there."""
-    rows = [
-        (label, dict(zip((e.path for e in run.record.effects), effect_rows(run.record), strict=True)))
-        for label, run in zip(facts.labels(runs), runs, strict=True)
-    ]
+    labels = facts.labels(runs)
     return [
-        (title, [(label, own.get(path)) for label, own in rows])
+        (title, [(label, _row(run, path)) for label, run in zip(labels, runs, strict=True)])
         for path, title in titles(runs).items()
     ]
+
+
+def _row(run: Compared, path: str) -> EffectRow | str:
+    effect = run.effect(path)
+    if effect is None:
+        return run.absent(path)
+    row = effect_rows(run.record)[run.record.effects.index(effect)]
+    return replace(row, note=wording.reservation(effect))

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import DecisionRecord, Effect, Question
 from faultpath.record.provenance import RunProvenance
 
@@ -26,22 +27,24 @@ class Compared:
         """Return its effect on a path; `None` where it has none."""
         return next((each for each in self.record.effects if each.path == path), None)
 
+    def absent(self, path: str) -> str:
+        """Say why it has no effect on a path."""
+        there = any(each.name == path for each in self.record.paths)
+        return "every pair void" if there else "no such path"
+
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
-    """Return the paths of all runs by name, in the order in which they come, with titles.
+    """Return the paths of all runs by name, with titles that say which is primary in all of them.
 
     Correct inputs stand first and the shared fault last, as in every audit.
     """
-    found: dict[str, str] = {}
-    for run in runs:
-        named = {path.name: path.title for path in run.record.paths}
-        for effect in run.record.effects:
-            found.setdefault(effect.path, named.get(effect.path, effect.path))
-    return {name: found[name] for name in sorted(found, key=_place)}
-
-
-def _place(path: str) -> int:
-    return {"correct": 0, "shared": 2}.get(path, 1)
+    found = {path.name: path.title for run in reversed(runs) for path in run.record.paths}
+    order = {path.name: None for run in runs for path in run.record.paths}
+    primaries = {run.asked.primary for run in runs}
+    return {
+        path: f"{found[path]} (primary)" if primaries == {path} else found[path]
+        for path in sorted(order, key=lambda path: {CORRECT: 0, SHARED: 2}.get(path, 1))
+    }
 
 
 def numbers(runs: Sequence[Compared]) -> str:

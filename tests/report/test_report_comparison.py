@@ -1,0 +1,244 @@
+"""Audits side by side: what is said of them, what is not, and the page."""
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from faultpath.record import Path as FaultPath
+from faultpath.report.comparison import facts, words
+from faultpath.report.comparison.page import effects, markdown, page
+from faultpath.report.comparison.runs import Compared, titles
+from faultpath.report.inputs import ReportInput
+
+NASTY = '<script>alert("x")</script> & 100 % of _it_ \u202e'
+Given = tuple[Compared, ...]
+
+
+def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> Compared:
+    """Return an audit with another question."""
+    question = source.record.question.model_copy(update=asked)
+    record = source.record.model_copy(update={"question": question})
+    return Compared(number, folder or f"runs/{number}", record, source.provenance)
+
+
+def signed(one: Compared, path: str, sign: int, **more: object) -> Compared:
+    """Return the run with another decision on a path."""
+    changed = {"sign": sign, **more}
+    told = tuple(
+        each.model_copy(update=changed) if each.path == path else each
+        for each in one.record.effects
+    )
+    return replace(one, record=one.record.model_copy(update={"effects": told}))
+
+
+@pytest.fixture
+def two(one_seed: ReportInput) -> Given:
+    return run(one_seed, 1), run(one_seed, 2, fault="calibration=-0.1")
+
+
+def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
+    first, second = two
+    assert first.effect("shared").sign == -1
+    quiet = (first, signed(second, "shared", 0))
+    assert words.headline(quiet) == "2 audits side by side"
+    said = words.sentences(quiet)
+    assert "no test between the audits" in said[0]
+    assert "not shown to differ" in said[0]
+    assert said[1:] == (
+        "No two audits of the same arms are decided in opposite directions on any path.",
+    )
+
+
+def test_decided_in_opposite_directions(two: Given) -> None:
+    first, second = two
+    turned = (first, signed(second, "shared", 1, extreme="ceiling"))
+    assert words.headline(turned) == (
+        "2 audits side by side: decided in opposite directions on Shared fault (primary)"
+    )
+    assert words.sentences(turned)[1] == (
+        "Shared fault (primary): decided for gru (baseline) in 1, for gru-dcc (repair) in 2 (at "
+        "the ceiling)."
+    )
+
+
+def test_the_same_arm_ahead_is_no_disagreement_where_roles_are_exchanged(two: Given) -> None:
+    first, second = two
+    arms = {"baseline": second.asked.repair, "repair": second.asked.baseline}
+    asked = second.asked.model_copy(update=arms)
+    other = replace(second, record=second.record.model_copy(update={"question": asked}))
+    for path in titles((first,)):
+        other = signed(other, path, -first.effect(path).sign)
+    assert "opposite directions" not in words.headline((first, other))
+    said = words.sentences((first, other))
+    assert "The baseline is gru in 1 and gru-dcc in 2" in said[-1]
+    # The same decisions, taken for the same roles, are opposite ones.
+    same_role = signed(other, "shared", first.effect("shared").sign)
+    assert "opposite directions" in words.headline((first, same_role))
+
+
+def test_other_arms_ask_something_else(one_seed: ReportInput) -> None:
+    first, second = run(one_seed, 1), run(one_seed, 2, repair="dob", system="other")
+    turned = (first, signed(second, "shared", 1))
+    assert "opposite" not in words.headline(turned)
+    said = words.sentences(turned)
+    assert "none can contradict another" in said[1]
+    assert "different systems" in said[2]
+
+
+def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
+    first = run(one_seed, 1)
+    assert facts.differing((first, run(one_seed, 2))) == ()
+    options = {"predictor": "wm-a", "plant": "mujoco"}
+    second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
+    made = second.provenance.model_copy(
+        update={
+            "packages": {**second.provenance.packages, "torch": "2.14.0"},
+            "sources": {"a": "0" * 64, "b": "1" * 64},
+            "data": {"weights": "2" * 64},
+            "python": "3.12.1",
+        }
+    )
+    second = replace(second, provenance=made)
+    first_made = first.provenance.model_copy(
+        update={"sources": {"a": "0" * 64, "b": "3" * 64}, "data": {"weights": "4" * 64}}
+    )
+    first = replace(first, provenance=first_made)
+    told = {fact.title: fact.values for fact in facts.differing((first, second))}
+    assert told.pop("Fault") == ("calibration=+0.1", "calibration=-0.1")
+    assert told.pop("Seeds") == ("0", "0, 1")
+    assert told.pop("Option plant") == ("not given", "mujoco")
+    assert told.pop("Option wind") == ("L3", "not given")
+    assert told.pop("Package torch") == ("2.13.0", "2.14.0")
+    assert told.pop("Python") == ("3.11.2", "3.12.1")
+    assert len(set(told.pop("Code that flew: b"))) == 2
+    assert len(set(told.pop("Data files, such as weights: weights"))) == 2
+    assert told == {}
+    table = facts.table((first, second), facts.differing((first, second)))
+    at = [line.label for line in table.lines].index("calibration=-0.1")
+    assert table.lines[at].entries[0].text == "2"
+
+
+def test_a_state_that_nobody_noted_is_not_taken_for_none(one_seed: ReportInput) -> None:
+    first, second = run(one_seed, 1), run(one_seed, 2)
+    assert "sources" not in first.provenance.model_fields_set
+    none = second.provenance.model_copy(update={"sources": {}})
+    told = facts.differing((first, replace(second, provenance=none)))
+    assert [fact.values for fact in told] == [("not recorded", "none")]
+
+
+def test_nothing_differs(one_seed: ReportInput) -> None:
+    first, second = run(one_seed, 1), run(one_seed, 2)
+    assert words.same((first, second)).endswith("and so are the outcomes, bit for bit.")
+    other = second.provenance.model_copy(update={"outcomes_sha256": "0" * 64})
+    assert words.same((first, replace(second, provenance=other))).endswith("yet outcomes differ.")
+    assert "bit for bit" in page((first, second))
+
+
+def test_a_label_tells_the_runs_apart(one_seed: ReportInput, two: Given) -> None:
+    assert facts.labels(two) == ("1  calibration=+0.1", "2  calibration=-0.1")
+    tied = (*two, run(one_seed, 3, "elsewhere/third"))
+    assert facts.labels(tied) == ("1  1", "2  2", "3  third")
+
+
+def test_other_paths_are_blank_and_not_left_out(
+    one_seed: ReportInput, make: Callable[..., ReportInput]
+) -> None:
+    lost = make(lost="predictor")
+    first, second = run(lost, 1), run(one_seed, 2)
+    planner = FaultPath(name="planner", title="Planner only", consumers=(), baseline_consumers=())
+    paths = (*second.record.paths, planner)
+    effects_there = (
+        *second.record.effects,
+        second.record.effects[1].model_copy(update={"path": "planner"}),
+    )
+    cells = tuple(
+        cell.model_copy(update={"path": "planner"})
+        for cell in second.record.cells
+        if cell.path == second.record.effects[1].path
+    )
+    changed = {
+        "paths": paths,
+        "effects": effects_there,
+        "cells": (*second.record.cells, *cells),
+    }
+    second = replace(second, record=second.record.model_copy(update=changed))
+    runs = (first, second)
+    assert list(titles(runs)) == ["correct", "predictor", "reconstruction", "planner", "shared"]
+    table = effects(runs)
+    told = [(line.label, line.entries[-1].text) for line in table.lines if line.entries]
+    assert told[2][1] == "every pair void"
+    assert told[6][1] == "no such path"
+    text = page(runs)
+    panels = re.findall(r"<svg.*?</svg>", text, re.DOTALL)
+    assert len(panels) == 5
+    scales = {tuple(re.findall(r'text-anchor="middle">(−?\d+)</text>', svg)) for svg in panels}
+    assert len(scales) == 1, "one scale for all"
+    assert all("repair minus baseline, pp" in svg for svg in panels)
+
+
+def test_numbers_are_the_records_and_bold_is_decided(two: Given) -> None:
+    first, second = two[0], signed(two[1], "shared", 0)
+    entries = [line.entries for line in effects((first, second)).lines if line.entries]
+    shared = first.effect("shared")
+    told = entries[-2][1]
+    assert told.detected
+    assert not entries[-1][1].detected
+    assert told.text.startswith(f"−{abs(shared.success.value):.1f} [")
+    assert (entries[-2][2].text, entries[-1][2].text) == ("gru", "–")
+    text = page((first, second))
+    assert text.count('class="dot baseline"') >= 1
+    assert text.count('class="dot open"') >= 1
+
+
+def test_hostile_names_are_text(one_seed: ReportInput) -> None:
+    runs = (
+        run(one_seed, 1, NASTY, fault=NASTY, baseline=NASTY),
+        run(one_seed, 2, repair=NASTY, options={NASTY: NASTY}, system=NASTY),
+    )
+    cells = [cell.model_copy(update={"variant": NASTY}) for cell in runs[0].record.cells]
+    runs = tuple(
+        replace(each, record=each.record.model_copy(update={"cells": (*each.record.cells, *cells)}))
+        for each in runs
+    )
+    text = page(runs)
+    assert "<script>alert" not in text
+    assert "\u202e" not in text
+    assert "&lt;script&gt;" in text
+    assert "<script>" not in markdown(runs)
+
+
+def test_a_page_of_many_runs_is_small(one_seed: ReportInput) -> None:
+    runs = tuple(run(one_seed, number, fault=f"f={number}") for number in range(1, 41))
+    assert len(page(runs).encode()) < 3_000_000
+
+
+@pytest.mark.browser
+@pytest.mark.parametrize(("width", "scheme"), [(1400, "light"), (800, "light"), (390, "dark")])
+def test_in_a_browser(
+    browser: Browser, two: Given, tmp_path: Path, width: int, scheme: str
+) -> None:
+    place = tmp_path / "page.html"
+    place.write_text(page(two), encoding="utf-8")
+    context = browser.new_context(
+        viewport={"width": width, "height": 900}, color_scheme=scheme, offline=True
+    )
+    opened = context.new_page()
+    said: list[str] = []
+    opened.on("console", lambda message: said.append(message.text))
+    opened.goto(place.as_uri())
+    root = "document.documentElement"
+    assert opened.evaluate(f"{root}.scrollWidth - {root}.clientWidth") == 0
+    sizes = opened.evaluate(
+        "() => [...document.querySelectorAll('svg.fig')]"
+        ".map((e) => e.getBoundingClientRect().width)"
+    )
+    assert len(sizes) == 4
+    assert all(size > 300 for size in sizes)
+    opened.keyboard.press("Tab")
+    assert opened.evaluate("document.activeElement.className") == "skip"
+    context.close()
+    assert said == []
