@@ -63,8 +63,7 @@ def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
     from faultpath.door.run import Run, open_run
     from faultpath.report.comparison.runs import Compared
 
-    given: list[object] = list(runs) if isinstance(runs, Sequence) else []
-    if isinstance(runs, str) or len(given) < 2:
+    if isinstance(runs, str | PathLike) or len(runs) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
     found: list[Compared] = []
     places: set[Path] = set()

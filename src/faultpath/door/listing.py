@@ -104,8 +104,15 @@ def _ended(folder: Path) -> Listed:
 
 
 def _kind(folder: Path) -> Kind:
-    kinds: dict[str, Kind] = {RECORD: "audit", MAP: "map", _REPRODUCTION: "reproduction"}
-    return next((kind for name, kind in kinds.items() if (folder / name).exists()), "run")
+    kinds: tuple[tuple[str, Kind], ...] = (
+        (RECORD, "audit"),
+        (MAP, "map"),
+        (_REPRODUCTION, "reproduction"),
+    )
+    for name, kind in kinds:
+        if (folder / name).exists():
+            return kind
+    return "run"
 
 
 def _verdict(folder: Path, provenance: RunProvenance, told: Listed) -> Listed:
