@@ -6,7 +6,7 @@ from faultpath.report import wording
 from faultpath.report.figures.effects import directions, extent, mark
 from faultpath.report.scale import Axis, covering
 from faultpath.report.story import Arm, Fork, Reader
-from faultpath.report.svg import Svg, shortened, text_width
+from faultpath.report.svg import Svg, shortened
 
 _WIDTH, _ARM, _EDGE = 308.0, 147.0, 1.0
 _PITCH, _MODULES = 46.0, 102.0
@@ -25,9 +25,8 @@ def _panel(fork: Fork, axis: Axis) -> str:
     svg.text(0, 14, shortened(fork.title, _WIDTH, 13), "head", tip=fork.title)
     for x, arm in zip((_EDGE, _WIDTH - _ARM - _EDGE), fork.arms, strict=True):
         _arm(svg, x, arm, fork)
-        rate = f"{wording.plain(arm.success_percent)} %"
-        svg.text(x, bottom + 18, rate, "rate")
-        svg.text(x + text_width(rate, 17) + 8, bottom + 18, "success", "small soft")
+        svg.text(x, bottom + 18, f"{wording.plain(arm.success_percent)} %", "rate")
+        svg.text(x + _ARM - 8, bottom + 18, "success", "small soft", "end")
     y = bottom + 62
     directions(svg, axis, y - 22)
     svg.line((axis(0), y - 14), (axis(0), y + 12), "zero")
