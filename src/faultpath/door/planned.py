@@ -160,9 +160,16 @@ def audit_study(
     chosen = choose(study.system, study.options, None, (study.baseline, study.repair))
     library = library_of(chosen.system, study.library)
     for each in study.audits:
-        fault, text = parsed(chosen.system, each.fault), each.fault
-        laid = {"fault": fault, "fault_text": text, "library": library, "full": each.factorial}
-        check_arms(study, each, plan_audit(chosen.system, chosen.spec, **laid, **asked))
+        laid = plan_audit(
+            chosen.system,
+            chosen.spec,
+            fault=parsed(chosen.system, each.fault),
+            fault_text=each.fault,
+            library=library,
+            full=each.factorial,
+            **asked,
+        )
+        check_arms(study, each, laid)
     runs: list[Run] = []
     for each in study.audits:
         run = audit(
