@@ -90,7 +90,7 @@ def test_an_actor_is_a_worker_like_any_other(head):
         assert heard == ["news"]
         first = end_of(hands, os.getpid)
         assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"
-        assert end_of(hands, partial(os.environ.get, "OMP_NUM_THREADS")) == Returned("1")
+        assert end_of(hands, partial(os.getenv, "OMP_NUM_THREADS")) == Returned("1")
         assert end_of(hands, os.getcwd) == Returned(os.getcwd())
         assert end_of(hands, elsewhere).value.startswith("node ")
         failed = end_of(hands, partial(int, "none"))
