@@ -210,6 +210,7 @@ def times(*names: str) -> str:
     rows = [
         {
             "name": str(run.record.question.n_scenes),
+            "seeds": len(run.record.question.seeds),
             "trials": run.trials,
             "time": duration(run),
             "processor": run.provenance.processor.replace("(R)", ""),
@@ -218,7 +219,9 @@ def times(*names: str) -> str:
         for _, run in runs
         if run is not None
     ]
-    columns = {head: f"{{{head.lower()}}}" for head in ("Trials", "Time", "Processor", "Workers")}
+    columns = {
+        head: f"{{{head.lower()}}}" for head in ("Seeds", "Trials", "Time", "Processor", "Workers")
+    }
     table = tabled("Scenes", rows, columns, words="Processor") if rows else ""
     by = " ".join(dict.fromkeys(flown(run) for _, run in runs if run is not None))
     return "\n\n".join(filter(None, [table, by, *(missing(n) for n, run in runs if not run)]))
