@@ -17,7 +17,9 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     assert made.status == 0
     assert made.err.startswith("Making scenes")
     listed = faultpath("scenes", "list", "mine.json")
-    assert [line.split()[0] for line in listed.out.splitlines()] == ["mine/000", "mine/001"]
+    head, *scenes, counts = listed.out.splitlines()
+    assert [line.split()[0] for line in (head, *scenes)] == ["Scene", "mine/000", "mine/001"]
+    assert counts.startswith("2 scenes: ")
     assert (
         "exists already"
         in faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2").refused()

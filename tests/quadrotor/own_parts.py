@@ -11,6 +11,7 @@ from faultpath.quadrotor.planner import (
     ScaledTemperature,
     TerminalGoal,
 )
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.reconstruction import Reconstruction
 
@@ -21,7 +22,7 @@ class Heavy(KinematicIntegrator):
     """Kinematics that a compiled kernel does not stand for."""
 
     def __init__(self, seed: int | None) -> None:
-        super().__init__(drag=True)
+        super().__init__(drag=True, drag_kgps=DEFAULT.drag_kgps)
         self.seed = seed
 
 
@@ -52,7 +53,7 @@ def predictor(seed):
 
 
 def exact(seed):
-    return KinematicIntegrator(drag=True)
+    return KinematicIntegrator(drag=True, drag_kgps=DEFAULT.drag_kgps)
 
 
 def wind(seed):
