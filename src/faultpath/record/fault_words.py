@@ -128,7 +128,7 @@ def _scaled(what: Any, of: _Reading) -> str:
     times = f"times {number(factor)}"
     if not isinstance(factor, float) or not 0 < factor < 2:
         return f"supplied {times}"
-    if factor == 1:
+    if factor == 1.0:
         return f"supplied as it is ({times})"
     # A vector has no high and low; of a number that may be negative the factor tells the truth.
     more, less = ("too large", "too small") if of.shape else ("too high", "too low")
@@ -139,7 +139,7 @@ def _shifted(what: Any, of: _Reading) -> str:
     by = what.by
     if not isinstance(by, float):
         return f"shifted by {of.amount(by)}"
-    if by == 0:
+    if by == 0.0:
         return f"supplied as it is (shifted by {of.amount(by)})"
     each = ", each of its numbers," if of.shape else ""
     return f"supplied{each} {of.amount(abs(by))} {'too high' if by > 0 else 'too low'}"

@@ -17,7 +17,7 @@ from typing import Any
 
 from faultpath.errors import Notice, UserError
 from faultpath.version import __version__
-from faultpath.work.executor import Call, End, Executor, Failed, Lost, Returned, Told, ignore
+from faultpath.work.executor import Call, End, Executor, Lost, Told, ignore
 from faultpath.work.processes import KEEP_MEMORY
 from faultpath.work.threads import ONE_THREAD
 
@@ -201,12 +201,11 @@ class RayWorkers(Executor):
     def _message(self, worker: _Worker) -> tuple[Any] | End:
         """Return what a call tells, as a tuple of one, or its end."""
         try:
-            message = pickle.loads(self._ray.get(next(worker.stream)))
+            message: tuple[Any] | End = pickle.loads(self._ray.get(next(worker.stream)))
         except self._ray.exceptions.RayTaskError:
             raise
         except (self._ray.exceptions.RayError, StopIteration) as error:
             return Lost(f"the worker on {worker.place} was lost ({_last_line(error)})")
-        assert isinstance(message, tuple | Returned | Failed)
         return message
 
 
