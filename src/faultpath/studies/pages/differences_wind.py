@@ -97,9 +97,9 @@ PAGE = Page(
                 _wind("GRU+DCC", "gru+dcc"),
             ),
             notes=(
-                "The predictor's wind map has the nominal drag coefficients; the vehicles of the "
-                "scenes have their own. A reconstruction sees the acceleration that is missing, "
-                "whatever it comes from.",
+                "The predictor's wind map has the nominal drag coefficients, which may not be a "
+                "vehicle's own. A reconstruction sees the acceleration that is missing, whatever "
+                "it comes from.",
                 "{recorded}",
                 "{flown}",
             ),
