@@ -203,9 +203,12 @@ def check(made: DecisionRecord) -> None:
         assert not advised
     else:
         assert advised == bool(turned - extreme and SHARED not in extreme)
-        favoured = plain["What follows"].partition("in favour of ")[2]
+        follows = plain["What follows"]
+        favoured = follows.partition("in favour of ")[2].partition(" A fault at ")[0]
         told = {sign for path, sign in effects.items() if sign and path not in extreme}
         assert favoured in ("", *(f"{who}." for who, s in SIDES if told == {s}))
+        alone = any(each.turn == "interaction" for each in made.changes)
+        assert ("does not stand for the shared one" in follows) == alone
     known = about(made)
     for effect in made.effects:
         short = decided_words(known, effect)

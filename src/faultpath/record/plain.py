@@ -40,7 +40,7 @@ def plain_words(record: DecisionRecord) -> dict[str, str]:
         )
         return {"Not decided": few, "How sure": " ".join(_qualified(record))}
     return {
-        "What follows": _follows(known, record),
+        "What follows": " ".join([_follows(known, record), *_changed(record)]),
         "How sure": " ".join(_sure(record)),
         "Not decided": " ".join(_left_open(known, record)),
     }
@@ -84,6 +84,16 @@ def _follows(known: About, record: DecisionRecord) -> str:
     if any(effect.detected for effect in tested):
         return "What is decided lies at the floor or the ceiling, where no choice can rest on it."
     return "Nothing that was tested gives a reason to prefer either."
+
+
+def _changed(record: DecisionRecord) -> Iterator[str]:
+    """Say where a test at one module is decided not to stand for the shared fault."""
+    places = " or the ".join(each.isolated for each in record.changes if each.turn == "interaction")
+    if places:
+        yield (
+            f"A fault at the {places} alone does not stand for the shared one: the difference "
+            "between the two arms changes."
+        )
 
 
 def _depends(record: DecisionRecord) -> str:
