@@ -9,8 +9,9 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.models import predictor
+from faultpath.quadrotor.models import Shelf, predictor
 from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
+from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
@@ -25,8 +26,8 @@ GOAL_M = (6.0, 0.5, 1.2)
 
 
 def model() -> AnchoredPredictor:
-    """Return the shipped predictor, seed 0."""
-    found = predictor(MODEL, 0)
+    """Return the predictor of the first platform, seed 0, whose drag is the same along all axes."""
+    found = predictor(MODEL, 0, shelf=Shelf(FIRST))
     assert isinstance(found, AnchoredPredictor)
     return found
 

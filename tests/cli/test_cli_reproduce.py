@@ -23,7 +23,7 @@ from faultpath.tables import MISSING
 from faultpath.work import Here
 
 TOLD = Display(command=("faultpath", "reproduce"))
-ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION})
+ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION}, {"platform": "first"})
 
 
 @pytest.fixture(scope="module")

@@ -138,10 +138,3 @@ def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option
     asked = study().model_copy(update={"system": spec})
     with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
         run_study(asked, tmp_path / "run", executor=hands)
-
-
-def test_a_unit_over_which_workers_end_is_failed_and_the_study_is_not(head, here, tmp_path):
-    with RayWorkers(head.address, 1) as hands:
-        asked = study(("s04",), dies="s04").model_copy(update={"rows": study().rows[:1]})
-        found = run_study(asked, tmp_path, executor=hands, recheck=False)
-    assert [failure.scene for failure in found.failures] == ["s04"]

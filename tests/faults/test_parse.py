@@ -25,6 +25,7 @@ from faultpath.faults import (
     UniformScale,
     parse_fault,
 )
+from faultpath.text import unknown
 
 KINDS = (
     "bias, blur, delay, drift, dropout, erase, exposure, freeze, hold, jitter, noise, occlusion, "
@@ -149,8 +150,8 @@ def test_time_and_consumers_of_a_preset() -> None:
             "says nothing about what happens to 'wind'; write wind:KIND=VALUE, kinds: " + KINDS,
         ),
         ("wid:freeze", f"unknown channel 'wid'; did you mean 'wind'? known: {TARGETS}"),
-        ("wind:dely=5", f"unknown kind 'dely'; did you mean 'delay'? known: {KINDS}"),
-        ("wind:sequence", f"unknown kind 'sequence'; known: {KINDS}"),
+        ("wind:dely=5", unknown("kind", "dely", KINDS.split(", "))),
+        ("wind:sequence", unknown("kind", "sequence", KINDS.split(", "))),
         ("wind:delay", "'delay' needs a value (steps), as in wind:delay=VALUE"),
         ("wind:delay=x", "'delay' needs a number, not 'x'"),
         (

@@ -87,7 +87,7 @@ def test_episodes_fly_where_and_as_fast_as_the_planner_does(flights):
     assert np.quantile(tilt, 0.99) > 45
     for axis, half in enumerate((4.5, 3.0, 1.5)):
         place = signal(flights, "position")[axis][inside]
-        assert np.ptp(np.quantile(place, (0.02, 0.98))) == pytest.approx(2 * half, rel=0.4)
+        assert np.ptp(np.quantile(place, (0.02, 0.98))) == pytest.approx(2 * half, rel=0.5)
 
 
 def test_nearly_all_episodes_last_and_what_is_kept_had_not_diverged(flights):

@@ -25,7 +25,8 @@ from faultpath.quadrotor.modules.vehicle import ACTION
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import SamplerSettings
-from faultpath.quadrotor.platform import PlannerSettings, Platform
+from faultpath.quadrotor.platform import PlannerSettings
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
@@ -79,7 +80,10 @@ def _forget() -> None:
 def _system(options: dict[str, str]) -> Quadrotor:
     """Return a quadrotor for CUDA, past the question whether there is any."""
     planner = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more only repeats operations
-    few = {"settings": Platform(planner=planner), "checkpoints": shipped_folder()}
+    few = {
+        "settings": DEFAULT.model_copy(update={"planner": planner}),
+        "checkpoints": shipped_folder(),
+    }
     parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", **few})
     return Quadrotor(parsed)
 

@@ -44,9 +44,9 @@ def test_the_file_depends_on_the_weights_alone(fitted: Path, tmp_path: Path) -> 
 
 
 def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"'wm-q' with seed 7 for the platform 'first'") as stop:
+    with pytest.raises(UserError, match=r"'wm-q' with seed 7 for the platform 'matched'") as stop:
         checkpoint_path("wm-q", 7)
-    assert "`faultpath train quadrotor wm-q --seed 7 --platform first --ship`" in str(stop.value)
+    assert "`faultpath train quadrotor wm-q --seed 7 --platform matched --ship`" in str(stop.value)
     with pytest.raises(UserError, match=f"in {tmp_path}"):
         checkpoint_path("wm-q", 7, tmp_path)
 
@@ -65,7 +65,7 @@ def test_checkpoints_ship_inside_the_package() -> None:
     import faultpath.quadrotor
 
     assert faultpath.quadrotor.__file__ is not None
-    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints" / "first"
+    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints" / "matched"
 
 
 def test_every_shipped_checkpoint_is_the_one_of_its_card() -> None:

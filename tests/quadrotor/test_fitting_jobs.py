@@ -10,7 +10,7 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import Stopped, UserError
-from faultpath.quadrotor.platforms import FIRST
+from faultpath.quadrotor.platforms import DEFAULT, DEFAULT_NAME
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
@@ -95,8 +95,8 @@ def test_a_pool_of_other_code_is_not_fitted_on(
         pool=pool,
         episodes=1,
         seed=0,
-        flight=FIRST.collection,
-        vehicle=FIRST.ranges,
+        flight=DEFAULT.collection,
+        vehicle=DEFAULT.ranges,
         wind={},
         code_sha256=code,
         faultpath_version="0",
@@ -127,7 +127,7 @@ def test_each_missing_pool_is_made_by_its_own_collector(
     told: list[tuple[str, float, float]] = []
 
     def flights(folder: Path, pools: list[str], workers: int, progress, platform) -> None:
-        assert platform == FIRST
+        assert platform == DEFAULT
         made.extend(f"{folder.name}/{pool} by {workers}" for pool in pools)
         progress(1.0, 2.0)
 
@@ -138,7 +138,7 @@ def test_each_missing_pool_is_made_by_its_own_collector(
     monkeypatch.setattr(job_pools, "collect", flights)
 
     def closed_loop(folder: Path, workers: int, platform, progress) -> None:
-        assert platform == "first"
+        assert platform == DEFAULT_NAME
         made.append(f"{folder.name}/closed loop by {workers}")
         progress(5, 6)
 

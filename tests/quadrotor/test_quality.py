@@ -15,7 +15,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS, Shelf
-from faultpath.quadrotor.platforms import DEFAULT, FIRST
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, WindNetwork
@@ -32,6 +32,7 @@ from faultpath.quadrotor.training.reconstruction_task import (
     _Samples,
 )
 from faultpath.quadrotor.training.windows import windows_of
+from faultpath.quadrotor.wind import Winds
 
 ROOT = Path(__file__).resolve().parents[2]
 EPISODES = {"nominal": 48, "wind": 10}
@@ -69,7 +70,7 @@ def save(folder, name, seed, data_sha256=None):
         "training_loss": (),
         "validation": (),
         "duration_s": 0.0,
-        "platform": FIRST.weights_hash(name),
+        "platform": DEFAULT.weights_hash(name),
         "torch_version": "",
         "faultpath_version": "",
     }
@@ -270,9 +271,10 @@ def test_an_estimate_reads_nothing_after_the_present(windy):
 
 def test_a_window_has_the_level_of_the_nearest_sustained_wind(windy):
     speed = windy.wind_mps.mean(1).norm(dim=0)
-    found = levels(windy, DEFAULT.winds)
+    winds = Winds()
+    found = levels(windy, winds)
     for each, name in zip(speed.tolist(), found, strict=True):
-        distance = {key: abs(each - level.mean_mps) for key, level in DEFAULT.winds.levels.items()}
+        distance = {key: abs(each - level.mean_mps) for key, level in winds.levels.items()}
         assert distance[name] == min(distance.values())
     assert len(set(found)) > 1
 
@@ -289,7 +291,7 @@ def test_missing_checkpoints_are_named_and_leave_no_row(quality):
 
 def test_weights_without_a_card_are_not_finished(trained, tmp_path):
     shutil.copy(trained / "gru-0.safetensors", tmp_path)
-    assert "gru-0" in Checkpoints(Shelf(FIRST, tmp_path)).missing
+    assert "gru-0" in Checkpoints(Shelf(DEFAULT, tmp_path)).missing
 
 
 def test_a_model_of_another_pool_is_refused(data, tmp_path):

@@ -134,7 +134,7 @@ def _left_open(known: About, record: DecisionRecord) -> Iterator[str]:
     if same:
         places = " or the ".join(same)
         yield f"No change is detected from the fault at the {places} alone to the shared fault."
-    yield "Another size or sign of the fault, another library and another wiring were not flown."
+    yield "Another size or sign of the fault, another library and another wiring were not tried."
 
 
 def _missed(effects: Sequence[Effect]) -> list[str]:
