@@ -67,6 +67,8 @@ def top_of(curves: Sequence[Curve]) -> float:
 def draw(svg: Svg, panel: Panel, left: float, right: float) -> None:
     """Draw a panel between two horizontal pixels, its labels to the right of them."""
     places = [x for curve in panel.curves for x, _ in curve.points] or [0.0, 1.0]
+    if min(places) == max(places):
+        places += [place for place, _ in panel.ticks]
     values = [y for c in panel.curves for part in (c.points, *c.seeds) for _, y in part]
     low = min(0.0, *values) if values else 0.0
     high = panel.high or top_of(panel.curves)

@@ -116,7 +116,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(
     heavier = {"vehicle": VehicleRanges(mass=0.9)}
     path.write_bytes(provenance.model_copy(update=heavier).encode())
     if pool == "nominal":  # of flights in closed loop the code tells, by the platform's hash
-        with pytest.raises(UserError, match="was collected for another platform than first"):
+        with pytest.raises(UserError, match="was collected for another platform than matched"):
             job_pools.check_pools(wanted, tmp_path)
 
 
