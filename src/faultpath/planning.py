@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from faultpath.errors import UserError
-from faultpath.faults import AnyFault, Fault
-from faultpath.interface import Interface, module_of
+from faultpath.faults import AnyFault
+from faultpath.paths import arm_struck, path_struck, strikes_of
 from faultpath.record import (
     CORRECT,
     SHARED,
@@ -20,12 +20,11 @@ from faultpath.record import (
     primary_path,
     stops,
 )
-from faultpath.record.factorial import JOINED, check_factors, factorial, path_of, subsets
+from faultpath.record.factorial import JOINED, factorial
 from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
 from faultpath.trials import (
-    Arm,
     Deliveries,
     Library,
     OutcomeTable,
@@ -132,14 +131,19 @@ def plan_audit(
         raise UserError("give at least one seed, each of them once.")
     if full and stop_when:
         raise UserError("a factorial flies all of its scenes: leave --stop-when out.")
-    strikes = _strikes(system.interface, fault, variants, full)
+    strikes = strikes_of(system.interface, fault, variants, full)
     paths = [
-        _path(name, system.interface, struck, variants)
+        path_struck(name, system.interface, struck, variants)
         for name, struck in strikes.items()
         if JOINED not in name
     ]
     rows = [
-        Row(variant=variant.name, path=path, seed=seed, arm=_arm(system, variant, struck, seed))
+        Row(
+            variant=variant.name,
+            path=path,
+            seed=seed,
+            arm=arm_struck(system, variant, struck, seed),
+        )
         for path, struck in strikes.items()
         for variant in variants
         for seed in seeds
@@ -245,65 +249,3 @@ def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tup
         drawn: list[int] = stream.permutation(available).tolist()
         scenes = tuple(scenes[place] for place in drawn)
     return tuple(scene.id for scene in scenes[:count])
-
-
-def _strikes(
-    interface: Interface, fault: AnyFault, variants: Sequence[Variant], full: bool
-) -> dict[str, AnyFault | None]:
-    """Return the fault of each path; `None` under correct inputs. With a single module there is
-    nothing to share: the isolated fault is all of it."""
-    reached = [c for variant in variants for c in _struck(interface, fault, variant)]
-    if not reached:
-        names = " nor ".join(f"'{variant.name}'" for variant in variants)
-        raise UserError(
-            f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
-        )
-    by_module: dict[str, list[str]] = {}
-    for consumer in reached:
-        places = by_module.setdefault(module_of(consumer), [])
-        if consumer not in places:
-            places.append(consumer)
-    factors = tuple(sorted(by_module))
-    for reserved in {CORRECT, SHARED} & set(factors):
-        raise UserError(
-            f"the interface calls a module '{reserved}', which is the name of a path of every "
-            "audit: rename the module."
-        )
-    if full:
-        check_factors(factors)
-    return {
-        path_of(struck, factors): fault.striking(*(c for each in struck for c in by_module[each]))
-        if struck
-        else None
-        for struck in subsets(factors)
-        if full or len(struck) in (0, 1, len(factors))
-    }
-
-
-def _struck(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:
-    consumers = (c for f in _resolved(interface, fault, variant) for c in f.consumers)
-    return tuple(dict.fromkeys(consumers))
-
-
-def _resolved(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[Fault, ...]:
-    return () if fault is None else fault.resolved(interface, variant.consumers)
-
-
-def _path(
-    name: str, interface: Interface, fault: AnyFault | None, variants: Sequence[Variant]
-) -> Path:
-    baseline, repair = variants
-    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    return Path(
-        name=name,
-        title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
-        consumers=_struck(interface, fault, repair),
-        baseline_consumers=_struck(interface, fault, baseline),
-    )
-
-
-def _arm(system: System, variant: Variant, fault: AnyFault | None, seed: int) -> Arm:
-    """Return the arm with its fault spelled out: where the fault cannot reach the variant, that
-    is the arm under correct inputs, which runs once."""
-    faults = _resolved(system.interface, fault, variant)
-    return Arm(variant=variant.name, faults=faults, seed=seed)

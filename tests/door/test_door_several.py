@@ -18,7 +18,7 @@ from faultpath.record import Ledger, Reproduction
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"
 sys.path.append(str(ROOT / "tests" / "cli"))
-from cli_runs import faultpath as command  # noqa: E402
+from cli_runs import faultpath as command  # noqa: E402 - after the path is set
 
 
 @pytest.fixture

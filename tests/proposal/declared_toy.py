@@ -46,7 +46,7 @@ class Logged(toy.Toy):
     """Three modules read the gain; `logged` is `blind` but for that."""
 
     name, interface = "logged", interface_of(facts(), (*PARTS, Logger()))
-    wirings = {**toy.Toy.wirings, "logged": Wiring("Blind, with a log.")}  # noqa: RUF012
+    wirings = {**toy.Toy.wirings, "logged": Wiring("Blind, with a log.")}  # noqa: RUF012 - never changed
 
     def modules(self, variant, seed):
         more = (Logger(),) if variant == "logged" else ()

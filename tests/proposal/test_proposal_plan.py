@@ -73,7 +73,7 @@ READ = frozenset({"model.mass", "model.rate", "planner.mass", "planner.place"})
 
 class Sized(System):
     name, control_dt_s, interface = "sized", 0.1, read_interface(FACTS)
-    variants = {  # noqa: RUF012
+    variants = {  # noqa: RUF012 - never changed
         "all": Variant("all", "", READ),
         "less": Variant("less", "", READ - {"planner.mass"}),
         "told": Variant("told", "", READ, {"place": "truth"}, frozenset({"truth"})),
@@ -87,7 +87,7 @@ class Sized(System):
 
 
 class Preset(Sized):
-    fault_presets = {"calibration": calibration}  # noqa: RUF012
+    fault_presets = {"calibration": calibration}  # noqa: RUF012 - never changed
 
 
 def found(system: System, *given: str, variants=("less", "all")) -> dict[str, Candidate]:

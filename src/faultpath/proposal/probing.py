@@ -8,6 +8,7 @@ included. The median is over the steps of all scenes while they run, of the dist
 commands, each component as a fraction of its root mean square in the flight.
 """
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypeAlias
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.arrays import Array, is_array, to_numpy
+from faultpath.errors import Notice
 from faultpath.execution.attempt import taps_of
 from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress
@@ -98,8 +100,11 @@ class _Beside:
         for key in list(self._others):
             try:
                 self._moved[key].append(self._command(next(self._others[key]).inputs))
-            except Exception:  # whatever modules do that were not made for such an input
+            except Exception as error:  # what modules raise that were not made for such an input
                 del self._others[key], self._moved[key]
+                told = f"{' '.join(map(str, key))}, {self._variant}: no probe response, since its "
+                told += f"modules stop at such an input ({type(error).__name__}: {error})."
+                warnings.warn(Notice(told), stacklevel=1)
 
     def _begin(self, faults: Sequence[AnyFault]) -> Any:
         loop = type(self._system).loop(self._system, self._variant, self._seed)

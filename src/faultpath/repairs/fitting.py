@@ -95,6 +95,8 @@ def fit(
     if seed < 0:
         raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
     with torch.random.fork_rng():
+        # The module's own code draws from torch's global state (initialisation, dropout): it is the
+        # fit's own in here, and the caller's again behind.
         drawn = key("repairs/torch", "fit", seed) % 2**63
         torch.manual_seed(drawn)
         net = _fresh(module)

@@ -201,6 +201,7 @@ class RayWorkers(Executor):
     def _message(self, worker: _Worker) -> tuple[Any] | End:
         """Return what a call tells, as a tuple of one, or its end."""
         try:
+            # Of our own worker, through Ray, which itself runs what its cluster sends: no file.
             message: tuple[Any] | End = pickle.loads(self._ray.get(next(worker.stream)))
         except self._ray.exceptions.RayTaskError:
             raise
