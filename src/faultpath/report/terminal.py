@@ -10,7 +10,7 @@ from faultpath.report.factorial import by_factors
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import Line, Table, line
-from faultpath.tables.terminal import drawn
+from faultpath.tables.terminal import Parted, drawn
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
@@ -25,7 +25,7 @@ def decision(record: DecisionRecord) -> RenderableType:
     parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
     parts += [Text(sentence) for sentence in record.verdict.sentences]
     parts += _list("Found in the run", record.findings, "bold red")
-    parts += [Text(""), drawn(success, one_line=True), Text(""), drawn(effects, one_line=True)]
+    parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     told = by_threshold(record)
     factors = by_factors(record)
     for table in filter(None, (told, factors)):

@@ -8,6 +8,7 @@ from faultpath.tables.model import Entry, Line, Table, Tone
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from rich.console import Console, ConsoleOptions, RenderResult
     from rich.table import Table as Drawn
     from rich.text import Text
 
@@ -26,9 +27,8 @@ def drawn(table: Table, *, one_line: bool = False) -> "Drawn":
     from rich.text import Text
 
     title = Text(table.title) if table.title else None
-    tall = any("\n" in entry.text for line in table.lines for entry in line.entries)
-    apart = (0, 1 if len(table.columns) > _ROOMY else 2, 1 if tall else 0, 0)
-    made = Drawn(title=title, title_justify="left", box=None, pad_edge=False, padding=apart)
+    tall = _tall(table)
+    made = Drawn(title=title, title_justify="left", box=None, pad_edge=False, padding=_apart(table))
     # Columns of words give way first, else the labels, but never below their longest word.
     made.add_column(
         Text(table.corner),
@@ -46,6 +46,56 @@ def drawn(table: Table, *, one_line: bool = False) -> "Drawn":
             cell.no_wrap, cell.overflow = one_line, "ellipsis" if one_line else None
         made.add_row(_label(line, below=tall), *cells)
     return made
+
+
+def _tall(table: Table) -> bool:
+    return any("\n" in entry.text for line in table.lines for entry in line.entries)
+
+
+def _apart(table: Table) -> tuple[int, int, int, int]:
+    """Return how far entries stand from each other: above, right, below, left."""
+    return (0, 1 if len(table.columns) > _ROOMY else 2, 1 if _tall(table) else 0, 0)
+
+
+class Parted:
+    """A table whose numbers are never folded: columns that find no room stand in a further one."""
+
+    def __init__(self, table: Table) -> None:
+        self._table = table
+
+    def __rich_console__(self, console: "Console", options: "ConsoleOptions") -> "RenderResult":
+        """Yield the table, or as many as its columns need, each with the labels of the lines."""
+        start, title = 0, self._table.title
+        while True:
+            rest = self._part(start, len(self._table.columns), title)
+            count = max(1, _columns_within(options.max_width, rest))
+            yield drawn(self._part(start, start + count, title), one_line=True)
+            start, title = start + count, ""
+            if start >= len(self._table.columns):
+                return
+            yield ""
+
+    def _part(self, first: int, end: int, title: str) -> Table:
+        lines = tuple(
+            line.model_copy(update={"entries": line.entries[first:end]})
+            for line in self._table.lines
+        )
+        columns = self._table.columns[first:end]
+        return self._table.model_copy(update={"title": title, "columns": columns, "lines": lines})
+
+
+def _columns_within(width: int, table: Table) -> int:
+    """Count the first columns that stand unfolded within `width`, beside the narrowest labels."""
+    used = _longest(word for line in table.lines for word in line.label.split())
+    for index, column in enumerate(table.columns):
+        head = _folded(column, index, table).splitlines()
+        texts = (_text(line.entries[index]).plain for line in table.lines if line.entries)
+        used += _apart(table)[1] + _longest(
+            each for text in (*head, *texts) for each in text.splitlines()
+        )
+        if used > width:
+            return index
+    return len(table.columns)
 
 
 def _longest(texts: "Iterable[str]") -> int:
