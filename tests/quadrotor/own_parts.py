@@ -26,6 +26,13 @@ class Heavy(KinematicIntegrator):
         self.seed = seed
 
 
+class K(KinematicIntegrator):
+    """Kinematics in the wind of the platform that is flown."""
+
+    def __init__(self, drag: bool = False, wind: bool = True) -> None:
+        super().__init__(drag, wind, drag_kgps=DEFAULT.drag_kgps)
+
+
 class Constant(Reconstruction):
     """Wind from nowhere."""
 

@@ -9,7 +9,7 @@ from torch import Tensor
 from faultpath.quadrotor.planner import Planner, Scored, Temperature
 from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import rolling
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def replan(
     goal `[3, S]` is the origin where it is not.
     """
     hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
-    roll = rolling(KinematicIntegrator(drag=True))
+    roll = rolling(KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS))
     search = planner.init(plan, hover)
     for iteration in range(planner.iterations):
         commands = planner.propose(search, planner.noise(scenes, 0, step, iteration))

@@ -173,9 +173,9 @@ def _file(folder: Path, code: str) -> Path:
         from dataclasses import replace
         sys.path.append({str(PARTS.parent)!r})
         import torch
-        from own_parts import Constant, planner
+        from own_parts import Constant, K, planner
         from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
-        from faultpath.quadrotor.predictors import KinematicIntegrator as K
+        from faultpath.quadrotor.predictors import KinematicIntegrator
         """
     path = folder / "mine.py"
     path.write_text(dedent(head) + "\n" + code + "\n")

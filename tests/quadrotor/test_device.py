@@ -26,8 +26,7 @@ from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.planner import SamplerSettings
 from faultpath.quadrotor.platform import PlannerSettings
-from faultpath.quadrotor.platform_name import PlatformName
-from faultpath.quadrotor.platforms import FIRST
+from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
@@ -81,9 +80,8 @@ def _forget() -> None:
 def _system(options: dict[str, str]) -> Quadrotor:
     """Return a quadrotor for CUDA, past the question whether there is any."""
     planner = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more only repeats operations
-    # Drag that differs by axis is still copied from the host at each step (docs/design/device.md).
-    settings = FIRST.model_copy(update={"planner": planner})
-    few = {"settings": settings, "checkpoints": shipped_folder(PlatformName.FIRST)}
+    settings = DEFAULT.model_copy(update={"planner": planner})
+    few = {"settings": settings, "checkpoints": shipped_folder()}
     parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", **few})
     return Quadrotor(parsed)
 

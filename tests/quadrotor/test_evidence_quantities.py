@@ -19,6 +19,7 @@ from faultpath.quadrotor.training.playback import CODE
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 torch.set_num_threads(1)
 
@@ -104,7 +105,9 @@ def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
 def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypatch):
     def unfiltered(asked):
         subject = Subject.load(quantities.quadrotor(ALIKE), asked.subject, 0)
-        return replace(subject, reconstruction=DisturbanceObserver(low_pass=1.0))
+        return replace(
+            subject, reconstruction=DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
+        )
 
     monkeypatch.setattr(quantities, "_subject", unfiltered)
     nominal, shared, isolated = (

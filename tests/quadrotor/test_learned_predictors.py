@@ -17,7 +17,7 @@ from faultpath.quadrotor.predictors import (
 from faultpath.quadrotor.predictors.anchored import ANGULAR_BOUND_RADPS2, LINEAR_BOUND_MPS2
 from faultpath.quadrotor.predictors.rollout import rollout
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_DRAG_KGPS
 
 SCENES = 5
 KINDS = [AnchoredPredictor, UnanchoredPredictor]
@@ -36,7 +36,7 @@ def network(kind, seed=0, lively=True):
 
 def predictor(kind, seed=0, lively=True, **options):
     if kind is AnchoredPredictor:
-        options.setdefault("wind", True)
+        options = {"wind": True, "drag_kgps": NOMINAL_DRAG_KGPS, **options}
     return kind(network(kind, seed, lively), **options)
 
 
@@ -93,7 +93,9 @@ def test_models_have_the_papers_size(kind, published):
 @pytest.mark.parametrize("wind", [True, False])
 def test_a_zero_residual_leaves_the_kinematic_integrator_exactly(wind):
     anchored = predictor(AnchoredPredictor, lively=False, wind=wind)
-    plain = rollout(KinematicIntegrator(wind=wind), inputs(), commands())
+    plain = rollout(
+        KinematicIntegrator(wind=wind, drag_kgps=NOMINAL_DRAG_KGPS), inputs(), commands()
+    )
     rolled = rollout(anchored, inputs(), commands())
     assert torch.equal(rolled.positions, plain.positions)
     assert torch.equal(rolled.velocities, plain.velocities)
@@ -106,7 +108,7 @@ def test_the_residuals_of_wm_a_are_bounded_whatever_the_weights():
     with torch.no_grad():
         wild.network.last.weight.mul_(1e4)
     given, one = inputs(), commands(horizon=1)
-    plain = rollout(KinematicIntegrator(), given, one)
+    plain = rollout(KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS), given, one)
     rolled = rollout(wild, given, one)
     pushed = (rolled.velocities - plain.velocities)[:, :, 0] / CONTROL_DT_S
     spun = (rolled.final.rate - plain.final.rate) / CONTROL_DT_S

@@ -32,6 +32,7 @@ from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.predictors.network import GatedCell
 from faultpath.quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 SHIFT_M = 100.0
 """No shipped predictor leads so far."""
@@ -58,6 +59,9 @@ class Anchored(AnchoredPredictor):
 
 
 class Kinematic(KinematicIntegrator):
+    def __init__(self) -> None:
+        super().__init__(drag_kgps=NOMINAL_DRAG_KGPS)
+
     def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
         ahead, memory = super().step(state, command, memory)
         return State(ahead.position + SHIFT_M, ahead.velocity, ahead.rotation, ahead.rate), memory
@@ -69,7 +73,7 @@ def shifted(self: Predictor, state: State, command: Tensor, memory: Memory) -> t
 
 
 def anchored_on(network: LatentNetwork) -> AnchoredPredictor:
-    return AnchoredPredictor(network, wind=True)
+    return AnchoredPredictor(network, True, NOMINAL_DRAG_KGPS)
 
 
 def replaced_step() -> Predictor:
@@ -86,12 +90,12 @@ def own_kinematics() -> Predictor:
 
     model = predictor("wm-a-wind")
     assert isinstance(model, AnchoredPredictor)
-    model.kinematics = Integrator()
+    model.kinematics = Integrator(drag_kgps=NOMINAL_DRAG_KGPS)
     return model
 
 
 OWN: dict[str, Callable[[], Predictor]] = {
-    "anchored": lambda: Anchored(predictor("wm-a").network, wind=True),
+    "anchored": lambda: Anchored(predictor("wm-a").network, True, NOMINAL_DRAG_KGPS),
     "kinematic": Kinematic,
     "a step of its own on the instance": replaced_step,
     "kinematics of its own": own_kinematics,
@@ -135,8 +139,8 @@ class OtherDrag(LinearDrag):
 
 
 def with_drag() -> Predictor:
-    integrator = KinematicIntegrator()
-    integrator.air = OtherDrag()
+    integrator = KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS)
+    integrator.air = OtherDrag(NOMINAL_DRAG_KGPS)
     return integrator
 
 

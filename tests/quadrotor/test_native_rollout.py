@@ -15,6 +15,7 @@ from faultpath.quadrotor.predictors import (
 )
 from faultpath.quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 TOLERANCE = 1e-5
 SCENES = 3
@@ -32,14 +33,16 @@ def random_weights(module: torch.nn.Module, seed: int = 0) -> None:
 
 def predictor(name: str) -> Predictor:
     if name.startswith("dki"):
-        return KinematicIntegrator(drag=name == "dki-drag", wind=name != "dki-still")
+        return KinematicIntegrator(
+            drag=name == "dki-drag", wind=name != "dki-still", drag_kgps=NOMINAL_DRAG_KGPS
+        )
     if name == "wm-u":
         unanchored = UnanchoredPredictor.build_network()
         random_weights(unanchored)
         return UnanchoredPredictor(unanchored)
     anchored = AnchoredPredictor.build_network()
     random_weights(anchored)
-    return AnchoredPredictor(anchored, wind=name == "wm-a-wind")
+    return AnchoredPredictor(anchored, name == "wm-a-wind", NOMINAL_DRAG_KGPS)
 
 
 def inputs_of(scenes: int = SCENES, seed: int = 1) -> PredictorInputs:

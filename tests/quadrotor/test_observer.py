@@ -6,6 +6,7 @@ import torch
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction import DisturbanceObserver, Sensed
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 LANES = 32
 DT = 0.05
@@ -37,7 +38,7 @@ def test_it_reads_what_it_declares_and_nothing_else():
             seen.add(read)
             return super().__getitem__(read)
 
-    observer = DisturbanceObserver()
+    observer = DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS)
     observer.update(observer.begin(Watched(delivered(1))), Watched(delivered(2)))
     assert seen == observer.reads == set(delivered(1))
     assert observer.consumers() == {
@@ -50,20 +51,25 @@ def test_it_reads_what_it_declares_and_nothing_else():
 @pytest.mark.parametrize(("mass", "scale"), [(1.0, 1.0), (1.1, 0.9), (0.9, 1.1)])
 def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale):
     """a_0 + B w_raw = a_obs whatever the calibration (paper, Eq. 2)."""
-    observer = DisturbanceObserver(low_pass=1.0)
+    observer = DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
     readings = [delivered(seed, mass=mass, scale=scale) for seed in (1, 2)]
     first, second = (Sensed.of(each) for each in readings)
     start = observer.begin(readings[0])
     wind = observer.wind(observer.update(start, readings[1]))
     turn = so3.log(so3.compose(first.rotation.transpose(0, 1), second.rotation))
     middle = so3.compose(first.rotation, so3.exp(0.5 * turn))
-    recombined = observer.nominal(start, second) + LinearDrag().force(middle, wind) / mass
+    recombined = (
+        observer.nominal(start, second) + LinearDrag(NOMINAL_DRAG_KGPS).force(middle, wind) / mass
+    )
     torch.testing.assert_close(recombined, observer.observed(start, second))
 
 
 def test_estimate_starts_at_zero_and_is_low_pass_filtered():
     first, second = delivered(1), delivered(2)
-    raw, half = DisturbanceObserver(low_pass=1.0), DisturbanceObserver()
+    raw, half = (
+        DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS),
+        DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS),
+    )
     assert not half.wind(half.begin(first)).any()
     once = raw.wind(raw.update(raw.begin(first), second))
     torch.testing.assert_close(half.wind(half.update(half.begin(first), second)), 0.5 * once)
@@ -72,13 +78,13 @@ def test_estimate_starts_at_zero_and_is_low_pass_filtered():
 def test_estimate_is_not_clipped():
     first = delivered(1)
     second = delivered(2, velocity=first["velocity", "velocity_difference"] + 50 * DT)
-    observer = DisturbanceObserver(low_pass=1.0)
+    observer = DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
     assert observer.wind(observer.update(observer.begin(first), second)).max() > 100
 
 
 def test_thrust_lag_of_the_first_interval():
     """57 % of a thrust step is missing from its first 50 ms at a lag of 40 ms."""
-    observer = DisturbanceObserver()
+    observer = DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS)
     level = torch.eye(3, dtype=torch.float64)[..., None].expand(3, 3, LANES)
     rest = torch.zeros(3, LANES, dtype=torch.float64)
     one = torch.ones(LANES, dtype=torch.float64)

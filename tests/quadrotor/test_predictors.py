@@ -65,7 +65,11 @@ def commands(thrust, rates=(0.0, 0.0, 0.0), scenes=1, candidates=4):
     return row.view(1, 4, 1, 1).expand(HORIZON, 4, scenes, candidates).contiguous()
 
 
-PREDICTORS = [KinematicIntegrator(), KinematicIntegrator(drag=True), TrueParameter()]
+PREDICTORS = [
+    KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS),
+    KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS),
+    TrueParameter(),
+]
 
 
 @pytest.mark.parametrize("predictor", PREDICTORS)
@@ -80,7 +84,9 @@ def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
 def test_calibration_error_scales_the_thrust_acceleration(error):
     """The implied thrust acceleration scales by (1 - e)/(1 + e) (paper, Section IV-B)."""
     given = inputs(mass=1 + error, scale=1 - error)
-    rolled = rollout(KinematicIntegrator(), given, commands(GRAVITY_MPS2))
+    rolled = rollout(
+        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
+    )
     expected = GRAVITY_MPS2 * ((1 - error) / (1 + error) - 1)
     assert float(rolled.velocities[2, 0, -1, 0]) == pytest.approx(expected * HORIZON * DT)
 
@@ -88,27 +94,37 @@ def test_calibration_error_scales_the_thrust_acceleration(error):
 def test_wind_term_is_the_nominal_linear_map():
     """R (c o R^T w)/m~ without drag: constant acceleration (paper, Section IV-A)."""
     given = inputs(mass=1.5, wind=(2.0, -1.0, 4.0))
-    rolled = rollout(KinematicIntegrator(), given, commands(1.5 * GRAVITY_MPS2))
+    rolled = rollout(
+        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS), given, commands(1.5 * GRAVITY_MPS2)
+    )
     expected = 0.30 * torch.tensor([2.0, -1.0, 4.0], dtype=torch.float64) / 1.5
     torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], expected * HORIZON * DT)
 
 
 def test_drag_slows_the_vehicle_as_the_closed_form_says():
     given = inputs(velocity=(3.0, 0.0, 0.0))
-    rolled = rollout(KinematicIntegrator(drag=True), given, commands(GRAVITY_MPS2))
+    rolled = rollout(
+        KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
+    )
     exact = 3.0 * torch.exp(torch.tensor(-0.30 * HORIZON * DT, dtype=torch.float64))
     assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(float(exact), rel=0.01)
 
 
 def test_air_at_rest_with_the_vehicle_exerts_no_force():
     given = inputs(wind=(3.0, 1.0, 0.0), velocity=(3.0, 1.0, 0.0))
-    rolled = rollout(KinematicIntegrator(drag=True), given, commands(GRAVITY_MPS2))
+    rolled = rollout(
+        KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
+    )
     torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], given.state.velocity[:, 0, 0])
 
 
 def test_rate_lag_turns_by_its_closed_form():
     given = inputs()
-    end = rollout(KinematicIntegrator(), given, commands(GRAVITY_MPS2, (0.0, 0.0, 1.0))).final
+    end = rollout(
+        KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS),
+        given,
+        commands(GRAVITY_MPS2, (0.0, 0.0, 1.0)),
+    ).final
     time = HORIZON * DT
     lag = 0.05
     angle = time - lag * (1 - torch.exp(torch.tensor(-time / lag, dtype=torch.float64)))

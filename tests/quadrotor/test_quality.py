@@ -32,6 +32,7 @@ from faultpath.quadrotor.training.reconstruction_task import (
     _Samples,
 )
 from faultpath.quadrotor.training.windows import windows_of
+from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 from faultpath.quadrotor.wind import Winds
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -200,7 +201,7 @@ def test_scores_without_an_error_are_those_of_the_horizon_and_of_the_table(quali
 
 
 def test_errors_grow_from_nothing_along_the_horizon(windy):
-    made = KinematicIntegrator()
+    made = KinematicIntegrator(drag_kgps=NOMINAL_DRAG_KGPS)
     errors = position_errors(made, windy)
     assert errors.shape == (20, len(windy))
     assert errors[0].max() < 0.02  # one interval of 50 ms
@@ -259,13 +260,15 @@ def test_a_network_is_measured_as_its_fit_validates_it(data, windy, quality):
 
 
 def test_an_estimate_reads_nothing_after_the_present(windy):
-    plain = estimate(DisturbanceObserver(), windy)
+    plain = estimate(DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS), windy)
     future = {
         name: torch.cat((value[..., :keep, :], torch.full_like(value[..., keep:, :], 1e3)), -2)
         for name, keep in (("velocity", 13), ("rotation", 13), ("rate", 13), ("command", 12))
         for value in (getattr(windy, name),)
     }
-    assert torch.equal(estimate(DisturbanceObserver(), replace(windy, **future)), plain)
+    assert torch.equal(
+        estimate(DisturbanceObserver(drag_kgps=NOMINAL_DRAG_KGPS), replace(windy, **future)), plain
+    )
     assert plain.isfinite().all()
 
 

@@ -48,17 +48,7 @@ def command_responses(
         for part in loop.graph.parts
         for port in part.reads_past
     }
-
-    def listened(variant: str, seed: int | None) -> Loop:
-        del variant, seed
-        return heard
-
-    # So all runs as the system runs its loop, in whatever contexts it does so.
-    vars(system)["loop"] = listened
-    try:
-        system.run(variant, scenes, beside.taps((), leads=True), seed)
-    finally:
-        del vars(system)["loop"]
+    system.fly(heard, scenes, beside.taps((), leads=True), seed)
     return beside.medians()
 
 
@@ -107,7 +97,7 @@ class _Beside:
                 warnings.warn(Notice(told), stacklevel=1)
 
     def _begin(self, faults: Sequence[AnyFault]) -> Any:
-        loop = type(self._system).loop(self._system, self._variant, self._seed)
+        loop = self._system.loop(self._variant, self._seed)
         batch = Batch(self._scenes, self._seed, self._system.control_dt_s)
         told = _with_plant(loop, _Told(loop.graph.plant, self))
         return told.execute(batch, self.taps(faults, leads=False))

@@ -12,7 +12,7 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
-from faultpath.loop import Module, Plant
+from faultpath.loop import Loop, Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.brought import bring
 from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
@@ -157,8 +157,8 @@ class Quadrotor(LoopSystem):
     @arithmetic()
     @torch.inference_mode()
     @override
-    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        return super().run(variant, scenes, taps, seed)
+    def fly(self, loop: Loop, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+        return super().fly(loop, scenes, taps, seed)
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)

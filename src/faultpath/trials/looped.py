@@ -67,7 +67,14 @@ class LoopSystem(System):
 
     @override
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        loop = self.loop(variant, seed)
+        return self.fly(self.loop(variant, seed), scenes, taps, seed)
+
+    def fly(self, loop: Loop, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+        """Execute a variant's `loop`, or one made from it that is listened to.
+
+        A system whose loops run in a context of their own, such as torch's inference mode,
+        overrides this.
+        """
         plant, batch = loop.graph.plant, Batch(tuple(scenes), seed, self.control_dt_s)
         path: list[Array] = []
         state = None

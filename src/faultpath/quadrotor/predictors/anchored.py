@@ -10,7 +10,6 @@ from faultpath.quadrotor.predictors.base import History, Memory, Predictor, Pred
 from faultpath.quadrotor.predictors.kinematic import Constants, KinematicIntegrator, Residual
 from faultpath.quadrotor.predictors.network import FoldedNetwork, LatentNetwork
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 HIDDEN = 64  # paper, Section IV-A
 LINEAR_BOUND_MPS2 = 8.0
@@ -41,7 +40,7 @@ class AnchoredPredictor(Predictor):
         self,
         network: LatentNetwork,
         wind: bool,
-        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
+        drag_kgps: Sequence[float] | None = None,
     ) -> None:
         self.network = network
         self.kinematics = KinematicIntegrator(wind=wind, drag_kgps=drag_kgps)

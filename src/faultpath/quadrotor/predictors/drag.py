@@ -1,17 +1,17 @@
 """Nominal linear aerodynamics of the predictors: a = R (c o R^T v_air) / m."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 
 class LinearDrag:
     """Force of the air on the vehicle, linear in the air's velocity relative to it."""
 
-    def __init__(self, coefficients_kgps: Sequence[float] = NOMINAL_DRAG_KGPS) -> None:
+    def __init__(self, coefficients_kgps: Sequence[float]) -> None:
         self.coefficients_kgps = tuple(coefficients_kgps)
         # With equal coefficients the rotations cancel: c R R^T v = c v.
         self._isotropic = len(set(self.coefficients_kgps)) == 1
@@ -21,15 +21,15 @@ class LinearDrag:
         if self._isotropic:
             return air_velocity * self.coefficients_kgps[0]
         body = so3.rotate_back(rotation, air_velocity)
-        return so3.rotate(rotation, body * self._column(body))
+        return so3.rotate(rotation, self._along_axes(body, torch.mul))
 
     def inverse(self, rotation: Tensor, force: Tensor) -> Tensor:
         """Return the air velocity that would cause `force` `[3, *batch]`, N."""
         if self._isotropic:
             return force / self.coefficients_kgps[0]
         body = so3.rotate_back(rotation, force)
-        return so3.rotate(rotation, body / self._column(body))
+        return so3.rotate(rotation, self._along_axes(body, torch.div))
 
-    def _column(self, like: Tensor) -> Tensor:
-        column = like.new_tensor(self.coefficients_kgps)
-        return column.reshape(3, *([1] * (like.ndim - 1)))
+    def _along_axes(self, body: Tensor, how: Callable[[Tensor, float], Tensor]) -> Tensor:
+        # Numbers, no tensor of them: laid on a device at every step, that would wait for the host.
+        return torch.stack([how(*each) for each in zip(body, self.coefficients_kgps, strict=True)])

@@ -11,7 +11,7 @@ from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors.base import Memory, Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath.quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 
 RATE_LAG_S = 0.05
 """Time constant of the closed rate loop: the inverse of its gain of 20 1/s."""
@@ -55,15 +55,19 @@ class KinematicIntegrator(Predictor):
         drag: bool = False,
         wind: bool = True,
         dt_s: float = CONTROL_DT_S,
-        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
+        drag_kgps: Sequence[float] | None = None,
     ) -> None:
         if drag and not wind:
             raise ValueError("drag acts through the air's velocity: it needs the wind input")
+        if wind and drag_kgps is None:
+            raise ValueError(
+                "wind acts through the drag: give `drag_kgps`, the platform's three coefficients"
+            )
         self.drag = drag
         self.reads = frozenset({"initial_state", "trim", "dynamics"})
         if wind:
             self.reads |= {"wind_map"}
-        self.air = LinearDrag(drag_kgps)
+        self.air = LinearDrag(drag_kgps or (0.0, 0.0, 0.0))
         self._dt = dt_s
         self._keep = math.exp(-dt_s / RATE_LAG_S)
         self._mean = RATE_LAG_S / dt_s * (1 - self._keep)

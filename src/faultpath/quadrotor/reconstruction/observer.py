@@ -15,7 +15,6 @@ from faultpath.quadrotor.reconstruction.base import Delivered, Memory, Read, Rec
 from faultpath.quadrotor.vehicle import (
     CONTROL_DT_S,
     GRAVITY_MPS2,
-    NOMINAL_DRAG_KGPS,
     NOMINAL_MOTOR_TIME_CONSTANT_S,
 )
 
@@ -84,9 +83,9 @@ class DisturbanceObserver(Reconstruction):
 
     def __init__(
         self,
+        drag_kgps: Sequence[float],
         low_pass: float = LOW_PASS,
         dt_s: float = CONTROL_DT_S,
-        drag_kgps: Sequence[float] = NOMINAL_DRAG_KGPS,
     ) -> None:
         self._alpha = low_pass
         self._dt = dt_s

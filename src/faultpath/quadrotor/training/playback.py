@@ -201,7 +201,9 @@ def at_present(
     lanes = padded_lanes(len(windows))
     wide = windows.take(lanes)
     interface = quadrotor_interface().shaped({"predicted_motion": (6, HORIZON, 1)})
-    models = modelled(predictor or KinematicIntegrator(wind=True), reconstruction, CPU)
+    # Where there is no predictor, one that reads the wind stands there; nobody asks it to predict.
+    nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))
+    models = modelled(predictor or nobodys, reconstruction, CPU)
     parts = graph(interface, Playback(wide), [*models, Executed(wide)], bindings)
     taps = WindowTaps(
         interface,
