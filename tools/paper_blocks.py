@@ -13,10 +13,13 @@ from typing import TypeVar
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed, tabled
 from flown_code import flown_by
 
-from faultpath.record import Reproduction, RunProvenance
+from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
 from faultpath.report.reproduction.terminal import ledger_markdown
+from faultpath.store import read_outcomes
 from faultpath.studies import shipped
+from faultpath.studies.cells import Setting
 from faultpath.studies.flights import SYSTEM
+from faultpath.tables import Table
 from faultpath.tables.markdown import block
 
 T = TypeVar("T")
@@ -24,6 +27,11 @@ FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.p
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.tex", "tables.md", "ledger.md")
 """What of a run stands in `docs/reference/paper`, below the name of its platform."""
+
+
+AGAIN = "quadrotor-L3-seeds"
+"""The reference run that asks what Table IV asks, of the same scenes."""
+_FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
 def present() -> str | None:
@@ -101,6 +109,15 @@ def _motors(_: Reproduction, origin: RunProvenance) -> str:
     )
 
 
+def _frozen(_: Reproduction, origin: RunProvenance) -> str:
+    """Return what `tools/frozen_wind.py` flew."""
+    try:
+        table = Table.model_validate_json((REFERENCE / "frozen-wind.json").read_bytes())
+    except FileNotFoundError:
+        return "*Not flown yet: run tools/frozen_wind.py.*"
+    return f"{block(table)}\n\nMade by `python tools/frozen_wind.py RUN_FOLDER`."
+
+
 def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
     """Return the picture of a part of the report, by its place in the page."""
     titles = {each.name: each.title for each in (*found.tables, *found.figures)}
@@ -115,9 +132,34 @@ def _origin(found: Reproduction, origin: RunProvenance) -> str:
         f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded "
         "anew by the code that is here, which a test repeats. "
         f"{flown_by(origin, SYSTEM, {shipped.PLATFORM: platform})} "
+        f"{_flown_again(platform)}"
         "Everything is in "
         f"[`docs/reference/paper/{platform}`]({{reference}}/paper/{platform}): the report, the "
         "ledger and all tables."
+    )
+
+
+def _flown_again(platform: str) -> str:
+    """Say how many trials of a run a reference run has flown again, and how many came out alike."""
+    again = REFERENCE / AGAIN
+    if platform != shipped.default_platform() or not again.is_dir():
+        return ""
+    paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
+    setting = Setting(wind="L3")
+    here = {
+        (row.variant, f"{setting}: {paths[row.path]}", row.seed, row.outcome.scene): row.outcome
+        for row in read_outcomes(again / FILES[2]).rows
+        if row.path in paths
+    }
+    there = {
+        (row.variant, row.path, row.seed, row.outcome.scene): row.outcome
+        for row in read_outcomes(shipped.RUNS / platform / FILES[2]).rows
+    }
+    pairs = [(here[key], there[key]) for key in here.keys() & there.keys()]
+    alike = sum(one == other for one, other in pairs)
+    return (
+        f"{len(pairs):,} of its trials were flown again by the reference run [`{AGAIN}`]"
+        f"({{reference}}/{AGAIN}): {alike:,} came out alike to the last bit. "
     )
 
 
@@ -143,6 +185,7 @@ KIND: dict[str, Callable[..., str]] = {
         "table": _table,
         "origin": _origin,
         "motors": _motors,
+        "frozen": _frozen,
         "picture": _picture,
     }.items()
 }
