@@ -51,8 +51,9 @@ bench: $(BENCH)/ready $(STAMPS)/dev ## Measure side by side with other software;
 	$(BENCH)/bin/python -m benchmarks $(ARGS)
 	$(BIN)/python tools/documents.py
 
-docs: $(STAMPS)/dev ## Write every document that is made from numbers; ARGS="--check" only looks
+docs: $(STAMPS)/dev ## Write what follows from numbers, and build/site; ARGS="--check" only looks
 	$(BIN)/python tools/documents.py $(ARGS)
+	$(if $(filter --check,$(ARGS)),,$(BIN)/python -m sphinx -W --keep-going -q docs build/site)
 
 lint: $(STAMPS)/dev ## Check format, style, types and layers
 	$(BIN)/ruff format --check

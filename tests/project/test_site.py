@@ -1,0 +1,73 @@
+"""The site builds without a warning, leads nowhere that is not there, and fetches nothing."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+FETCHED = {"img", "script", "source", "iframe", "video", "audio", "embed", "object", "link"}
+OUTWARD = re.compile(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//")
+
+
+class Links(HTMLParser):
+    """Collects what a page loads and where it leads, tag by tag."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, str]] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        places = (value for name, value in attrs if name in ("href", "src", "srcset", "data"))
+        self.found += [(tag, place) for place in places if place]
+
+
+def links(page: Path) -> list[tuple[str, str]]:
+    parser = Links()
+    parser.feed(page.read_text("utf-8"))
+    return parser.found
+
+
+def fetched(site: Path) -> Iterator[tuple[str, str]]:
+    """Yield what pages and style sheets load from elsewhere."""
+    for page in site.rglob("*.html"):
+        yield from ((page.name, to) for tag, to in links(page) if tag in FETCHED and "//" in to)
+    for sheet in site.rglob("*.css"):
+        yield from ((sheet.name, match) for match in OUTWARD.findall(sheet.read_text("utf-8")))
+
+
+def broken(site: Path) -> Iterator[tuple[str, str]]:
+    """Yield what pages link to in the site that is not there."""
+    for page in site.rglob("*.html"):
+        for _, to in links(page):
+            parts = urlsplit(to)
+            inside = parts.path and not parts.scheme and not parts.netloc
+            if inside and not (page.parent / unquote(parts.path)).exists():
+                yield page.relative_to(site).as_posix(), to
+
+
+@pytest.mark.slow
+def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
+    built = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", tmp_path / "trees"]
+    site = tmp_path / "site"
+    done = subprocess.run([*built, ROOT / "docs", site], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert list(fetched(site)) == []
+    assert list(broken(site)) == []
+
+
+def test_what_is_fetched_or_missing_is_found(tmp_path: Path) -> None:
+    (tmp_path / "there.html").write_text("<p>", "utf-8")
+    (tmp_path / "a.html").write_text(
+        "<a href='there.html#x'><a href='gone.html'><a href='https://example.org'>"
+        "<img src='//example.org/x.png'><script src='https://example.org/x.js'></script>",
+        "utf-8",
+    )
+    (tmp_path / "a.css").write_text("@import 'https://example.org/x.css';", "utf-8")
+    assert [where for where, _ in fetched(tmp_path)] == ["a.html", "a.html", "a.css"]
+    assert list(broken(tmp_path)) == [("a.html", "gone.html")]

@@ -1,0 +1,149 @@
+"""What Sphinx is taught for the site: notebooks, links to what is no page, our docstrings.
+
+The pages are written for a forge that shows Markdown, and must read well there; whatever the site
+needs beyond that is done here.
+"""
+
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import nbformat
+from docutils import nodes
+from myst_parser.parsers.sphinx_ import MystParser
+from nbclient import NotebookClient
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.util.osutil import relative_uri
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCS = ROOT / "docs"
+REFERENCE = DOCS / "reference"
+PAGES = ("report.html", "reproduction.html")
+"""Pages of reference runs: the site shows them as they are."""
+
+
+def executed(path: Path) -> nbformat.NotebookNode:
+    """Return a notebook with the outputs that it has when it is run from top to bottom, in an
+    empty folder that holds `examples`; raises `nbclient.exceptions.CellExecutionError`."""
+    notebook: nbformat.NotebookNode = nbformat.read(path, as_version=4)
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "examples").symlink_to(ROOT / "examples")
+        resources = {"metadata": {"path": folder}}
+        NotebookClient(notebook, timeout=300, resources=resources).execute()
+    return notebook
+
+
+def as_markdown(notebook: nbformat.NotebookNode) -> str:
+    """Return a notebook's text, code and outputs as one MyST document."""
+    parts: list[str] = []
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            parts.append(cell.source)
+            continue
+        parts.append(_fence("python", cell.source))
+        parts += [_output(output) for output in cell.outputs]
+    return "\n\n".join(parts) + "\n"
+
+
+def _output(output: Any) -> str:
+    if output.output_type == "stream":
+        return _fence("text", output.text.rstrip())
+    if "text/html" in output.data:
+        return _fence("{raw} html", f'<div class="output">{output.data["text/html"]}</div>')
+    return _fence("text", output.data["text/plain"])
+
+
+def _fence(info: str, body: str) -> str:
+    return f"`````{info}\n{body}\n`````"
+
+
+class NotebookParser(MystParser):
+    """Runs a notebook, and reads it as a page."""
+
+    supported = ("notebook",)
+
+    def parse(self, inputstring: str, document: nodes.document) -> None:
+        """Parse; `inputstring` is what Sphinx read of the file."""
+        json.loads(inputstring)  # a damaged notebook is named before a kernel starts
+        source = document.settings.env.doc2path(document.settings.env.docname)
+        super().parse(as_markdown(executed(Path(source))), document)
+
+
+DESIGN = """
+```{toctree}
+:hidden:
+:glob:
+
+*
+```
+"""
+
+
+def with_notes(app: Sphinx, name: str, source: list[str]) -> None:
+    """List the design notes in the navigation; the forge shows their README as it is."""
+    del app
+    if name == "design/README":
+        source[0] += DESIGN
+
+
+def linked(app: Sphinx, tree: nodes.document) -> None:
+    """Let links to reports open them, links to run folders their report, and those to the README
+    the start of the site. The forge shows each where it lies."""
+    here = app.env.docname
+    folder = Path(app.env.doc2path(here)).parent
+    for node in [*tree.findall(addnodes.download_reference), *tree.findall(addnodes.pending_xref)]:
+        if node.get("reftype") != "myst":
+            continue
+        target = Path(os.path.normpath(folder / node["reftarget"]))
+        if node.get("refdomain") == "doc":
+            if node["reftarget"] == str(ROOT / "README"):
+                node["reftarget"] = "index"
+            if node["reftarget"] in app.env.found_docs:
+                continue
+            target = DOCS / Path(node["reftarget"]).parent
+        page = next((target / name for name in PAGES if (target / name).is_file()), target)
+        if page.name in PAGES and page.is_relative_to(DOCS):
+            uri = relative_uri(app.builder.get_target_uri(here), page.relative_to(DOCS).as_posix())
+            node.replace_self(nodes.reference("", "", *node.children, refuri=uri, internal=True))
+
+
+def with_reports(app: Sphinx, error: Exception | None) -> None:
+    """Put the pages of reference runs beside the site's own."""
+    if error is None:
+        for name in PAGES:
+            for page in REFERENCE.rglob(name):
+                target = Path(app.outdir) / page.relative_to(DOCS)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(page, target)
+
+
+CODE = re.compile(r"(?<!`)`([^`]+)`(?!`)")
+MARKUP = re.compile(r"([*|])|(_)(?!\w)")
+
+
+def plain(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
+    """Make reStructuredText of a docstring: it is plain text in which `code` has one backtick."""
+    del app, what, name, thing, options
+    lines[:] = "".join(_restructured("\n".join(lines))).split("\n")
+
+
+def _restructured(text: str) -> Iterator[str]:
+    for i, part in enumerate(CODE.split(text)):
+        yield f"``{' '.join(part.split())}``" if i % 2 else MARKUP.sub(r"\\\g<0>", part)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register all of it."""
+    app.add_source_suffix(".ipynb", "notebook")
+    app.add_source_parser(NotebookParser)
+    app.connect("source-read", with_notes)
+    app.connect("doctree-read", linked)
+    app.connect("build-finished", with_reports)
+    app.connect("autodoc-process-docstring", plain, priority=400)  # before napoleon
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
