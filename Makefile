@@ -40,6 +40,10 @@ reproduce: $(STAMPS)/runtime ## Reproduce the paper, quickly; all of it with ARG
 train: $(STAMPS)/runtime ## Collect flights and fit every learned model of the quadrotor
 	$(BIN)/faultpath train quadrotor $(ARGS)
 
+# Where the environment forbids byte code (images of containers often do), every process of the
+# tests would compile all that it imports, torch too: most of their time.
+test fuzz: export PYTHONDONTWRITEBYTECODE :=
+
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
 
