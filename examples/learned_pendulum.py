@@ -10,15 +10,19 @@ gain of its motor, newton metres for a unit of command:
 One network holds both, fitted to predict the angles and rates to come. Baseline `exact` is fitted
 with the true gain. Repair `uncertain` is fitted with a gain that errs by up to 20 %, once a window.
 
-    python examples/learned_pendulum.py
     faultpath audit examples/learned_pendulum.py:create --baseline exact --repair uncertain \
         --fault motor_gain:scale=0.8 --library selection --scenes 20
+
+The weights lie beside this file. `python examples/learned_pendulum.py` fits others, into
+`runs/learned-pendulum`; `--weights runs/learned-pendulum` audits those.
 """
 
 # --- model ---
 import argparse
 from hashlib import sha256
+from os.path import relpath
 from pathlib import Path
+from typing import Annotated
 
 import gymnasium
 import numpy as np
@@ -42,7 +46,7 @@ from faultpath.systems import ComposedSystem, Measure, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric
 
-FOLDER = Path("runs/learned-pendulum").absolute()
+SHIPPED = Path(__file__).with_suffix("")
 PAST, HORIZON, LATENT, DT_S = 6, 12, 16, 0.05  # steps, steps, numbers, s a control step
 ANGLE, GAIN = Port("angle", "history"), Port("motor_gain", "history")
 EXECUTED, IMAGINED = Port("command", "executed"), Port("motor_gain", "dynamics")
@@ -155,22 +159,22 @@ def offset_rad(flown):
 
 # --- system ---
 class LearnedPendulum(ComposedSystem):
-    trained = True
+    trained, folder = True, SHIPPED
 
     @property
     def data_files(self):
-        return sorted(FOLDER.glob("*"))
+        return [relpath(file, SHIPPED.parent) for file in sorted(self.folder.glob("*"))]
 
 
-def modules(name):
+def modules(name, folder):
     """Return the function that makes a variant's modules of a seed's weights."""
 
     def made(seed):
         model = WorldModel()
         if seed is not None:
-            path = FOLDER / f"{name}-{seed}.safetensors"
+            path = folder / f"{name}-{seed}.safetensors"
             if not path.is_file():
-                raise UserError(f"no weights in {path}: python {__file__} --seed {seed} fits them.")
+                raise UserError(f"no weights in {path}: python {__file__} --seed {seed} fits some.")
             load(model, path)
         encoder = Learned("encoder", model.encoder, "latent", [ANGLE, GAIN], [EXECUTED], PAST)
         return encoder, Planner(model)
@@ -178,7 +182,7 @@ def modules(name):
     return made
 
 
-def create():
+def create(weights: Annotated[str, "Folder of fitted weights; default: those shipped."] = ""):
     plant = GymnasiumPlant(
         Pushed,
         observes={"angle": slice(0, 2)},
@@ -189,15 +193,18 @@ def create():
         succeeded=lambda flown: offset_rad(flown) <= 0.5,
         metrics={"offset_rad": Measure(Metric(unit="rad", better="less"), offset_rad)},
     )
-    return LearnedPendulum(
+    folder = Path(weights).absolute() if weights else SHIPPED
+    system = LearnedPendulum(
         "learned_pendulum",
         plant,
         variants={
-            "exact": Parts("Fitted with the true gain.", modules("exact")),
-            "uncertain": Parts("Fitted with a gain that errs.", modules("uncertain")),
+            "exact": Parts("Fitted with the true gain.", modules("exact", folder)),
+            "uncertain": Parts("Fitted with a gain that errs.", modules("uncertain", folder)),
         },
         units={"angle": "1", "motor_gain": "N m", "latent": "1", "command": "1"},
     )
+    system.folder = folder
+    return system
 
 
 # --- fit ---
@@ -225,10 +232,10 @@ def windows(count):
     )
 
 
-def fit_both(seed, count, epochs):
+def fit_both(folder, seed, count, epochs):
     data = windows(count)
     schedule = Schedule(epochs=epochs, batch_size=128, learning_rate=4e-3, clip_norm=1.0)
-    told = {"schedule": schedule, "seed": seed, "folder": FOLDER}
+    told = {"schedule": schedule, "seed": seed, "folder": folder}
     error = uncertainty_training("motor_gain:uniform_scale=0.2")
     exact = fit(WorldModel, data, name="exact", **told)
     uncertain = fit(WorldModel, data, name="uncertain", repair=error, **told)
@@ -240,11 +247,12 @@ def fit_both(seed, count, epochs):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--folder", type=Path, default=Path("runs/learned-pendulum"))
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--windows", type=int, default=3000)
     parser.add_argument("--epochs", type=int, default=80)
     given = parser.parse_args()
-    fit_both(given.seed, given.windows, given.epochs)
+    fit_both(given.folder, given.seed, given.windows, given.epochs)
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ from typing import Any
 
 import beside_blocks
 import blocks
+import drift_blocks
 import learning_blocks
 import map_blocks
 import paper_blocks
@@ -44,6 +45,7 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
 
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
+    "drift": drift_blocks.KIND,
     "learning": learning_blocks.KIND,
     "map": map_blocks.KIND,
     "beside": beside_blocks.KIND,
@@ -70,6 +72,7 @@ def statistics_check() -> Mapping[Path, str]:
 
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     statistics_check,
+    drift_blocks.pictures,
     learning_blocks.pictures,
     map_blocks.pictures,
     performance.files,
