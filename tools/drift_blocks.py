@@ -11,12 +11,12 @@ from flown_code import flown_by
 from pictures import IMAGES
 
 from faultpath import tables
-from faultpath.record import CORRECT, RunProvenance
+from faultpath.record import RunProvenance
 from faultpath.record.words import capital
 from faultpath.report.figures.effects import directions, mark
 from faultpath.report.scale import covering, draw_uprights
 from faultpath.report.svg import Svg
-from faultpath.report.wording import p_value, plain, typeset, with_interval
+from faultpath.report.wording import p_value, plain, with_interval
 from faultpath.tables import MISSING, Entry, Table
 from faultpath.tables.markdown import grid
 
@@ -65,36 +65,33 @@ def table() -> str:
 
 
 def words() -> str:
-    """Return a paragraph a law: what was decided, and what was not."""
+    """Return an item a law: all that was decided, and what could have been."""
     return "\n".join(f"- **{LAWS[law]}.** {_said(found)}" for law, found in laws().items())
 
 
 def _said(law: Law) -> str:
-    asked = study.design()
-    said: list[str] = []
-    for path in asked.paths():
-        if path == CORRECT:
-            continue
-        effect, place = law.effect(path), where(path).replace("both,", "both struck,")
-        place = place.replace("reconstruction alone", "only the reconstruction struck")
-        numbers = f"{with_interval(effect.estimate())} pp"
+    asked, said = study.design(), list[str]()
+    for path, effect in law.family.effects.items():
         if effect.sign:
             winner = asked.repair if effect.sign > 0 else asked.baseline
-            said.append(f"With {place}, `{winner}` succeeds more often ({numbers}).")
-        else:
-            least = law.detectable(path)
-            power = f"; {ceil(least)} pp would be found with 80 % power" if least else ""
-            said.append(f"With {place}, no difference is detected ({numbers}{power}).")
+            said.append(
+                f"{capital(where(path))}: `{winner}` succeeds more often "
+                f"({with_interval(effect.estimate())} pp)."
+            )
     for path, change in law.family.changes.items():
-        turn, numbers = law.family.turns[path], f"{with_interval(change.estimate())} pp"
-        start = f"From {where(path).replace('both, ', '')} to correlation 1 the difference"
-        if turn == "reversal":
-            said.append(f"{start} changes sign, and both sides are decided ({numbers}).")
-        elif change.sign:
-            said.append(f"{start} changes ({numbers}); a reversal is not shown.")
-        else:
-            said.append(f"{start} is not decided to change ({numbers}).")
-    return typeset(" ".join(said))
+        if change.sign:
+            shown = law.family.turns[path] == "reversal"
+            said.append(
+                f"From {where(path)}, to both, correlation 1, the difference changes "
+                f"({with_interval(change.estimate())} pp); a reversal is{'' if shown else ' not'} "
+                "shown."
+            )
+    least = [found for path in law.family.effects if (found := law.detectable(path))]
+    return (
+        f"{' '.join(said)} Nothing else is decided, of {law.family.hypotheses} contrasts; true "
+        f"effects of {ceil(min(least))} to {ceil(max(least))} pp, by path, would be found with "
+        "80 % power."
+    ).strip()
 
 
 def origin() -> str:
