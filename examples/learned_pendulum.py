@@ -22,7 +22,7 @@ import argparse
 from hashlib import sha256
 from os.path import relpath
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import gymnasium
 import numpy as np
@@ -139,8 +139,9 @@ class Pushed(gymnasium.ActionWrapper):
     gain, push = 8.0, 0.0
 
     def __init__(self):
-        super().__init__(gymnasium.make("Pendulum-v1").unwrapped)
-        self.env.max_torque = 100.0
+        pendulum: Any = gymnasium.make("Pendulum-v1").unwrapped
+        pendulum.max_torque = 100.0
+        super().__init__(pendulum)
 
     def action(self, action):
         return self.gain * np.clip(action, -1, 1) + self.push
@@ -246,7 +247,7 @@ def fit_both(folder, seed, count, epochs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--folder", type=Path, default=Path("runs/learned-pendulum"))
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--windows", type=int, default=3000)
