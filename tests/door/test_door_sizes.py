@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 import faultpath
+from faultpath.door.ranges import each_size
 from faultpath.errors import UserError
-from faultpath.faults.sizes import each_size
-from faultpath.report.sizes import by_size
 
 TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
 ASKED = {
@@ -34,6 +33,13 @@ ASKED = {
         ("v:noise=0.1,0.2@p", ("v:noise=0.1@p", "v:noise=0.2@p")),
         ("w:offset=1/0/0,0/1/0", ("w:offset=1/0/0", "w:offset=0/1/0")),
         ("w:freeze,onset=3", ("w:freeze,onset=3",)),
+        ("c=-0.2..0.2/5", ("c=-0.2", "c=-0.1", "c=0", "c=0.1", "c=0.2")),
+        ("c=+1..-1/2", ("c=1", "c=-1")),
+        (
+            "g:scale=.8..1.1/4@p,onset=3",
+            tuple(f"g:scale={s}@p,onset=3" for s in (0.8, 0.9, 1, 1.1)),
+        ),
+        ("g:scale=0.8..0.9/2,1.5", ("g:scale=0.8", "g:scale=0.9", "g:scale=1.5")),
     ],
 )
 def test_a_text_for_each_size(text, each):
@@ -45,6 +51,12 @@ def test_a_text_for_each_size(text, each):
     [
         ("gain:scale=0.8,0.80", "names a size twice"),
         ("gain:freeze,0.8", "0.8 is a further size, and there is no first"),
+        ("gain:scale=0.8..0.9", "write FROM..TO/COUNT"),
+        ("gain:scale=0.8..x/3", "write FROM..TO/COUNT"),
+        ("gain:offset=1/0/0..2/0/0/3", "write FROM..TO/COUNT"),
+        ("gain:scale=0.8..0.9/1", "a range takes 2 to 99"),
+        ("gain:scale=0.8..0.9/1000000000", "a range takes 2 to 99"),
+        ("gain:scale=0.8..0.8/3", "names a size twice"),
     ],
 )
 def test_lists_that_are_none(text, said):
@@ -67,12 +79,8 @@ def test_the_arms_that_sizes_share_fly_once_and_the_others_as_if_alone(tmp_path)
     for name in shared:
         first, second = held["size-1"][name].stat(), held["size-2"][name].stat()
         assert first.st_mtime_ns == second.st_mtime_ns, "taken over, not flown"
-    table = by_size([weak.record, strong.record])
-    assert [line.label for line in table.lines] == ["gain:scale=0.6", "gain:scale=0.8"]
-    assert table.columns[0] == "Correct inputs"
-    assert table.lines[0].entries[0].text == table.lines[1].entries[0].text
 
 
 def test_one_audit_takes_one_size():
     with pytest.raises(UserError, match=r"several sizes: audit each with faultpath\.audits"):
-        faultpath.audit(TOY, fault="gain:scale=0.6,0.8", **ASKED)
+        faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)

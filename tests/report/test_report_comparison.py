@@ -53,6 +53,33 @@ def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
     )
 
 
+def test_sizes_of_one_fault_are_drawn_over_the_size_and_their_number_is_counted(
+    one_seed: ReportInput, browser: Browser, tmp_path: Path
+) -> None:
+    sizes = (-0.1, 0.1, 0.2)
+    three = tuple(run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1))
+    three = (*three[:2], signed(three[2], "shared", -1, adjusted_p_value=0.04))
+    assert words.headline(three).startswith("3 sizes of calibration side by side")
+    said = " ".join(words.sentences(three))
+    assert "over all 3 sizes that chance can reach 15 %" in said
+    assert "Correct inputs are the same trials at every size" in said
+    kept = next(each for each in words.sentences(three) if "p-values times 3" in each)
+    shared = titles(three)["shared"]
+    assert f"{shared}: for the baseline at −0.1 and 0.1" in kept
+    drawn = page(three)
+    panel = next(each for each in drawn.split("<figure>")[1:] if shared in each)
+    assert "size of calibration" in panel
+    assert panel.count('class="dot baseline"') == 3
+    other = (*three[:2], run(one_seed, 3, fault="calibration=0.2", seeds=(7,)))
+    assert "size of calibration" not in page(other), "not only the fault differs"
+    assert "size of" not in page(three[:2])
+    (tmp_path / "sweep.html").write_text(drawn)
+    with browser.new_context(viewport={"width": 390, "height": 800}) as context:
+        tab = context.new_page()
+        tab.goto((tmp_path / "sweep.html").as_uri())
+        assert tab.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
 def test_decided_in_opposite_directions(two: Given) -> None:
     first, second = two
     turned = (first, signed(second, "shared", 1, extreme="ceiling"))

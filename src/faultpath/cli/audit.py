@@ -42,7 +42,7 @@ def command(
         str,
         typer.Option(
             help="`calibration=+0.1`, `wind:delay=5@predictor`, `gain:scale=2,onset=20`, ...; "
-            "several sizes, as in `mass:scale=0.9,1.1`, are an audit each."
+            "several sizes, `mass:scale=0.9,1.1` or `calibration=-0.2..0.2/9`, are an audit each."
         ),
     ],
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
@@ -82,6 +82,13 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
     ] = None,
+    share: Annotated[
+        Path | None,
+        typer.Option(
+            parser=path,
+            help="Folder in which runs share trials, with --out; without it runs/.shared.",
+        ),
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option(
@@ -118,6 +125,7 @@ def command(
         margin_pp=margin,
         options=options,
         folder=out,
+        share=share,
         workers=workers,
         executor=executor,
         time_limit_s=time_limit,
@@ -125,14 +133,22 @@ def command(
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
-    status = tell(console, runs)
     if len(runs) > 1:
-        from faultpath.report.sizes import by_size
-        from faultpath.tables.terminal import drawn
+        return _tell_sweep(console, runs, out)
+    return tell(console, runs)
 
-        console.print()
-        console.print(drawn(by_size([run.record for run in runs])))
-    return status
+
+def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None) -> int:
+    """Print what was decided at each size, side by side, and write it as one page too."""
+    from faultpath.door.comparing import compare
+    from faultpath.door.sizes import sweep_page
+    from faultpath.report.comparison.page import shown
+
+    compared = compare(runs)
+    page = compared.report(sweep_page(runs, out))
+    console.print(shown(compared.runs))
+    console.print(f"Page: {page}", markup=False, soft_wrap=True)
+    return FAILED_TRIALS if any(run.failed for run in runs) else 0
 
 
 def tell(console: "SafeConsole", runs: "Sequence[Run]") -> int:

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
 from faultpath.door.display import Display, display
+from faultpath.door.ranges import each_size
 from faultpath.door.systems import LOCAL, Chosen, choose, hands
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
-from faultpath.faults.sizes import each_size
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.record import Generalise, StopRule, StopWhen
@@ -22,6 +22,9 @@ from faultpath.trials.state import system_code
 
 if TYPE_CHECKING:
     from faultpath.door.run import Run
+
+_SHARED = Path("runs") / ".shared"
+"""Where runs into folders that nobody named share trials."""
 
 _LONGEST_NAME = 180
 """Of a run folder; file systems take 255 bytes."""
@@ -51,6 +54,7 @@ def audit(
     thresholds: Sequence[float] = (),
     executor: str = LOCAL,
     factorial: bool = False,
+    share: str | PathLike[str] | None = None,
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -89,6 +93,10 @@ def audit(
             `RAY_ADDRESS` names or that runs here, else one of the call's own, or `ray:HOST:PORT`.
         after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
         factorial: Strike every subset of the modules, for main effects and interactions.
+        share: Folder in which runs into other folders find what this one flew, and this one what
+            they flew, of the same arms and scenes, by the same code, on the same machine. The
+            default is `runs/.shared` where `folder` is left out; a folder that you name is flown
+            from scratch. Only trials that this machine's worker processes flew are shared.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -138,11 +146,20 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     held = None if after is None or chosen.own else Path(after)
+    between = _shared(share, folder) if executor == LOCAL else None
     with hands(built, chosen.workers, chosen.executor) as workforce:
-        carry_out(built, asked, place, workforce, told, time_limit_s, memory_limit_gib, held)
+        carry_out(
+            built, asked, place, workforce, told, time_limit_s, memory_limit_gib, held, between
+        )
     run = Run(place, *read_run(place))
     run.report()
     return run
+
+
+def _shared(share: str | PathLike[str] | None, folder: str | PathLike[str] | None) -> Path | None:
+    if share is not None:
+        return Path(share)
+    return _SHARED if folder is None else None
 
 
 def run_folder(

@@ -34,10 +34,12 @@ def carry_out(
     time_limit_s: float | None,
     memory_limit_gib: float | None = None,
     after: Path | None = None,
+    share: Path | None = None,
 ) -> None:
     """Run, decide and write what the run folder's pages are made from.
 
-    Trials that the run in the folder `after` has of the same arms are taken over.
+    Trials that the run in the folder `after` has of the same arms are taken over, and those that
+    runs share in `share`.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
@@ -47,7 +49,7 @@ def carry_out(
         told.say(f"Computing with {system.backend}.")
     asked = audit.question
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after)
+    result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after, share)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     absent = {"factorial"} if record.factorial is None else None
@@ -68,6 +70,7 @@ def _run(
     time_limit_s: float | None,
     memory_limit_gib: float | None,
     after: Path | None,
+    share: Path | None,
 ) -> RunResult:
     with told.progress("Running") as show:
 
@@ -86,6 +89,7 @@ def _run(
                 time_limit_s=time_limit_s,
                 memory_limit_gib=memory_limit_gib,
                 after=after,
+                share=share,
                 stop=audit.stops,
             )
         except Interrupted as stop:

@@ -1,11 +1,13 @@
 """`faultpath.audits`: one audit for each size of a fault, in which no trial flies twice."""
 
+import hashlib
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit
-from faultpath.faults.sizes import each_size
+from faultpath.door.ranges import each_size
 from faultpath.trials import System
 
 if TYPE_CHECKING:
@@ -27,7 +29,8 @@ def audits(
 
     Args:
         system: As for `audit`.
-        fault: With its sizes one after the other: `gain:scale=0.8,0.9,1.1`.
+        fault: With its sizes one after the other, `gain:scale=0.8,0.9,1.1`, or in a range,
+            `calibration=-0.2..0.2/9`: nine sizes at equal distances, both ends among them.
         folder: In which each size gets a folder of its own; by default as for `audit`.
         asked: What else `audit` takes.
 
@@ -41,3 +44,12 @@ def audits(
         after = runs[0].folder if runs else None
         runs.append(audit(system, fault=text, folder=place, after=after, **asked))
     return tuple(runs)
+
+
+def sweep_page(runs: "Sequence[Run]", folder: Path | None) -> Path:
+    """Return where the page over all sizes belongs: in `folder`, else beside the runs' own."""
+    if folder is not None:
+        return folder / "sweep.html"
+    first, names = runs[0].folder, "/".join(run.folder.name for run in runs)
+    digest = hashlib.sha256(names.encode()).hexdigest()[:8]
+    return first.with_name(f"{first.name}+{len(runs) - 1}-sizes-{digest}.html")

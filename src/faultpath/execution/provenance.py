@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from faultpath.code import Code
+from faultpath.execution.machine import processor
 from faultpath.execution.runner import RunResult
 from faultpath.record.provenance import RunProvenance
 from faultpath.version import __version__
@@ -118,16 +119,6 @@ def _imported(codes: Sequence[Code]) -> dict[str, str]:
         for code in codes
         for name, found in code.state.packages.items()
     }
-
-
-def processor() -> str:
-    """Return the model of the processor, as well as the platform tells it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        lines = []
-    models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    return next(models, "") or platform.processor() or platform.machine()
 
 
 def _git(folder: Path, *arguments: str) -> str | None:

@@ -14,6 +14,7 @@ from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
 from faultpath.execution.limits import TimeLimit, memory_limit
 from faultpath.execution.looks import Looks, Stop
+from faultpath.execution.machine import processor
 from faultpath.execution.rechecks import Rechecks
 from faultpath.execution.schedule import Recheck, Schedule, Task, Unit, plan
 from faultpath.execution.standing import Progress, ProgressCallback, Standing
@@ -21,6 +22,7 @@ from faultpath.execution.worker import Brief, Order, fly, fly_here
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
+from faultpath.store.shared import SharedTrials
 from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
 from faultpath.trials.checks import library_of
@@ -101,6 +103,7 @@ def run_study(
     recheck: bool = True,
     after: Path | None = None,
     stop: Stop | None = None,
+    share: Path | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -115,7 +118,8 @@ def run_study(
     took. `memory_limit_gib` is how much a worker may take, in GiB; by default what the system says,
     or what there is. `recheck` flies a few scenes of one block again and tells what differs, see
     `RunResult.findings`; trials that do not repeat are void. What the run in the
-    folder `after` holds of the same units, flown by the same code, is taken over.
+    folder `after` holds of the same units, flown by the same code, is taken over. So is what runs
+    into other folders left in `share`, and what this one flew is left there, as far as it is sound.
     `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
     up to that look.
 
@@ -152,6 +156,12 @@ def run_study(
         with run.open(manifest, notice, shared):
             if after is not None:
                 run.take_over(RunFolder(after), [unit.key for unit in units])
+            store = _store(share, system, study)
+            if store and (lent := store.lend(run, [unit.key for unit in units])):
+                notice(
+                    f"{lent} of {len(units)} blocks were flown for other runs of the same code on "
+                    f"this machine, and are taken from {store.place}."
+                )
             schedule = _keep_finished(standing, run, notice, study.look > 0)
             report(standing.progress())
             brief = Brief(study.system, study.library, code.state, library.content_hash, memory_gib)
@@ -173,6 +183,9 @@ def run_study(
             for finding in deliveries.findings:
                 notice(finding)
             digest = run.save_tables(table, deliveries)
+            told = flying.undeclared or held.in_process or again.findings()
+            if store and not told and (sound := _sound(looks.units, standing)):
+                store.keep(run, sound, notice)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
         done = sum(run.holds_shard(unit.key) for unit in units)
@@ -190,6 +203,21 @@ def run_study(
         library_hash=library.content_hash,
         flown_again=again.flown(),
     )
+
+
+def _store(share: Path | None, system: System, study: Study) -> SharedTrials | None:
+    if share is None or study.system.is_object:
+        return None
+    return SharedTrials(share, study.system, system.backend, processor())
+
+
+def _sound(units: Iterable[Unit], standing: Standing) -> list[str]:
+    """Return the keys of the units in which no trial failed."""
+    return [
+        unit.key
+        for unit in units
+        if not any(standing.outcomes[unit.arm.key(), scene].failed for scene in unit.scenes)
+    ]
 
 
 def _keep_finished(

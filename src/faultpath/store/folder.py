@@ -4,7 +4,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -76,23 +76,23 @@ class RunFolder:
         data = encode_shard(key, shard)
         path = self.shards / f"{key}-{_digest(data)}.parquet"
         self._write(path, data)
-        for other in self._of(key):
+        for other in self.files_of(key):
             if other != path:  # the block as it was before its failed trials were tried again
                 other.unlink(missing_ok=True)
 
     def holds_shard(self, key: str) -> bool:
         """Return whether a finished block is stored."""
-        return bool(self._of(key))
+        return bool(self.files_of(key))
 
     def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
         """Return when the first and the last of some stored blocks were written, UTC."""
-        times = [path.stat().st_mtime for key in keys for path in self._of(key)]
+        times = [path.stat().st_mtime for key in keys for path in self.files_of(key)]
         return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
 
     def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Shard | None:
         """Return a finished block, or `None` without a whole one; a damaged one is removed."""
         found: list[Shard] = []
-        for path in self._of(key):
+        for path in self.files_of(key):
             try:
                 data = path.read_bytes()
                 if path.stem != f"{key}-{_digest(data)}":
@@ -112,8 +112,9 @@ class RunFolder:
         """Copy the blocks that another run has and this one has not, with the times of theirs."""
         try:
             for key in keys:
-                for shard in () if self._of(key) else other._of(key):
-                    shutil.copy2(shard, self.shards / shard.name)
+                for shard in () if self.files_of(key) else other.files_of(key):
+                    with suppress(FileNotFoundError):  # deleted since it was listed
+                        shutil.copy2(shard, self.shards / shard.name)
         except OSError as error:
             raise self._unwritable(error) from error
 
@@ -137,7 +138,8 @@ class RunFolder:
         self._write(self.outcomes, data)
         return hashlib.sha256(data).hexdigest()
 
-    def _of(self, key: str) -> list[Path]:
+    def files_of(self, key: str) -> list[Path]:
+        """Return the files of a finished block."""
         return sorted(self.shards.glob(f"{key}-*.parquet"))
 
     def _create(self) -> None:

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,6 +48,12 @@ def differing(runs: Sequence[Compared]) -> tuple[Fact, ...]:
     """Return what differs between runs: what was asked first, then what flew, then on what."""
     found = (*_asked(runs), *_flown(runs), *_made(runs))
     return tuple(fact for fact in found if len(set(fact.values)) > 1)
+
+
+def asked_alike(runs: Sequence[Compared], but_for: Collection[str]) -> bool:
+    """Return whether the runs asked the same, but for some facts by their titles."""
+    found = (fact for fact in _asked(runs) if len(set(fact.values)) > 1)
+    return all(fact.title in but_for for fact in found)
 
 
 def labels(runs: Sequence[Compared]) -> tuple[str, ...]:

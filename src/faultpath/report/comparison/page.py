@@ -11,8 +11,10 @@ from rich.text import Text
 from faultpath.report import wording
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.runs import Compared, titles
+from faultpath.report.comparison.sweep import swept
 from faultpath.report.figures.effects import EffectRow, effect_rows
 from faultpath.report.figures.multiples import Rows, multiple, shared_axis
+from faultpath.report.figures.over_sizes import over_sizes
 from faultpath.report.frame import render
 from faultpath.report.tables import decided_for
 from faultpath.tables import MISSING, Entry, Line, Table, line
@@ -74,6 +76,7 @@ def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
     found, panels = facts.differing(runs), _panels(runs)
     axis = shared_axis([rows for _, rows in panels])
+    sizes = swept(runs)
     return render(
         "comparison.html.j2",
         ("tokens.css", "svg.css", "page.css", "comparison.css"),
@@ -82,10 +85,14 @@ def page(runs: Sequence[Compared]) -> str:
         headline=words.headline(runs),
         sentences=words.sentences(runs),
         runs=runs,
-        panels=[Markup(multiple(title, rows, axis)) for title, rows in panels],
+        panels=[
+            Markup(over_sizes(title, sizes, rows, axis) if sizes else multiple(title, rows, axis))
+            for title, rows in panels
+        ],
         effects=Markup(html(effects(runs))),
         facts=Markup(html(facts.table(runs, found))) if found else "",
         same=words.same(runs),
+        sizes=sizes,
         w=wording,
     )
 

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.record.model import Effect
 from faultpath.report import wording
+from faultpath.report.comparison import sweep
 from faultpath.report.comparison.runs import Compared, joined, numbers, titles
 
 CAVEAT = (
@@ -15,7 +16,8 @@ CAVEAT = (
 def headline(runs: Sequence[Compared]) -> str:
     """Return how many audits there are, and where they are decided in opposite directions."""
     where = [title for path, title in titles(runs).items() if list(_opposite(runs, path))]
-    count = f"{len(runs)} audits side by side"
+    found = sweep.swept(runs)
+    count = f"{len(runs)} {f'sizes of {found.name}' if found else 'audits'} side by side"
     return f"{count}: decided in opposite directions on {joined(where)}" if where else count
 
 
@@ -39,7 +41,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     if not told and len({_arms(run) for run in runs}) == len(runs):
         told = ["No two of these audits compare the same arms, so none can contradict another."]
     none = ["No two audits of the same arms are decided in opposite directions on any path."]
-    return (CAVEAT, *(told or none), *_qualified(runs))
+    return (CAVEAT, *sweep.sentences(runs), *(told or none), *_qualified(runs))
 
 
 def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:
