@@ -26,7 +26,7 @@ from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal, shipped
-from faultpath.studies.claims import again
+from faultpath.studies.claims import LIMITS, TOPICS, again
 from faultpath.studies.pages import PAGES, table_4
 from faultpath.studies.run import CONCLUSIONS, plan, read_results
 from faultpath.tables import latex, markdown
@@ -125,6 +125,8 @@ def _paper(folder: Path, target: Path) -> list[str]:
             traces=Traces(_tracks(target / "reproduction.html"), asked.system.control_dt_s),
             plans=_plans(asked.system, sorted(scenes)),
             beside=shipped.beside(found.ledger),
+            topics=TOPICS,
+            limits=LIMITS,
         )
     )
     tables = found.tables

@@ -14,7 +14,7 @@ from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.inputs import ReproductionInput
-from faultpath.report.reproduction.intervals import interval_plot, plot_axis
+from faultpath.report.reproduction.intervals import Scale, Shown, interval_plot
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
 from faultpath.report.svg import number
@@ -138,12 +138,40 @@ def test_ids_are_unique_and_links_lead_somewhere(page: Page) -> None:
 def test_every_claim_opens_to_its_parts_without_a_script(html: str, page: Page) -> None:
     opened = {a["id"]: a["class"] for tag, a in page.tags if tag == "details" and a.get("id")}
     for claim in ledger().claims:
-        assert opened[claim.id] == f"claim {claim.verdict} {claim.kind}"
+        assert opened[claim.id] == f"claim {claim.verdict} {claim.kind} size-none"
         row = html.partition(f'id="{claim.id}"')[2].partition("</details>")[0]
         assert row.count('class="chip ') == 1 + len(claim.parts)
         assert row.count("<svg") == (claim.interval is not None) + sum(
             part.interval is not None for part in claim.parts
         )
+
+
+def test_claims_stand_by_topic_with_thresholds_and_notes_stand_once(
+    toy: ReproductionInput,
+) -> None:
+    found = toy.reproduction
+    note = "Said of both."
+    both = tuple(each.model_copy(update={"notes": (*each.notes, note)}) for each in found.tables)
+    other = found.ledger.model_copy(update={"platform": "second"})
+    told = replace(
+        toy,
+        reproduction=found.model_copy(update={"tables": both}),
+        topics={"Gains": ("C01", "C03"), "None of these": ("C99",)},
+        limits={"C01": ((30.0,), (5.0,)), "C02": ((1.0,),), "C03": ((0.0,), ())},
+        beside=(other,),
+    )
+    html = reproduction_page(told)
+    titles = re.findall(r'class="topic-title"[^>]*>([^<]*) <', html)
+    assert titles == ["Gains", "Other"]
+    order = re.findall(r'<details class="claim [^"]*" id="(C\d+)"', html)
+    assert order == ["C01", "C03", "C02", "C04"]
+    assert html.count('class="limit"') == 3  # C01 and its two parts; 1 of a ratio is no effect
+    assert html.count('class="other-dot"') == 7  # of every interval there is
+    text = re.sub(r"<[^>]*>", "", html)
+    assert text.count(note) == 1
+    assert html.count('href="#note-1"') == 2
+    assert "4 of 4 claims have the same answer on both" in text
+    assert all(f"<dt>{word}</dt>" in html for word in ("DCC", "DKI", "e", "e_R, e_P", "p*"))
 
 
 def test_evidence_of_a_part_is_written_out(page: Page) -> None:
@@ -215,14 +243,27 @@ def test_trials_of_other_questions_are_left_out(toy: ReproductionInput, html: st
 
 
 def test_filled_dot_leaves_out_zero_and_band_shows_what_could_not_be_detected() -> None:
-    axis = plot_axis([-20.0, 60.0])
-    detected = interval_plot("a", 5.0, (1.0, 9.0), 30.0, axis)
+    scale = Scale.of("pp", [-20.0, 60.0])
+    detected = interval_plot("a", Shown(5.0, (1.0, 9.0), least=30.0), scale)
     assert 'class="dot"' in detected
     assert "band" not in detected
-    unclear = interval_plot("a", 5.0, (-1.0, 9.0), 10.0, axis)
+    unclear = interval_plot("a", Shown(5.0, (-1.0, 9.0), least=10.0), scale)
     assert 'class="dot open"' in unclear
-    assert f'class="band" x="{number(axis(-10.0))}"' in unclear
-    assert ">0<" in interval_plot("a", 5.0, (1.0, 9.0), None, None)
+    assert f'class="band" x="{number(scale(-10.0))}"' in unclear
+    assert "limit" not in unclear
+    assert ">0<" in interval_plot("a", Shown(5.0, (1.0, 9.0)), scale, labelled=True)
+
+
+def test_of_ratios_one_is_no_effect_and_thresholds_are_drawn() -> None:
+    scale = Scale.of("times", [0.5, 0.8, 4.0])
+    lower = interval_plot("a", Shown(0.6, (0.5, 0.8), limits=(0.7,)), scale, labelled=True)
+    assert 'class="dot"' in lower
+    assert f'x1="{number(scale(0.7))}"' in lower.partition('class="limit"')[2]
+    assert scale(1.0) - scale(0.5) == pytest.approx(scale(2.0) - scale(1.0))
+    assert ">1<" in lower
+    open_ = interval_plot("a", Shown(1.1, (0.8, 1.3), limits=(1.0,)), scale)
+    assert 'class="dot open"' in open_
+    assert "limit" not in open_
 
 
 def test_sweep_draws_every_point_and_band() -> None:

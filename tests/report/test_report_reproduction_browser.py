@@ -63,6 +63,8 @@ def test_claims_are_filtered_by_verdict_and_kind(page: Page) -> None:
         shown = page.locator("details.claim:visible").evaluate_all("(all) => all.map((c) => c.id)")
         assert shown == [claim.id for claim in claims if claim.verdict == verdict]
     page.locator("#only-all").check()
+    page.locator("#size-none").check()
+    assert page.locator("details.claim:visible").count() == len(claims)
     page.locator("#kind-platform").focus()
     page.keyboard.press("Space")
     assert page.locator("details.claim:visible").count() == 1

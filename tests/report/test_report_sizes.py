@@ -105,7 +105,7 @@ def test_sizes_stand_beside_the_verdict_everywhere(toy: ReproductionInput) -> No
 def test_other_platforms_answers_stand_beside(toy: ReproductionInput) -> None:
     other = ledger().model_copy(update={"platform": "second", "claims": (sized("compatible"),)})
     text = said_in(reproduction_page(replace(toy, beside=(other,))))
-    assert text.count("platform second: confirmed, +5.0 pp [4.0, 6.0] · size: compatible") == 1
+    assert text.count("platform second: ✓ confirmed , +5.0 pp [4.0, 6.0] · size: compatible") == 1
 
 
 @pytest.mark.parametrize(

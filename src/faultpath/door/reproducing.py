@@ -18,6 +18,7 @@ from faultpath.store import traces_of, write_text
 from faultpath.store.folder import DELIVERIES
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal
+from faultpath.studies.claims import LIMITS, TOPICS
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
@@ -109,6 +110,8 @@ def _write_pages(
             if (drawn := system.floor_plan(scene)) is not None
         },
         beside=beside(found.ledger),
+        topics=TOPICS,
+        limits=LIMITS,
     )
     write_text(place / "reproduction.html", reproduction_page(source), place)
     write_text(place / "tables.tex", latex.document(found.tables), place)

@@ -1,7 +1,7 @@
 """Linear axes with round tick marks, and what every picture draws along them."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from faultpath.report.svg import Svg
@@ -69,7 +69,7 @@ def draw_uprights(svg: Svg, x: Axis, top: float, bottom: float, about: int) -> N
 
 
 def draw_interval(
-    svg: Svg, x: Axis, ends: Sequence[float], y: float, half: float, cls: str
+    svg: Svg, x: Callable[[float], float], ends: Sequence[float], y: float, half: float, cls: str
 ) -> None:
     """Draw an interval with whiskers that reach `half` to either side."""
     low, high = ends

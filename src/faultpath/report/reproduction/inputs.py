@@ -1,12 +1,13 @@
 """What the page of a reproduction is made from."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 from faultpath.interface import Interface
 from faultpath.record import DecisionRecord, Ledger, Reproduction
 from faultpath.record.provenance import RunProvenance
 from faultpath.report.inputs import Traces
+from faultpath.report.reproduction.ledger import Limits
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 
@@ -29,3 +30,7 @@ class ReproductionInput:
     """By scene id; a scene without one is left out of the gallery."""
     beside: tuple[Ledger, ...] = ()
     """What runs on other platforms answered, over the same library."""
+    topics: Mapping[str, Sequence[str]] = field(default_factory=dict[str, Sequence[str]])
+    """Titles of topics, each with the ids of its claims; claims of none stand last."""
+    limits: Limits = field(default_factory=dict[str, Sequence[Sequence[float]]])
+    """What the statements of claims are decided at."""

@@ -1,16 +1,20 @@
 """Small pictures of the intervals of claims and of their parts."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
 from faultpath.record.reproduction import ClaimVerdict, Ledger, Part
 from faultpath.report.reproduction import words
-from faultpath.report.reproduction.intervals import interval_plot, plot_axis, scale_plot
+from faultpath.report.reproduction.intervals import Scale, Shown, interval_plot, scale_plot
 
-_SHARED = "pp"
-"""The unit whose plots stand on one axis, so that they can be compared by eye."""
+_HEADED = "pp"
+"""The unit whose scale stands over the plots; of others it stands below each."""
+
+Limits = Mapping[str, Sequence[Sequence[float]]]
+"""By claim and part: what the statement is decided at, in its unit."""
+_Drawn = tuple[str, Shown, ClaimVerdict | Part]
 
 
 @dataclass(frozen=True)
@@ -22,38 +26,68 @@ class Plots:
     """Of `C01` and `C01, part 1`; what has no interval has none."""
 
 
-def ledger_plots(ledger: Ledger) -> Plots:
-    """Return a picture of every interval; all in percentage points share one axis."""
-    drawn = dict(_measured(ledger))
-    ends = [end for value, of in drawn.values() if of.unit == _SHARED for end in value]
-    ends += [end for _, of in drawn.values() if of.unit == _SHARED for end in _papers(of)]
-    axis = plot_axis(ends) if ends else None
-    plots: dict[str, Markup] = {}
-    for name, ((value, *interval), of) in drawn.items():
-        shared = axis if of.unit == _SHARED else None
-        title = f"{name}: {words.estimate(of)}"
-        plots[name] = Markup(interval_plot(title, value, interval, of.mde, shared, _papers(of)))
-    scale = None if axis is None else Markup(scale_plot(axis, "Scale in percentage points"))
+def ledger_plots(ledger: Ledger, limits: Limits, beside: Sequence[Ledger]) -> Plots:
+    """Return a picture of every interval; all of one unit share an axis.
+
+    Beside each stands that of the same statement on the first other platform.
+    """
+    other = {name: of for ledger in beside[:1] for name, of in _statements(ledger)}
+    drawn = [
+        (name, _shown(name, of, ledger, limits, other.get(name)), of)
+        for name, of in _statements(ledger)
+        if of.estimate is not None and of.interval is not None
+    ]
+    scales = {unit: _scale(unit, drawn) for unit in dict.fromkeys(of.unit for *_, of in drawn)}
+    plots = {
+        name: Markup(
+            interval_plot(
+                f"{name}: {words.estimate(of)}", shown, scales[of.unit], of.unit != _HEADED
+            )
+        )
+        for name, shown, of in drawn
+    }
+    headed = scales.get(_HEADED)
+    scale = None if headed is None else Markup(scale_plot(headed, "Scale in percentage points"))
     return Plots(scale, plots)
 
 
-def _papers(of: ClaimVerdict | Part) -> tuple[float, ...]:
-    """Return the paper's figure and the ends of its interval, as far as it prints them."""
-    shown = _deciding(of) if isinstance(of, ClaimVerdict) else of
-    return () if shown.paper is None else (shown.paper, *(shown.paper_interval or ()))
+def _scale(unit: str, drawn: Sequence[_Drawn]) -> Scale:
+    return Scale.of(unit, (end for _, shown, of in drawn if of.unit == unit for end in shown.ends))
+
+
+def _statements(ledger: Ledger) -> Iterator[tuple[str, ClaimVerdict | Part]]:
+    """Yield every claim and part under its name."""
+    for claim in ledger.claims:
+        yield claim.id, claim
+        yield from ((f"{claim.id}, part {i}", part) for i, part in enumerate(claim.parts, 1))
+
+
+def _shown(
+    name: str,
+    of: ClaimVerdict | Part,
+    ledger: Ledger,
+    limits: Limits,
+    other: ClaimVerdict | Part | None,
+) -> Shown:
+    claim = next(each for each in ledger.claims if each.id == name.partition(",")[0])
+    part = _deciding(claim) if isinstance(of, ClaimVerdict) else of
+    decided = limits.get(claim.id, ())
+    at = claim.parts.index(part)
+    theirs = other and _deciding(other) if isinstance(other, ClaimVerdict) else other
+    same = theirs is not None and theirs.words == part.words and theirs.unit == part.unit
+    there = (theirs.estimate, *theirs.interval) if same and theirs and theirs.interval else ()
+    assert of.estimate is not None
+    assert of.interval is not None
+    return Shown(
+        value=of.estimate,
+        interval=of.interval,
+        least=of.mde,
+        papers=() if part.paper is None else (part.paper, *(part.paper_interval or ())),
+        limits=decided[at] if at < len(decided) else (),
+        other=tuple(value for value in there if value is not None),
+    )
 
 
 def _deciding(claim: ClaimVerdict) -> Part:
     """Return the part whose estimate is the claim's."""
     return next(part for part in claim.parts if part.answer == claim.verdict)
-
-
-def _measured(
-    ledger: Ledger,
-) -> Iterator[tuple[str, tuple[tuple[float, float, float], ClaimVerdict | Part]]]:
-    """Yield the name of each claim and part that has an interval, with estimate and ends."""
-    for claim in ledger.claims:
-        parts = ((f"{claim.id}, part {number}", part) for number, part in enumerate(claim.parts, 1))
-        for name, of in ((claim.id, claim), *parts):
-            if of.estimate is not None and of.interval is not None:
-                yield name, ((of.estimate, *of.interval), of)

@@ -1,9 +1,11 @@
 """A reproduction as one page that opens without a network."""
 
+from collections import Counter
 from collections.abc import Mapping
 
 from markupsafe import Markup
 
+from faultpath.record.reproduction import ClaimVerdict, Reproduction
 from faultpath.report import wording
 from faultpath.report.figures.effects import effect_rows, forest
 from faultpath.report.figures.gallery import scene_view
@@ -13,6 +15,7 @@ from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
+from faultpath.report.reproduction.glossary import GLOSSARY
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.ledger import ledger_plots
 from faultpath.report.viewer import viewer_data
@@ -33,10 +36,14 @@ def reproduction_page(source: ReproductionInput) -> str:
         found=reproduction,
         ledger=reproduction.ledger,
         beside=source.beside,
-        plots=ledger_plots(reproduction.ledger),
+        plots=ledger_plots(reproduction.ledger, source.limits, source.beside),
+        topics=_topics(source),
+        sizes=Counter(map(words.state, reproduction.ledger.claims)),
+        glossary=GLOSSARY,
         tables=[
             (table, Markup(html(table, "beside", caption=False))) for table in reproduction.tables
         ],
+        footnotes=_footnotes(reproduction),
         sweeps=_sweeps(source),
         gallery=_gallery(source),
         reversal=_reversal(source, struck),
@@ -48,6 +55,25 @@ def reproduction_page(source: ReproductionInput) -> str:
         w=wording,
         words=words,
     )
+
+
+def _topics(source: ReproductionInput) -> list[tuple[str, list[ClaimVerdict]]]:
+    """Return the claims by topic; of one topic alone there is no title to give."""
+    claims = source.reproduction.ledger.claims
+    named = [
+        (title, [claim for claim in claims if claim.id in ids])
+        for title, ids in source.topics.items()
+    ]
+    known = {id for ids in source.topics.values() for id in ids}
+    rest = [claim for claim in claims if claim.id not in known]
+    return [group for group in (*named, ("Other" if known else "", rest)) if group[1]]
+
+
+def _footnotes(found: Reproduction) -> dict[str, int]:
+    """Return the notes that stand below several tables or figures, numbered as they come."""
+    every = [note for part in (*found.tables, *found.figures) for note in dict.fromkeys(part.notes)]
+    several = [note for note in dict.fromkeys(every) if every.count(note) > 1]
+    return {note: number for number, note in enumerate(several, 1)}
 
 
 def _sweeps(source: ReproductionInput) -> list[Mapping[str, object]]:

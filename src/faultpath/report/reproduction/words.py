@@ -8,6 +8,14 @@ ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
 SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
 """From the nearest to the paper's figure to the farthest."""
+STATES: dict[Size, str] = {
+    "compatible": "same",
+    "right sign, other size": "right",
+    "other size": "other",
+    "other sign": "sign",
+    "not comparable": "none",
+}
+"""Each size as a name for styles and addresses."""
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0}
 _DIFFERENCES = ("pp", "s", "m")
@@ -86,6 +94,33 @@ def size(claim: ClaimVerdict) -> str:
     if not compared:
         return worst if any(part.paper is not None for part in claim.parts) else ""
     return worst if compared == 1 else f"{worst}, {count} of {compared}"
+
+
+def state(claim: ClaimVerdict) -> str:
+    """Return the size of a claim as a word for classes and filters: `right`, `same` and so on."""
+    return STATES[farthest(claim)[0]]
+
+
+def by_size(ledger: Ledger, answer: Answer) -> dict[Size, list[ClaimVerdict]]:
+    """Return the claims that got an answer, by how large the effect is beside the paper's."""
+    claims = [claim for claim in ledger.claims if claim.verdict == answer]
+    return {
+        size: having
+        for size in STATES
+        if (having := [claim for claim in claims if farthest(claim)[0] == size])
+    }
+
+
+def beside(ledger: Ledger, other: Ledger) -> str:
+    """Say what another platform's run answered to the same claims."""
+    theirs = {claim.id: claim.verdict for claim in other.claims}
+    both = [claim for claim in ledger.claims if claim.id in theirs]
+    counts = ", ".join(f"{list(theirs.values()).count(answer)} {answer}" for answer in ANSWERS)
+    same = sum(theirs[claim.id] == claim.verdict for claim in both)
+    return (
+        f"Platform {other.platform}, beside each claim in grey: {counts}; {same} of "
+        f"{len(both)} claims have the same answer on both."
+    )
 
 
 def sizes(ledger: Ledger) -> str:

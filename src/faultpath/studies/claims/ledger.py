@@ -23,6 +23,26 @@ STATEMENTS: Mapping[str, Statements] = {
 }
 """What each claim consists of, by its id."""
 
+TOPICS: Mapping[str, tuple[str, ...]] = {
+    title: tuple(subject.CLAIMS)
+    for title, subject in (
+        ("Predictors with correct inputs", predictors),
+        ("Calibration error, and DCC against it", calibration),
+        ("Wind and its reconstruction", wind),
+        ("The same error isolated and shared", shared),
+        ("Why: errors that cancel", compensation),
+        ("When the repair pays", paying),
+        ("Other", others),
+    )
+}
+"""The claims by topic, by their ids."""
+
+LIMITS = {
+    claim: tuple(statement.limits for statement in statements)
+    for claim, statements in STATEMENTS.items()
+}
+"""By claim, what each of its statements is decided at, in the unit of its estimate."""
+
 UNMATCHED: Mapping[str, tuple[str, ...]] = {"first": ("C02", "C03")}
 """Platform claims, by platform, to whose figures it was not matched: it was frozen before."""
 
