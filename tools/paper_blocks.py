@@ -17,8 +17,7 @@ from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
 from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import read_outcomes
 from faultpath.studies import shipped
-from faultpath.studies.cells import Setting
-from faultpath.studies.flights import SYSTEM
+from faultpath.studies.cells import SYSTEM, Setting
 from faultpath.tables import Table
 from faultpath.tables.markdown import block
 

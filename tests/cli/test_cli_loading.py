@@ -26,8 +26,9 @@ MAY_LOAD = {
     "nothing to check": (["check", TOY, "--variants", "a"], {"numpy", "pyarrow", "scipy"}),
     "nothing to trace": (["trace", TOY, "--variant", "a"], {"numpy", "pyarrow", "jinja2", "scipy"}),
     "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
-    "interface": (["interface", TOY], {"jinja2", "numpy", "pyarrow"}),
-    "quadrotor": (["interface", "quadrotor"], {"jinja2", "numpy", "pyarrow", "torch"}),
+    "interface": (["interface", TOY], {"numpy", "pyarrow"}),
+    "quadrotor": (["interface", "quadrotor"], {"numpy", "pyarrow"}),
+    "claims": (["claims"], {"numpy", "pyarrow"}),
 }
 
 CODE = """

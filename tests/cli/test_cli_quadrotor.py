@@ -3,10 +3,14 @@
 import json
 
 from cli_runs import audit, faultpath
+from rich.console import Console
 
 from faultpath.door.run import open_run
+from faultpath.interface import Interface
 from faultpath.quadrotor import native
+from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.scenes.library import write_library
+from faultpath.report.terminal import interface_table
 from faultpath.trials import SystemSpec, load_system
 
 
@@ -68,3 +72,17 @@ def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
     system = load_system(SystemSpec(name="quadrotor"))
     library = system.library("mine.json")
     assert load_system(SystemSpec(name="quadrotor")).library(library.name) == library
+
+
+def test_the_interface_that_is_printed_without_torch_is_that_of_the_system():
+    built = load_system(SystemSpec(name="quadrotor"))
+    whole, quick = (_drawn(each) for each in (built.interface, quadrotor_interface()))
+    assert quick == whole
+    assert "predictor.dynamics" in quick
+
+
+def _drawn(interface: Interface) -> str:
+    console = Console(width=100)
+    with console.capture() as captured:
+        console.print(interface_table(interface))
+    return captured.get()

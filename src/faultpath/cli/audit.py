@@ -17,6 +17,7 @@ from faultpath.cli.options import (
     settings,
     sizes,
 )
+from faultpath.text import one_line
 
 if TYPE_CHECKING:
     from faultpath.door.display import SafeConsole
@@ -104,6 +105,9 @@ def command(
 
     `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
     every_seed, options = numbers(seeds, "--seeds"), settings(set_ or [])
+    # What builds a system may load for seconds; until then this is all that there is to see.
+    arms = f"{one_line(repair)} against {one_line(baseline)}"
+    typer.echo(f"Building {one_line(system)}, to fly {arms}.")
 
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.sizes import audits

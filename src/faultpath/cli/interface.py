@@ -8,6 +8,8 @@ import typer
 
 from faultpath.cli.options import SET, path, settings
 
+_QUADROTOR = "quadrotor"
+
 
 def command(
     system: Annotated[str, typer.Argument(help="`quadrotor`, or `file.py:attribute`.")],
@@ -26,7 +28,6 @@ def command(
     from faultpath.door.display import SafeConsole
     from faultpath.errors import UserError
     from faultpath.interface import Interface, interface_yaml
-    from faultpath.report.interface_drawing import draw_interface
     from faultpath.report.terminal import interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
@@ -36,12 +37,23 @@ def command(
         raise UserError(
             "--svg, --yaml and --schema write three files: give each a path of its own."
         )
-    built = load_system(SystemSpec(name=system, options=settings(set_ or [])))
+    options = settings(set_ or [])
+    if system == _QUADROTOR and not options and not places:
+        from faultpath.quadrotor.interface import quadrotor_interface
+
+        found = quadrotor_interface()  # its table needs no torch, which takes seconds to load
+    else:
+        found = load_system(SystemSpec(name=system, options=options)).interface
     console = SafeConsole()
-    console.print(interface_table(built.interface))
+    console.print(interface_table(found))
+    if not places:
+        return
+
+    from faultpath.report.interface_drawing import draw_interface
+
     for place, text in (
-        (svg, lambda: draw_interface(built.interface)),
-        (yaml, lambda: interface_yaml(built.interface)),
+        (svg, lambda: draw_interface(found)),
+        (yaml, lambda: interface_yaml(found)),
         (schema, lambda: json.dumps(Interface.model_json_schema(), indent=2) + "\n"),
     ):
         if place is not None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from faultpath.trials import Side
 
+SYSTEM = "quadrotor"
 HELD_OUT = "held-out"
 SELECTION = "selection"
 CORRECT = "correct"

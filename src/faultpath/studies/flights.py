@@ -10,12 +10,11 @@ from pathlib import Path
 
 from faultpath.execution import Progress, RunResult, run_study
 from faultpath.faults import parse_fault
-from faultpath.studies.cells import Cell, Profile, Setting
+from faultpath.studies.cells import SYSTEM, Cell, Profile, Setting
 from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
 from faultpath.work import Executor
 
-SYSTEM = "quadrotor"
 FLIGHTS = "flights"
 """Folder, inside that of a run, with one folder a setting."""
 

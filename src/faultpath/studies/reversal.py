@@ -8,7 +8,8 @@ from dataclasses import replace
 from faultpath.faults import Fault
 from faultpath.planning import struck_taps
 from faultpath.record import CORRECT, SHARED, DecisionRecord, Path, Question, decide
-from faultpath.studies.flights import SYSTEM, Leg
+from faultpath.studies.cells import SYSTEM
+from faultpath.studies.flights import Leg
 from faultpath.studies.pages import table_4
 from faultpath.trials import Deliveries, OutcomeTable, TrialRow, VariantShown, variant_shown
 

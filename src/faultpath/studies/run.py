@@ -22,9 +22,9 @@ from faultpath.store.folder import OUTCOMES
 from faultpath.store.manifest import keyed
 from faultpath.store.sealed import read_regular, unseal
 from faultpath.studies import reversal, stand_in
-from faultpath.studies.cells import HELD_OUT, PROFILES, Profile
+from faultpath.studies.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath.studies.claims import ledger
-from faultpath.studies.flights import SYSTEM, Flown, Leg, plan_legs
+from faultpath.studies.flights import Flown, Leg, plan_legs
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results

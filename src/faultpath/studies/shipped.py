@@ -4,7 +4,7 @@ from pathlib import Path
 
 from faultpath.errors import UserError
 from faultpath.record import Ledger, Reproduction
-from faultpath.studies.flights import SYSTEM
+from faultpath.studies.cells import SYSTEM
 from faultpath.trials import system_options
 
 RUNS = Path(__file__).parent / "paper" / "runs"
