@@ -10,7 +10,7 @@ from faultpath.report.svg import Point, Svg, shortened
 WIDTH = 880.0
 NAMES = 330.0
 ROW = 24.0
-TOP = 46.0
+TOP = 58.0
 RIGHT = WIDTH - 60.0
 PANEL = 240.0
 HEIGHT = 200.0
@@ -26,16 +26,17 @@ def ratios(records: Sequence[Record]) -> str:
         WIDTH,
         bottom + 8,
         "How many times as fast faultpath is",
-        "One bar a comparison; the tick on a bar's row is its target, the line at 1 is parity.",
+        "One bar a comparison; the mark on a bar's row is its target; at 1 both are as fast.",
     )
-    svg.text(0, 16, "Times as fast as the software compared with; marks are targets", "head")
+    svg.text(0, 16, "How many times as fast faultpath is as the software beside it", "head")
+    svg.text(0, TOP - 14, "1: as fast as the other; marks: targets", "small soft")
     for power in range(-1, high + 1):
         x = across(power)
         svg.line((x, TOP - 8), (x, bottom), "zero" if power == 0 else "axis")
         svg.text(x, TOP - 14, tick_label(10.0**power), "small soft", "middle")
     for i, (record, ratio) in enumerate(shown.items()):
         y = TOP + ROW * i
-        svg.text(0, y + 15, shortened(record.name, NAMES - 12, 12))
+        svg.text(0, y + 15, shortened(_named(record), NAMES - 12, 12), tip=_named(record))
         one, end = across(0.0), across(math.log10(max(ratio, 0.1)))
         look = {True: "success", False: "failed", None: "both"}[record.met]
         tip = f"{record.name}: {number(ratio)}"
@@ -49,6 +50,13 @@ def ratios(records: Sequence[Record]) -> str:
     return svg.render(standalone=True)
 
 
+def _named(record: Record) -> str:
+    """Return what is measured, with what it is compared with where its name does not say so."""
+    peer = record.peer_name
+    said = not peer or peer.split()[0].strip(",") in record.name
+    return record.name if said else f"{record.name}, {peer}"
+
+
 def _costs(record: Record) -> bool:
     """Return whether a record's ratio is one of costs, where less is better."""
     target = record.target
@@ -59,10 +67,12 @@ def scaling(curves: Sequence[Curve]) -> str:
     """Return a panel a curve, both axes logarithmic, with the line of proportional growth."""
     svg = Svg(
         WIDTH,
-        HEIGHT + 70,
-        "Time of a rollout over its size",
+        HEIGHT + 84,
+        "Time of one rollout over its size",
         "One panel a size; dots are medians, the thin line grows in proportion from the last dot.",
     )
+    note = "Both axes are logarithmic; the thin line grows in proportion to the size."
+    svg.text(0, HEIGHT + 78, note, "small soft")
     for i, curve in enumerate(curves):
         _panel(svg, curve, 40 + i * (PANEL + 50))
     return svg.render(standalone=True)
@@ -77,7 +87,7 @@ def _panel(svg: Svg, curve: Curve, left: float) -> None:
     def at(size: float, time: float) -> Point:
         return across(math.log(size)), up(math.log(time))
 
-    svg.text(left - 30, 14, f"Rollout, {curve.unit}", "head")
+    svg.text(left - 30, 14, f"Time of one rollout, {curve.unit}", "head")
     svg.line((left, bottom), (right, bottom), "axis")
     svg.line((left, 24), (left, bottom), "axis")
     for size, time in curve.points:

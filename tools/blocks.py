@@ -241,7 +241,7 @@ def duration(run: Run) -> str:
 def picture(run: Run, part: str) -> str:
     """Return the picture of a part of the run's report."""
     about = wording.typeset(run.record.verdict.headline)
-    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.png)"
+    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.svg)"
 
 
 def code(place: str, part: str) -> str:

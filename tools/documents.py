@@ -32,7 +32,7 @@ import platform_blocks
 import ray_cost
 import replayed
 from blocks import REFERENCE, ROOT, Wrong, copied, load
-from pictures import IMAGES, digest, made_from, make_images
+from pictures import IMAGES, digest, made_from, make_images, name_of
 
 from faultpath.door.saved import MADE_FROM, MAP
 from faultpath.selfcheck import Report, failures, page
@@ -136,7 +136,7 @@ def stale() -> Iterator[str]:
         yield f"{path.relative_to(ROOT)}: nothing was measured for it"
     drawn = made_from()
     for run, part in pictures():
-        name = f"{run}-{part}.png"
+        name = name_of(run, part)
         if not (IMAGES / name).is_file() or drawn.get(name) != digest(run):
             yield f"docs/images/{name}: make it with --images"
 
@@ -153,7 +153,8 @@ def write() -> None:
 
 def leftover(files: Mapping[Path, str]) -> list[Path]:
     """Return the drawn pictures that no measurement gives."""
-    return sorted(set(IMAGES.glob("*.svg")) - set(files))
+    pages = {IMAGES / name_of(*each) for each in pictures()} | {IMAGES / n for n in made_from()}
+    return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages)
 
 
 def pictures() -> list[tuple[str, str]]:

@@ -30,7 +30,7 @@ PITCH = 15.0
 """Least distance of two labels, pixels."""
 HEIGHT = 250.0
 BOTTOM = HEIGHT + 40.0
-LABELS = 130.0
+LABELS = 160.0
 """Room for the labels to the right of a panel."""
 _LEADER = 18.0
 

@@ -41,8 +41,8 @@ def horizon(quality: Quality) -> str:
     panels = [
         Panel(title, "time ahead, s", ticks, _curves(rows_of(quality, pool), points), dots=False)
         for title, pool in (
-            ("Still air: median position error, m", "nominal"),
-            ("Wind: median position error, m", "wind"),
+            ("Still air: median distance, predicted to flown position, m", "nominal"),
+            ("Wind: median distance, predicted to flown position, m", "wind"),
         )
     ]
     return _pair(_same_height(panels), "Position error over the prediction horizon")
@@ -54,8 +54,8 @@ def calibration(pool: str, quality: Quality) -> str:
         quality,
         rows_of(quality, pool),
         {
-            "Median of the 20-step position error, m": "median_m",
-            "90th percentile of the 20-step position error, m": "p90_m",
+            "Predicted to flown position after 20 steps, median, m": "median_m",
+            "Predicted to flown position, 90th percentile, m": "p90_m",
         },
     )
     return _pair(_same_height(panels), f"Position error under calibration error, {pool} pool")
@@ -67,8 +67,8 @@ def reconstruction(quality: Quality) -> str:
         quality,
         quality.reconstructions,
         {
-            "Error of the wind (RMSE), m/s": "rmse_mps",
-            "Mean shift of the vertical wind, m/s": "vertical_shift_mps",
+            "Reconstructed minus true wind, RMS, m/s": "rmse_mps",
+            "Reconstructed minus true vertical wind, mean, m/s": "vertical_shift_mps",
         },
     )
     return _pair(panels, "Reconstructed wind under calibration error")
@@ -82,7 +82,7 @@ def levels(quality: Quality) -> str:
         return [(speeds[name], error) for name, error in score.by_level.items()]
 
     panel = Panel(
-        "Error of the reconstructed wind (RMSE), m/s",
+        "Reconstructed minus true wind, RMS, m/s",
         "wind level, and its mean wind in m/s",
         [(speed, f"{name}: {speed:g}") for name, speed in speeds.items()],
         _curves(quality.reconstructions, points),
@@ -109,7 +109,7 @@ def clearance(quality: Quality) -> str | None:
         if part["absolute_m"] is not None
     ]
     error = Axis(0.0, 1.05 * max(errors, default=1.0), 430, WIDTH - 12)
-    svg.text(340, 14, "Absolute error, m", "head")
+    svg.text(340, 14, "Estimated minus true clearance, absolute, m", "head")
     _frame(svg, error)
     _whiskers(svg, error, "by distance", by_range, 48)
     _whiskers(svg, error, "by visibility", found["by_visibility"], 48 + 20 * (len(by_range) + 1.4))
@@ -119,7 +119,7 @@ def clearance(quality: Quality) -> str | None:
 def _diagonal(svg: Svg, across: Axis, rows: Sequence[Mapping[str, Any]]) -> None:
     """Draw the quantiles of the estimate over the truth: 5 to 95 %, 25 to 75 %, and the median."""
     up = Axis(across.low, across.high, HEIGHT, 36.0)
-    svg.text(4, 14, "Estimated clearance, m", "head")
+    svg.text(4, 14, "Estimated over true clearance, m", "head")
     for tick in across.ticks(5):
         cls = "axis" if tick else "zero"
         svg.line((across.start, up(tick)), (across.end, up(tick)), cls)

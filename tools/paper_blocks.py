@@ -120,7 +120,7 @@ def _frozen(_: Reproduction, origin: RunProvenance) -> str:
 def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
     """Return the picture of a part of the report, by its place in the page."""
     titles = {each.name: each.title for each in (*found.tables, *found.figures)}
-    return f"![{titles.get(part, part)}]({{images}}/paper-{part}.png)"
+    return f"![{titles.get(part, part)}]({{images}}/paper-{part}.svg)"
 
 
 def _origin(found: Reproduction, origin: RunProvenance) -> str:

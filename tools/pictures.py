@@ -2,16 +2,37 @@
 
 import hashlib
 import json
+import re
 import shutil
-from collections.abc import Mapping, Sequence
+from base64 import b64encode
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from blocks import PARTS, REFERENCE, ROOT, Wrong
 from paper_blocks import present
 
-MARGIN = 12.0
+from faultpath.report.svg import template
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+MARGIN, TITLE = 12.0, 26.0
+SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
 IMAGES = ROOT / "docs" / "images"
 MADE_FROM = IMAGES / "made-from.json"
+_SMALL = """async (png) => {
+  const picture = new Image();
+  picture.src = "data:image/png;base64," + png;
+  await picture.decode();
+  const canvas = document.createElement("canvas");
+  canvas.width = picture.width;
+  canvas.height = picture.height;
+  canvas.getContext("2d").drawImage(picture, 0, 0);
+  return canvas.toDataURL("image/webp", 0.8);
+}"""
+"""Makes a screenshot a tenth of its size."""
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
 
 
@@ -32,6 +53,11 @@ def made_from() -> dict[str, str]:
     return json.loads(MADE_FROM.read_text("utf-8")) if MADE_FROM.is_file() else {}
 
 
+def name_of(run: str, part: str) -> str:
+    """Return the file name of a picture."""
+    return f"{run}-{part}.svg"
+
+
 def make_images(pictures: Sequence[tuple[str, str]]) -> None:
     """Make every picture that documents show, and drop those that they no longer do."""
     from playwright.sync_api import sync_playwright
@@ -44,33 +70,93 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found, args=ARGUMENTS)
         for run, part in pictures:
-            context = browser.new_context(
-                viewport={"width": 1080, "height": 900},
-                color_scheme="light",
-                reduced_motion="reduce",
-                offline=True,
-                device_scale_factor=2,
-                bypass_csp=True,  # the page's policy refuses the style that is added below
-            )
-            page = context.new_page()
-            page.goto(report(run).as_uri())
-            # What stays at the window's edge would lie across the picture.
-            page.add_style_tag(content=".contents { position: static }")
-            wanted = PARTS[part][1] if part in PARTS else f"#{part}"
+            (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
+            made[name_of(run, part)] = digest(run)
+        browser.close()
+    for old in made_from().keys() - made.keys():
+        (IMAGES / old).unlink(missing_ok=True)
+    MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
+
+
+def picture(browser: "Browser", run: str, part: str) -> str:
+    """Return a part of a run's page as one SVG that is light or dark as its reader has it.
+
+    A part that is one drawing stays one, with its title above; any other is taken twice, as a page
+    shows it in the light and in the dark.
+    """
+    wanted = PARTS[part][1] if part in PARTS else f"#{part}"
+    with _opened(browser, run, "light") as page:
+        drawings = page.query_selector_all(f":is({wanted}) svg.fig:visible, svg.fig:is({wanted})")
+        texts = page.query_selector_all(f":is({wanted}) p:visible, p:is({wanted})")
+        if len(drawings) == 1 and (part.startswith("figure") or not texts):
+            return standing(drawings[0].evaluate("e => new XMLSerializer().serializeToString(e)"))
+    taken: list[str] = []
+    size = (0.0, 0.0)
+    for scheme in SCHEMES:
+        with _opened(browser, run, scheme) as page:
             boxes = [each.bounding_box() for each in page.query_selector_all(wanted)]
             areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
             clip = _around(areas, 0.0 if run == "paper" else MARGIN)
-            name = f"{run}-{part}.png"
-            page.screenshot(path=IMAGES / name, full_page=True, clip=clip)
-            made[name] = digest(run)
-            context.close()
-        browser.close()
-    for old in IMAGES.glob("*.png"):
-        if old.name not in made:
-            old.unlink()
-    MADE_FROM.write_text(json.dumps(made, indent=2, sort_keys=True) + "\n", "utf-8")
+            shot = b64encode(page.screenshot(full_page=True, clip=clip)).decode()
+            taken.append(page.evaluate(_SMALL, shot))
+            size = clip["width"], clip["height"]
+    return twice(size, *taken)
+
+
+@contextmanager
+def _opened(browser: "Browser", run: str, scheme: Literal["light", "dark"]) -> "Iterator[Page]":
+    context = browser.new_context(
+        viewport={"width": 1080, "height": 900},
+        color_scheme=scheme,
+        reduced_motion="reduce",
+        offline=True,
+        device_scale_factor=2,
+        bypass_csp=True,  # the page's policy refuses the style that is added below
+    )
+    page = context.new_page()
+    page.goto(report(run).as_uri())
+    # What stays at the window's edge would lie across the picture.
+    page.add_style_tag(content=".contents { position: static }")
+    yield page
+    context.close()
+
+
+def standing(drawing: str) -> str:
+    """Return a drawing of a page as a file of its own: its title above it, colours inside."""
+    found = re.search(r'viewBox="([^"]*)"', drawing)
+    title = re.search(r"<title[^>]*>([^<]*)</title>", drawing)
+    if found is None or title is None:
+        raise Wrong("a drawing without a title or a size")
+    left, top, width, height = map(float, found[1].split())
+    around = left - MARGIN, top - MARGIN - TITLE, width + 2 * MARGIN, height + 2 * MARGIN + TITLE
+    head, _, rest = drawing.partition(">")
+    head = re.sub(r'viewBox="[^"]*"', f'viewBox="{" ".join(f"{n:g}" for n in around)}"', head)
+    head = re.sub(r'( width| height)="[^"]*"', "", head)
+    head += f' width="{around[2]:g}" height="{around[3]:g}">'
+    own = [line for line in template("reproduction.css").splitlines() if line.startswith(".fig")]
+    css = "".join((template("tokens.css"), template("svg.css"), *own))
+    ground = '<rect class="paper" x="{:g}" y="{:g}" width="{:g}" height="{:g}"/>'.format(*around)
+    said = f'<text class="head" x="{left:g}" y="{top - TITLE + 12:g}">{title[1]}</text>'
+    return f"{head}<style>{css}</style>{ground}{said}{rest}\n"
+
+
+def twice(size: tuple[float, float], light: str, dark: str) -> str:
+    """Return two pictures, given as data addresses, of which a reader sees the fitting one."""
+    box = 'width="{:g}" height="{:g}"'.format(*size)
+    shown = (
+        f'<image class="{scheme}" {box} href="{data}"/>'
+        for scheme, data in (("light", light), ("dark", dark))
+    )
+    css = (
+        ".dark { display: none } @media (prefers-color-scheme: dark) "
+        "{ .dark { display: inline } .light { display: none } }"
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" {box} viewBox="0 0 {size[0]:g} {size[1]:g}">'
+        f"<style>{css}</style>{''.join(shown)}</svg>\n"
+    )
 
 
 def _around(areas: Sequence[Mapping[str, float]], margin: float) -> dict[str, float]:

@@ -9,7 +9,7 @@ from faultpath.report import wording
 from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
 from faultpath.report.svg import Svg, number, shortened
 
-_SIDE, _LEFT, _TOP = 420.0, 64.0, 58.0
+_SIDE, _LEFT, _TITLE, _TOP = 420.0, 64.0, 26.0, 84.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 """From which difference on, pp, an area has which opacity."""
 
@@ -17,7 +17,10 @@ _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 def map_picture(record: MapRecord) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
     asked = record.question
-    svg = Svg(_LEFT + _SIDE + 92, _TOP + _SIDE + 48, _title(record), record.headline)
+    width = _LEFT + _SIDE + 92
+    svg = Svg(width, _TOP + _SIDE + 48, _title(record), record.headline)
+    title = f"Who succeeds more often, {asked.repair} or {asked.baseline}, at each pair of errors"
+    svg.text(0, 13, shortened(title, width, 13), "head", tip=title)
     x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + _SIDE)
     y = Axis(-asked.up_to, asked.up_to, _TOP + _SIDE, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
@@ -120,29 +123,38 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
         ((f"{asked.repair} ahead", "repair-only"), (f"{asked.baseline} ahead", "baseline-only"))
     ):
         left = column * width
-        svg.path(f"M{number(left)} 2h22v11h-22Z", side, fill_opacity=_SHADES[1][1])
+        svg.path(
+            f"M{number(left)} {number(_TITLE + 2)}h22v11h-22Z", side, fill_opacity=_SHADES[1][1]
+        )
         if column:
-            svg.path(f"M{number(left)} 2h22v11h-22Z", "", fill=hatch, fill_opacity="0.5")
-        svg.text(left + 30, 12, shortened(name, width - 40, 12), tip=name)
-    svg.path("M0 22h22v11h-22Z", "inner")
-    svg.text(30, 32, "not decided")
-    svg.line((width, 28), (width + 22, 28), "range")
-    svg.text(width + 30, 32, "estimate of no difference")
+            svg.path(
+                f"M{number(left)} {number(_TITLE + 2)}h22v11h-22Z",
+                "",
+                fill=hatch,
+                fill_opacity="0.5",
+            )
+        svg.text(left + 30, _TITLE + 12, shortened(name, width - 40, 12), tip=name)
+    svg.path(f"M0 {number(_TITLE + 22)}h22v11h-22Z", "inner")
+    svg.text(30, _TITLE + 32, "not decided")
+    svg.line((width, _TITLE + 28), (width + 22, _TITLE + 28), "range")
+    svg.text(width + 30, _TITLE + 32, "estimate of no difference")
 
 
 def correlation_picture(record: MapRecord) -> Svg:
     """Return the expected difference over the correlation, in an arm's colour where decided."""
     joint, asked = record.joint, record.question
     told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
-    svg = Svg(576, 270, f"Expected difference over the correlation, {asked.system}", told)
+    svg = Svg(576, 296, f"Expected difference over the correlation, {asked.system}", told)
     x = Axis(-1.0, 1.0, 40, 566)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
-    y = vertical.at(222, 26)
-    svg.text(0, 12, f"{asked.repair} minus {asked.baseline}, pp", "small soft")
+    y = vertical.at(248, 52)
+    title = f"Success of {asked.repair} minus success of {asked.baseline} as the errors go together"
+    svg.text(0, 13, shortened(title, 576, 13), "head", tip=title)
+    svg.text(0, 36, "expected difference, pp", "small soft")
     draw_levels(svg, x, y, 5, zero="zero")
     for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
         draw_tick(svg, x, y, tick, tick_label(tick))
-    svg.text(x(0.0), 258, "correlation of the two errors", "small soft", "middle")
+    svg.text(x(0.0), 284, "correlation of the two errors", "small soft", "middle")
     upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
     lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
     svg.polygon([*upper, *reversed(lower)], "fan")

@@ -1,0 +1,81 @@
+"""Pictures of documents: light or dark as their reader has it, and no label reaches out of them."""
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import ModuleType
+from xml.etree import ElementTree
+
+import pytest
+
+from faultpath.door.mapped import read_map
+from faultpath.report.figures.plane import correlation_picture, map_picture
+from faultpath.report.svg import text_width
+
+ROOT = Path(__file__).resolve().parents[2]
+SVG = "{http://www.w3.org/2000/svg}"
+DARK = "@media screen and (prefers-color-scheme: dark)"
+
+
+@pytest.fixture
+def tools(monkeypatch: pytest.MonkeyPatch) -> Iterator[Mapping[str, ModuleType]]:
+    for place in (ROOT, ROOT / "tools"):
+        monkeypatch.syspath_prepend(str(place))
+    import learning_blocks
+    import pictures
+
+    import benchmarks.page
+
+    yield {"learning": learning_blocks, "pictures": pictures, "speed": benchmarks.page}
+    for name in ("learning_blocks", "learning_figures", "learning_curves", "pictures"):
+        sys.modules.pop(name, None)
+
+
+def drawn(tools: Mapping[str, ModuleType]) -> dict[str, str]:
+    """The pictures that follow from numbers, by name."""
+    files = tools["learning"].pictures() | tools["speed"].files()
+    record = read_map(ROOT / "docs" / "reference" / "map-toy").record
+    maps = {"map.svg": map_picture(record), "correlation.svg": correlation_picture(record)}
+    return {path.name: text for path, text in files.items()} | {
+        name: svg.render(standalone=True) for name, svg in maps.items()
+    }
+
+
+def test_labels_fit_and_colours_follow_the_reader(tools: Mapping[str, ModuleType]) -> None:
+    found = drawn(tools)
+    assert len(found) > 8
+    for name, text in found.items():
+        assert DARK in text, name
+        root = ElementTree.fromstring(text)
+        left, _, width, _ = map(float, root.attrib["viewBox"].split())
+        assert root.find(f".//{SVG}text[@class='head']") is not None, f"{name} has no title"
+        for label in root.iter(f"{SVG}text"):
+            words, at = label.text or "", float(label.attrib["x"])
+            size = 11 if "small" in label.get("class", "") else 12
+            long = text_width(words, size)
+            share = {"middle": 0.5, "end": 1.0}.get(label.get("text-anchor", ""), 0.0)
+            assert at - share * long >= left - 1, f"{name}: {words}"
+            assert at + (1 - share) * long <= left + width + 1, f"{name}: {words}"
+
+
+def test_a_chart_of_ratios_says_what_one_means(tools: Mapping[str, ModuleType]) -> None:
+    assert "1: as fast as the other" in drawn(tools)["performance.svg"]
+
+
+def test_a_drawing_of_a_page_stands_alone_under_its_title(
+    tools: Mapping[str, ModuleType],
+) -> None:
+    page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
+    drawing = re.search(r"<svg[^>]*>(?:(?!</svg>).)*success, %.*?</svg>", page, re.DOTALL)
+    assert drawing is not None
+    text = tools["pictures"].standing(drawing[0])
+    root = ElementTree.fromstring(text)
+    (title,) = (each for each in root.iter(f"{SVG}text") if each.get("class") == "head")
+    assert title.text == root.findtext(f"{SVG}title")
+    assert DARK in text
+    both = tools["pictures"].twice((20.0, 10.0), "data:light", "data:dark")
+    assert [each.get("href") for each in ElementTree.fromstring(both).iter(f"{SVG}image")] == [
+        "data:light",
+        "data:dark",
+    ]
