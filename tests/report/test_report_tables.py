@@ -140,6 +140,12 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
         assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
     for cell in record.cells:
         assert f"{cell.success_percent:.1f}" in text
+    assert "What would change this" not in text
+    with console.capture() as captured:
+        console.print(decision(record, details=True))
+    whole = " ".join(captured.get().split())
+    assert all(" ".join(said.split()) in whole for said in record.verdict.sentences)
+    assert "What would change this" in whole
 
 
 RECORDS = sorted((Path(__file__).parents[2] / "docs" / "reference").glob("*/record.json"))

@@ -79,6 +79,12 @@ def command(
             "points ends it too."
         ),
     ] = None,
+    details: Annotated[
+        bool,
+        typer.Option(
+            "--details", help="Print every sentence of the record too, and what would change it."
+        ),
+    ] = False,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
@@ -106,8 +112,8 @@ def command(
     `faultpath audit --study FILE` carries out what `faultpath plan` wrote instead."""
     every_seed, options = numbers(seeds, "--seeds"), settings(set_ or [])
     # What builds a system may load for seconds; until then this is all that there is to see.
-    arms = f"{one_line(repair)} against {one_line(baseline)}"
-    typer.echo(f"Building {one_line(system)}, to fly {arms}.")
+    arms = f"{one_line(repair)} with {one_line(baseline)}"
+    typer.echo(f"Building {one_line(system)}, to compare {arms}.")
 
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.sizes import audits
@@ -139,7 +145,7 @@ def command(
 
     if len(runs) > 1:
         return _tell_sweep(console, runs, out)
-    return tell(console, runs)
+    return tell(console, runs, details)
 
 
 def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None) -> int:
@@ -155,13 +161,13 @@ def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None)
     return FAILED_TRIALS if any(run.failed for run in runs) else 0
 
 
-def tell(console: "SafeConsole", runs: "Sequence[Run]") -> int:
+def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -> int:
     """Print what was decided in each run, and return the status of the command."""
     from faultpath.report.terminal import decision
 
     for run in runs:
         if len(runs) > 1:
             console.print(f"\nFault {run.record.question.fault}", markup=False)
-        console.print(decision(run.record))
+        console.print(decision(run.record, details))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FAILED_TRIALS if any(run.failed for run in runs) else 0

@@ -159,8 +159,8 @@ def run_study(
             store = _store(share, system, study)
             if store and (lent := store.lend(run, [unit.key for unit in units])):
                 notice(
-                    f"{lent} of {len(units)} blocks were flown for other runs of the same code on "
-                    f"this machine, and are taken from {store.place}."
+                    f"{lent} of {len(units)} blocks are those of other runs, of the same code on "
+                    f"this machine, taken from {store.place}."
                 )
             schedule = _keep_finished(standing, run, notice, study.look > 0)
             report(standing.progress())

@@ -15,23 +15,29 @@ from faultpath.tables.terminal import Parted, drawn
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
-def decision(record: DecisionRecord) -> RenderableType:
-    """Return the decision record as text and tables: verdict, effects, what would change it."""
+def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
+    """Return the decision record as text and tables: verdict, success, effects, findings.
+
+    `details` adds every sentence of the record, and what would change it.
+    """
     asked = record.question
     void = any(effect.void_pairs for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_path(record, names, f"{asked.repair} minus {asked.baseline}")
-    parts: list[RenderableType] = [Text(record.verdict.headline, style="bold"), Text("")]
-    parts += [Text(sentence) for sentence in record.verdict.sentences]
-    parts += _list("Found in the run", record.findings, "bold red")
+    parts: list[RenderableType] = [Text(record.verdict.headline, style="bold")]
+    if record.stopping:
+        parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     told = by_threshold(record)
     factors = by_factors(record)
     for table in filter(None, (told, factors)):
         parts += [Text(""), drawn(table)]
     parts += [Text(note) for note in factors.notes] if factors else []
-    parts += _list("What would change this", record.verdict.would_change, "bold")
+    parts += _list("Found in the run", record.findings, "bold red")
+    if details:
+        parts += [Text(""), *map(Text, record.verdict.sentences)]
+        parts += _list("What would change this", record.verdict.would_change, "bold")
     return Group(*parts)
 
 
