@@ -14,7 +14,7 @@ exclude_patterns = ["reference/*/*", "reference/paper/*/*"]
 # Anchors as the forge makes them.
 myst_heading_anchors = 4
 
-autodoc_default_options = {"member-order": "bysource", "show-inheritance": True}
+autodoc_default_options = {"member-order": "bysource", "exclude-members": "model_config"}
 toc_object_entries_show_parents = "hide"
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True

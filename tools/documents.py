@@ -25,6 +25,7 @@ from typing import Any
 import beside_blocks
 import blocks
 import drift_blocks
+import fault_pictures
 import learning_blocks
 import map_blocks
 import paper_blocks
@@ -49,6 +50,7 @@ KINDS: Mapping[str, Any] = {
     "learning": learning_blocks.KIND,
     "map": map_blocks.KIND,
     "beside": beside_blocks.KIND,
+    "faults": fault_pictures.KIND,
     "paper": paper_blocks.KIND,
     "performance": performance.KIND,
     "platform": platform_blocks.fill,
@@ -73,6 +75,7 @@ def statistics_check() -> Mapping[Path, str]:
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     statistics_check,
     drift_blocks.pictures,
+    fault_pictures.pictures,
     learning_blocks.pictures,
     map_blocks.pictures,
     performance.files,

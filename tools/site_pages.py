@@ -34,8 +34,14 @@ def executed(path: Path) -> nbformat.NotebookNode:
     notebook: nbformat.NotebookNode = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "examples").symlink_to(ROOT / "examples")
-        resources = {"metadata": {"path": folder}}
-        NotebookClient(notebook, timeout=300, resources=resources).execute()
+        client = NotebookClient(
+            notebook,
+            timeout=300,
+            resources={"metadata": {"path": folder}},
+            extra_arguments=["--log-level=ERROR"],
+        )
+        client.log.setLevel("WARNING")
+        client.execute()
     return notebook
 
 
@@ -129,8 +135,10 @@ MARKUP = re.compile(r"([*|])|(_)(?!\w)")
 
 def plain(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
     """Make reStructuredText of a docstring: it is plain text in which `code` has one backtick."""
-    del app, what, name, thing, options
+    del app, name, thing, options
     lines[:] = "".join(_restructured("\n".join(lines))).split("\n")
+    if what in ("attribute", "property"):
+        lines.insert(0, "")  # else napoleon takes what stands before a colon for a type
 
 
 def _restructured(text: str) -> Iterator[str]:

@@ -1,8 +1,10 @@
 """The site builds without a warning, leads nowhere that is not there, and fetches nothing."""
 
+import ast
 import re
 import subprocess
 import sys
+import textwrap
 from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
@@ -51,6 +53,34 @@ def broken(site: Path) -> Iterator[tuple[str, str]]:
                 yield page.relative_to(site).as_posix(), to
 
 
+def imported(source: str) -> set[tuple[str, str]]:
+    """Return what a program imports from faultpath, as module and name."""
+    nodes = (node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom))
+    ours = (node for node in nodes if (node.module or "").partition(".")[0] == "faultpath")
+    return {(str(node.module), alias.name) for node in ours for alias in node.names}
+
+
+def test_the_api_lists_what_the_guides_import() -> None:
+    pages = "".join(page.read_text("utf-8") for page in (ROOT / "docs" / "api").glob("*.md"))
+    listed = {
+        (module, name)
+        for module, names in re.findall(r"automodule:: (\S+)\n   :members: (.+)", pages)
+        for name in names.split(", ")
+    }
+    guides = [page.read_text("utf-8") for page in (ROOT / "docs").glob("*.md")]
+    programs = [
+        *(
+            block
+            for guide in guides
+            for block in re.findall(r"^```python.*\n([^`]+)^```", guide, re.M)
+        ),
+        *(example.read_text("utf-8") for example in (ROOT / "examples").glob("*.py")),
+    ]
+    assert len(programs) > 30
+    wanted = set().union(*(imported(textwrap.dedent(program)) for program in programs))
+    assert wanted - listed - {("faultpath.errors", "UserError")} == set()
+
+
 @pytest.mark.slow
 def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     built = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", tmp_path / "trees"]
@@ -59,6 +89,9 @@ def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     assert list(fetched(site)) == []
     assert list(broken(site)) == []
+    for notebook in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
+        shown = (site / "notebooks" / f"{notebook.stem}.html").read_text("utf-8")
+        assert 'class="highlight-text' in shown, f"{notebook.name} printed nothing"
 
 
 def test_what_is_fetched_or_missing_is_found(tmp_path: Path) -> None:
