@@ -24,7 +24,7 @@ html_theme = "furo"
 html_title = "faultpath"
 html_static_path = ["site"]
 html_css_files = ["site.css"]
-html_use_index = False
+html_use_index = html_domain_indices = False
 html_show_sphinx = html_show_copyright = html_copy_source = False
 # The reader's own fonts: the site fetches nothing.
 html_theme_options = {"top_of_page_buttons": []}

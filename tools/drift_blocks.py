@@ -107,7 +107,7 @@ def origin() -> str:
         f"Bold is decided: interval and test agree, and it stands after Holm's correction for the "
         f"{hypotheses} contrasts of its law. Intervals are for new scenes like these, for these "
         f"trained models. {flown_by(made, asked.system, asked.options)} The constant error is that "
-        f"of the [main job](../README.md), corrected in its own family."
+        f"of the [main job](quadrotor.md), corrected in its own family."
     )
 
 

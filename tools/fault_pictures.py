@@ -160,14 +160,13 @@ def table(*kinds: str) -> str:
     unknown = set(kinds) - set(INTERVENTIONS)
     if unknown:
         raise Wrong(f"there is no kind {', '.join(sorted(unknown))} of fault")
-    rows = ["| kind | what it does to a signal | example | in words |", "|---|---|---|---|"]
+    rows = ["| what it does to a signal | example | in words |", "|---|---|---|"]
     for kind in kinds:
         words = re.split(r"\n\s*\n", (INTERVENTIONS[kind].__doc__ or "").strip())[0]
         shown = SHOWN[kind]
         cells = (
-            f"`{kind}`",
             f"![{kind}]({{images}}/{name(kind)})",
-            f"`{shown}`" if isinstance(shown, str) else "from Python",
+            f"`{shown}`" if isinstance(shown, str) else f"`{kind}`, from Python",
             " ".join(words.split()),
         )
         rows.append(f"| {' | '.join(cells)} |")

@@ -53,7 +53,8 @@ def as_markdown(notebook: nbformat.NotebookNode) -> str:
             parts.append(cell.source)
             continue
         parts.append(_fence("python", cell.source))
-        parts += [_output(output) for output in cell.outputs]
+        said = (each for each in cell.outputs if each.get("name") != "stderr")
+        parts += [_output(output) for output in said]
     return "\n\n".join(parts) + "\n"
 
 

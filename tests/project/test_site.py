@@ -12,6 +12,8 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 
+from faultpath.faults import INTERVENTIONS
+
 ROOT = Path(__file__).resolve().parents[2]
 FETCHED = {"img", "script", "source", "iframe", "video", "audio", "embed", "object", "link"}
 OUTWARD = re.compile(r"(?:url\(|@import)\s*['\"]?(?:https?:)?//")
@@ -79,6 +81,11 @@ def test_the_api_lists_what_the_guides_import() -> None:
     assert len(programs) > 30
     wanted = set().union(*(imported(textwrap.dedent(program)) for program in programs))
     assert wanted - listed - {("faultpath.errors", "UserError")} == set()
+
+
+def test_every_kind_of_fault_has_its_picture() -> None:
+    page = (ROOT / "docs" / "faults.md").read_text("utf-8")
+    assert set(re.findall(r"!\[(\w+)\]", page)) == set(INTERVENTIONS)
 
 
 @pytest.mark.slow
