@@ -1,7 +1,7 @@
-"""Builds the compiled kernels with the package, where that is asked for and there is a C++ compiler.
+"""Builds the compiled kernels with the package, where that is asked for.
 
-`HATCH_BUILD_HOOK_ENABLE_CUSTOM=true` asks for it, and `make` does; whoever installs the engine alone gets a
-pure wheel, for which nothing runs.
+`HATCH_BUILD_HOOK_ENABLE_CUSTOM=true` asks for it, and `make` does. Whoever installs the engine
+alone gets a pure wheel, for which nothing runs.
 
 One source is compiled once for each instruction set; which of them runs is chosen when the kernels
 are loaded. They link to neither Python nor torch, so one wheel serves every Python. Without a
