@@ -54,6 +54,14 @@ def run(toy_run: Path, tmp_path: Path) -> Path:
     return Path(shutil.copytree(toy_run, tmp_path / "run"))
 
 
+def test_json_is_the_record_and_nothing_else_on_the_standard_output(run, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    ended = audit("--json", scenes=100, out=run, system="examples/toy.py:create")
+    assert ended.status == 0
+    (told,) = json.loads(ended.out)
+    assert told == {"folder": str(run), "record": json.loads((run / "record.json").read_text())}
+
+
 def _again(folder: Path, **options: object):
     return audit(scenes=100, out=folder, system="examples/toy.py:create", **options)
 

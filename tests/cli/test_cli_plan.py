@@ -1,6 +1,7 @@
 """`faultpath plan` and `faultpath audit --study` from end to end."""
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -30,8 +31,10 @@ def plan(*more: object, **changes: object) -> Ended:
 def test_a_plan_is_told_written_flown_and_resumed() -> None:
     ended = plan("--fault", "slope:offset=0.2")
     assert ended.status == 0
-    assert "gain_estimate comes first: 2 consumers, more than any other" in ended.out
+    assert "gain_estimate comes first: 2 consumers, as speedometer, and a probe" in ended.out
     assert "output of observer" in ended.out
+    responses = ended.out.partition("Probe responses")[2].partition("Median")[0]
+    assert re.search(r"\nshared +0\.\d+ +0\.\d+", responses)
     assert "Written: study.yaml" in ended.out
     assert [each.name for each in read_study(Path("study.yaml")).audits] == [
         "gain_estimate",
@@ -43,9 +46,12 @@ def test_a_plan_is_told_written_flown_and_resumed() -> None:
     assert "Fault slope:offset=0.2" in flown.out
     before = {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")}
     assert len(shards(Path("runs/gain_estimate"))) > 0
-    again = faultpath("audit", "--study=study.yaml", "--workers", 0, "--out", "runs")
+    again = faultpath("audit", "--study=study.yaml", "--workers", 0, "--out", "runs", "--json")
     assert again.status == 0
-    assert "Kept" in again.out
+    assert "Kept" in again.err
+    for each, name in zip(json.loads(again.out), ("gain_estimate", "observed_slope"), strict=True):
+        assert each["folder"] == f"runs/{name}"
+        assert each["record"] == json.loads(Path("runs", name, "record.json").read_text())
     assert {path: path.stat().st_mtime_ns for path in Path("runs").rglob("shards/*")} == before
 
 

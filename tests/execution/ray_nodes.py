@@ -13,7 +13,9 @@ _PORTS = (
     "metrics_export_port",
     "runtime_env_agent_port",
 )
-SMALL = {"num_cpus": 1, "object_store_memory": 100 * 2**20, "include_dashboard": False}
+_WITHOUT = {"include_dashboard": False, "include_log_monitor": False, "no_monitor": True}
+"""Processes that nobody needs here, and that take their time to start."""
+SMALL = {"num_cpus": 1, "object_store_memory": 100 * 2**20} | _WITHOUT
 
 
 def node() -> dict[str, object]:

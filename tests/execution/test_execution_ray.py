@@ -2,16 +2,21 @@
 
 import os
 import re
+import signal
+import subprocess
+import sys
 import time
 from collections import Counter
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
 import pytest
 from ray_nodes import cluster, node
-from toy_study import UNITS, study
+from toy_study import SYSTEM, UNITS, study
 
 import faultpath
+from faultpath.cli.main import INTERRUPTED
 from faultpath.errors import UserError
 from faultpath.execution import run_study
 from faultpath.trials import SystemSpec
@@ -19,7 +24,7 @@ from faultpath.work import Failed, Lost, Returned, elsewhere
 from faultpath.work.executor import tell
 from faultpath.work.ray_cluster import RayWorkers
 
-TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+UNRULY = Path(__file__).with_name("test_execution_limits.py")
 OTHER = """
 import os
 from toy_system import ToySystem
@@ -108,16 +113,63 @@ def test_an_actor_is_a_worker_like_any_other(head):
     assert elsewhere() == ""
 
 
-def test_an_audit_on_a_cluster_is_that_of_this_machine(head, tmp_path, monkeypatch):
-    asked = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
-    asked |= {"library": "carts", "scenes": 6, "progress": False}
-    alone = faultpath.audit(TOY, folder=tmp_path / "alone", workers=0, **asked)
+@contextmanager
+def command(asked, folder, address):
+    """Run an audit by the command line until it has stored two units more than there were."""
+    stored = len(shards(folder))
+    options = {"executor": f"ray:{address}", "workers": 1, "out": folder}
+    line = [f"--{name}={value}" for name, value in (asked | options).items() if name != "system"]
+    main = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
+    with (
+        folder.with_name("words").open("w") as words,
+        subprocess.Popen(
+            [*main, "audit", asked["system"], *line], stdout=words, stderr=words
+        ) as process,
+    ):
+        limit = time.monotonic() + 180
+        while len(shards(folder)) < stored + 2:
+            assert process.poll() is None
+            assert time.monotonic() < limit, "waited in vain"
+            time.sleep(0.02)
+        yield process
+
+
+def shards(folder):
+    return list(folder.glob("shards/*.parquet"))
+
+
+def test_a_command_that_was_stopped_and_then_killed_goes_on_to_the_same_bytes(
+    head, tmp_path, monkeypatch
+):
+    gate, folder = tmp_path / "slow", tmp_path / "there"
+    asked = {"system": SYSTEM, "baseline": "plain", "repair": "observed", "library": "ten"}
+    asked |= {"fault": "mass:scale=0.6", "seeds": "0,1,2,3"}
+    line = asked | {"set": f"slow_while={gate}"}
+    gate.touch()
+    with command(line, folder, head.address) as stopped:
+        stopped.send_signal(signal.SIGINT)
+    assert stopped.returncode == INTERRUPTED
+    (said,) = [each for each in words(folder) if each.startswith("faultpath: interrupted with")]
+    assert "run the same command again to resume" in said
+    with command(line, folder, head.address) as killed:
+        killed.kill()
+    kept = len(shards(folder))
+    gate.unlink()
+    asked |= {"seeds": range(4), "options": {"slow_while": str(gate)}, "progress": False}
+    alone = faultpath.audit(folder=tmp_path / "alone", workers=0, **asked)
     monkeypatch.setenv("RAY_ADDRESS", head.address)
-    there = faultpath.audit(TOY, folder=tmp_path / "there", executor="ray", workers=1, **asked)
-    assert there.provenance.outcomes_sha256 == alone.provenance.outcomes_sha256
+    there = faultpath.audit(folder=folder, executor="ray", workers=1, **asked)
+    assert there.provenance.blocks_kept == kept >= 4
+    assert there.provenance.blocks_computed > 0
+    for table in ("outcomes.parquet", "traces.parquet"):
+        assert (folder / table).read_bytes() == (tmp_path / "alone" / table).read_bytes()
     assert there.record == alone.record
     assert (there.provenance.workers, alone.provenance.executor) == (1, "")
-    assert there.provenance.executor in (there.folder / "report.html").read_text()
+    assert there.provenance.executor in (folder / "report.html").read_text()
+
+
+def words(folder):
+    return folder.with_name("words").read_text().splitlines()
 
 
 @pytest.mark.parametrize(
@@ -138,3 +190,30 @@ def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option
     asked = study().model_copy(update={"system": spec})
     with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
         run_study(asked, tmp_path / "run", executor=hands)
+
+
+@pytest.fixture(scope="module")
+def hands(head):
+    with RayWorkers(head.address, 1) as workers:
+        yield workers
+
+
+@pytest.mark.parametrize(
+    ("does", "limit", "says"),
+    [
+        ("die", {}, "the worker on node .* of the Ray cluster was lost"),
+        ("hang", {"time_limit_s": 4.0}, "it was stopped at the time limit of 4 s"),
+        ("eat", {"memory_limit_gib": 6.0}, r"MemoryError: .*its memory limit of 6 GiB\)"),
+    ],
+)
+def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
+    hands, tmp_path, does, limit, says
+):
+    """One is killed in the moment in which its flight begins, each time."""
+    asked = study(("s00", "s05"), does=does, where="s05", dies="s05")
+    system = asked.system.model_copy(update={"name": f"{UNRULY}:unruly"})
+    asked = asked.model_copy(update={"system": system, "rows": asked.rows[:1]})
+    found = run_study(asked, tmp_path, executor=hands, recheck=False, **limit)
+    (failure,) = found.failures
+    assert (failure.scene, found.blocks_computed) == ("s05", 2)
+    assert re.search(says, failure.error)

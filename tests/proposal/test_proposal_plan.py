@@ -1,7 +1,9 @@
 """What a plan ranks, lays out and says."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from declared_toy import Declared
 
@@ -11,7 +13,7 @@ from faultpath.errors import UserError
 from faultpath.faults import Coupled, Fault
 from faultpath.faults.values import Scale
 from faultpath.interface import read_interface
-from faultpath.proposal.order import makers, ranked, recursion, repaired_modules
+from faultpath.proposal.order import makers, placed, ranked, recursion, repaired_modules
 from faultpath.proposal.sources import Candidate, candidates
 from faultpath.proposal.words import sentences
 from faultpath.trials import Library, SceneRef, System, Variant
@@ -158,7 +160,7 @@ def candidate(name: str, readers: int, response: float | None = None, **more) ->
     )
 
 
-def test_consumers_come_first_then_the_probe_then_nothing():
+def test_consumers_come_first_then_the_probe():
     order = ranked(
         [
             candidate("few", 1, 9.0),
@@ -169,28 +171,41 @@ def test_consumers_come_first_then_the_probe_then_nothing():
             candidate("strong", 2, 0.2),
         ]
     )
-    assert [(each.name, each.rank) for each in order] == [
-        ("strong", 1),
-        ("weak", 2),
-        ("same", 2),
-        ("blank", 4),
-        ("few", 5),
-        ("open", None),
+    assert [(each.name, each.rank, placed(each, order)) for each in order] == [
+        ("open", 1, True),
+        ("strong", 2, True),
+        ("weak", 3, True),
+        ("same", 3, True),
+        ("blank", 5, False),
+        ("few", 6, True),
     ]
+    unsized = {"fault": "", "unsized": "declares no uncertainty"}
+    order = ranked([candidate("late", 2, **unsized), candidate("sized", 2)])
+    assert [(each.name, each.rank) for each in order] == [("sized", 1), ("late", 1)]
 
 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ([candidate("a", 3)], "a (3 consumers) is the only source with an expected error"),
+        ([candidate("a", 3)], "a (3 consumers) is the only uncertain source: no rank is due."),
+        (
+            [candidate("a", 3), candidate("b", 3, fault="", unsized="declares none")],
+            "a and b tie: 3 consumers each, and no probe. a is audited first because it alone has",
+        ),
+        (
+            [candidate("a", 3, fault="", unsized="declares none"), candidate("b", 2)],
+            "a comes first: 3 consumers, more than any other source. a cannot be audited without "
+            "an expected error; b is the first in the ranking that has one. Without an expected "
+            "error, and so without an audit: a (it declares none). Declare it",
+        ),
         (
             [candidate("a", 3, 0.1), candidate("b", 2, 9.0)],
-            "a comes first: 3 consumers, more than any other source in the ranking.",
+            "a comes first: 3 consumers, more than any other source.",
         ),
         (
             [candidate("a", 2, 0.5), candidate("b", 2, 0.25)],
             "a comes first: 2 consumers, as b, and the largest probe response (0.5, next 0.25). "
-            "These are point estimates from 8 scenes; no test compares them.",
+            "These are point estimates from 5 scenes; no test compares them.",
         ),
         (
             [candidate("a", 2, 0.5), candidate("b", 2)],
@@ -208,7 +223,7 @@ def test_consumers_come_first_then_the_probe_then_nothing():
 )
 def test_the_words_say_what_put_a_source_first(planned, given, said):
     changed = planned.plan.model_copy(update={"candidates": ranked(given)})
-    assert sentences(changed)[0].startswith(said)
+    assert " ".join(sentences(changed)).startswith(said)
 
 
 def test_no_probe_is_explained_where_the_system_runs_a_loop_of_its_own(planned):
@@ -227,6 +242,22 @@ def test_the_repaired_module_is_told_from_what_differs():
     assert repaired_modules(toy, pair[0], pair[0], ()) == ()
     with pytest.raises(UserError, match="did you mean 'observer'"):
         repaired_modules(toy, *pair, ("obsever",))
+
+
+def test_a_module_that_differs_in_its_numbers_alone_is_the_repaired_one():
+    class Weighed(type(Declared())):
+        def modules(self, variant, seed):
+            observer, controller = super().modules("calibrated", seed)
+            controller.layers = [{"weights": np.full(3, float(variant == "blind"))}, variant]
+            controller.layers.append(controller)
+            observer.called = variant
+            return observer, controller
+
+    system = Weighed()
+    wired = system.variants["calibrated"]
+    blind = replace(wired, name="blind")
+    assert repaired_modules(system, wired, blind, ()) == ("controller",)
+    assert repaired_modules(system, wired, wired, ()) == ()
 
 
 def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
@@ -269,7 +300,7 @@ def test_the_plan_of_the_toy(planned):
     said = " ".join(planned.sentences)
     assert "280 trials, about" in said
     assert "estimated from one block of 20 scenes under correct inputs" in said
-    assert "odometer (1 consumer; it declares no uncertainty)" in said
+    assert "without an audit: odometer (it declares no uncertainty). Declare it" in said
     assert "Taken as changed by the repair: observer." in said
 
 

@@ -1,5 +1,6 @@
 """`faultpath audit`: run the arms of one question, decide, report."""
 
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -24,6 +25,12 @@ if TYPE_CHECKING:
     from faultpath.door.run import Run
 
 FAILED_TRIALS = 1
+Json = Annotated[
+    bool,
+    typer.Option(
+        "--json", help="Print folder and record of each audit as JSON; words go to stderr."
+    ),
+]
 
 
 def command(
@@ -105,6 +112,7 @@ def command(
     executor: Executor = "local",
     time_limit: TimeLimit = None,
     memory_limit: MemoryLimit = None,
+    as_json: Json = False,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -118,7 +126,7 @@ def command(
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.sizes import audits
 
-    console = SafeConsole()
+    console = SafeConsole(stderr=as_json)
     runs = audits(
         system,
         baseline=baseline,
@@ -143,6 +151,8 @@ def command(
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
+    if as_json:
+        tell_json(runs)
     if len(runs) > 1:
         return _tell_sweep(console, runs, out)
     return tell(console, runs, details)
@@ -171,3 +181,15 @@ def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -
         console.print(decision(run.record, details))
         console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FAILED_TRIALS if any(run.failed for run in runs) else 0
+
+
+def tell_json(runs: "Sequence[Run]") -> None:
+    """Print the folder and the record of each run."""
+    from faultpath.door.saved import RECORD
+
+    records = (json.loads((run.folder / RECORD).read_text("utf-8")) for run in runs)
+    told = [
+        {"folder": str(run.folder), "record": record}
+        for run, record in zip(runs, records, strict=True)
+    ]
+    typer.echo(json.dumps(told, indent=1))

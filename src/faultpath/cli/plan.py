@@ -72,14 +72,16 @@ def command(
     )
     written = found.write(out)
 
-    from faultpath.report.proposal import by_audit, by_rank
+    from faultpath.report.proposal import by_audit, by_rank, by_response
     from faultpath.tables.terminal import drawn as in_terminal
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
         return
     console = SafeConsole()
-    for table in (by_rank(found.plan), by_audit(found.plan)):
+    moved = any(each.response is not None for each in found.plan.candidates)
+    told = (by_rank, by_response, by_audit) if moved else (by_rank, by_audit)
+    for table in (each(found.plan) for each in told):
         console.print(in_terminal(table))
         for note in table.notes:
             console.print(note, markup=False)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.audit import tell
+from faultpath.cli.audit import Json, tell, tell_json
 from faultpath.cli.options import Executor, MemoryLimit, TimeLimit, path
 
 
@@ -25,6 +25,7 @@ def command(
     time_limit: TimeLimit = None,
     memory_limit: MemoryLimit = None,
     executor: Executor = "local",
+    as_json: Json = False,
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
@@ -32,7 +33,7 @@ def command(
     from faultpath.door.planned import audit_study
     from faultpath.proposal.study import read_study
 
-    console = SafeConsole()
+    console = SafeConsole(stderr=as_json)
     runs = audit_study(
         read_study(study),
         folder=out,
@@ -42,4 +43,6 @@ def command(
         executor=executor,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
+    if as_json:
+        tell_json(runs)
     return tell(console, runs)

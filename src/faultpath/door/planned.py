@@ -124,7 +124,7 @@ def plan(
         (modules,) if isinstance(modules, str) else tuple(modules),
         factorial,
     )
-    with told.progress("Probing") as show:
+    with told.progress("Planning") as show:
 
         def note(done: int, total: int) -> None:
             show(Now(done, total, f"{done} of {total} flights"))

@@ -2,7 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
+from typing import Any
 
+import numpy as np
+
+from faultpath.arrays import is_array, to_numpy
 from faultpath.errors import UserError
 from faultpath.interface import Interface, module_of, modules
 from faultpath.proposal.sources import Candidate, bound
@@ -14,19 +18,24 @@ def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Return candidates, the one with most consumers and then the largest probe response first.
 
     This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
-    both share a rank, and stand in the order of declaration. Those without a fault come last.
+    both share a rank, and stand in the order of declaration, those without a fault last. A response
+    that is not known counts as the smallest, and `placed` tells where that decides.
     """
 
     def key(each: Candidate) -> tuple[int, float]:
         return -len(each.consumers), 1.0 if each.response is None else -each.response
 
-    sized = sorted((each for each in found if each.fault), key=key)
     out: list[Candidate] = []
-    for _, alike in groupby(sized, key):
+    for _, alike in groupby(sorted(found, key=lambda each: (*key(each), not each.fault)), key):
         rank = len(out) + 1
         out += [each.model_copy(update={"rank": rank}) for each in alike]
-    unsized = sorted((each for each in found if not each.fault), key=lambda e: -len(e.consumers))
-    return (*out, *unsized)
+    return tuple(out)
+
+
+def placed(each: Candidate, found: Sequence[Candidate]) -> bool:
+    """Return whether the rule places a candidate, beside others with as many consumers."""
+    known = [other.response for other in found if len(other.consumers) == len(each.consumers)]
+    return each.response is not None or not any(response is not None for response in known)
 
 
 def repaired_modules(
@@ -35,8 +44,8 @@ def repaired_modules(
     """Return the modules that the repair changes: as `named`, else as far as can be seen.
 
     Seen is what reads at other places, writes a source that feeds a channel in one of the variants
-    only, or is of another class. Weights and settings are not seen. `UserError` for a name that is
-    no module's.
+    only, or is of another class or has other numbers in it, weights included. `UserError` for a
+    name that is no module's.
     """
     interface = system.interface
     known = modules(interface)
@@ -50,11 +59,32 @@ def repaired_modules(
             found |= {module for module, made in interface.reconstructions if made in fed}
     if isinstance(system, LoopSystem):
         one, two = (
-            {(each.name, type(each)) for each in system.modules(variant.name, None)}
+            {each.name: each for each in system.modules(variant.name, None)}
             for variant in (baseline, repair)
         )
-        found |= {name for name, _ in one ^ two}
+        found |= {name for name in one | two if _differ(one.get(name), two.get(name), set())}
     return tuple(named) or tuple(name for name in known if name in found)
+
+
+def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
+    """Return whether two objects are of other classes or hold other numbers, however deep.
+
+    Words are passed over, for they may only be names, and so is what holds nothing to be seen.
+    """
+    if one is two or (id(one), id(two)) in seen:
+        return False
+    seen.add((id(one), id(two)))
+    if type(one) is not type(two):
+        return True
+    if is_array(one):
+        return not np.array_equal(to_numpy(one), to_numpy(two))
+    if isinstance(one, int | float | complex):
+        return one != two
+    if isinstance(one, list | tuple):
+        one, two = dict(enumerate(one)), dict(enumerate(two))
+    elif not isinstance(one, Mapping):
+        one, two = getattr(one, "__dict__", {}), getattr(two, "__dict__", {})
+    return one.keys() != two.keys() or any(_differ(one[name], two[name], seen) for name in one)
 
 
 def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:

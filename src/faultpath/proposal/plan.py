@@ -13,7 +13,7 @@ from faultpath.proposal.sources import Candidate, candidates, parsed
 from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
 
-PROBED_SCENES = 8
+PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""
 Note = Callable[[int, int], None]
 """Takes how many flights are done, and of how many."""
@@ -37,7 +37,7 @@ class Plan(Frozen):
     format: int = 1
     study: StudyFile
     candidates: tuple[Candidate, ...]
-    """Ranked; those without a fault last."""
+    """Ranked, those that have no fault and so no audit included."""
     repaired: tuple[str, ...]
     """Modules that the repair changes, as far as is known."""
     unplanned: dict[str, str]
@@ -177,11 +177,12 @@ class Proposal:
         self, order: Sequence[Candidate], repaired: tuple[str, ...]
     ) -> tuple[str, dict[str, str]]:
         """Return the source that comes first, and why each that is audited is."""
-        first = order[0]
+        first = next(each for each in order if each.fault)
+        by_rank = "first by rank" if first is order[0] else "first with an expected error"
         struck = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
         made_by = makers(self.system.interface, self.variants)
         more = recursion(order, made_by, (*repaired, *struck))
-        return first.name, {first.name: "first by rank"} | {
+        return first.name, {first.name: by_rank} | {
             name: why for name, why in more.items() if name != first.name
         }
 

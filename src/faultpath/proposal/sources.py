@@ -31,7 +31,7 @@ class Candidate(Frozen, allow_inf_nan=False):
     responses: dict[str, dict[str, float]] = Field(default_factory=dict[str, dict[str, float]])
     """By variant and path of the fault, how far a probe moves the commands; see `probing`."""
     rank: int | None = None
-    """Sources that nothing tells apart share one; `None` without a fault."""
+    """Sources that nothing tells apart share one; `None` before they are ranked."""
 
     @property
     def response(self) -> float | None:

@@ -1,7 +1,7 @@
 """A study file: audits of one repair, with their arms, to be carried out as they stand."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import yaml
 from pydantic import Field, StringConstraints, ValidationError
@@ -99,13 +99,13 @@ def _not_yaml(path: Path, error: Exception) -> UserError:
 
 
 def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...]:
-    """Return the arms of an audit path by path, in the order in which they are laid out."""
+    """Return the arms of an audit path by path, in the order of their roles: the paper's, III-C."""
     asked = audit.question
     struck: dict[str, dict[str, tuple[str, ...]]] = {}
     for row in audit.study.rows:
         consumers = {c: None for f in row.arm.faults if f.kind != "coupled" for c in f.consumers}
         struck.setdefault(row.path, {})[row.variant] = tuple(consumers)
-    return tuple(
+    arms = [
         StudyArm(
             path=path,
             role=_role(path, repaired),
@@ -113,7 +113,8 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
             repair=by_variant[asked.repair],
         )
         for path, by_variant in struck.items()
-    )
+    ]
+    return tuple(sorted(arms, key=lambda arm: get_args(Role).index(arm.role)))
 
 
 def _role(path: str, repaired: tuple[str, ...]) -> Role:

@@ -12,64 +12,78 @@ def sentences(plan: Plan) -> tuple[str, ...]:
 
 
 def _sentences(plan: Plan) -> Iterator[str]:
-    sized = [each for each in plan.candidates if each.fault]
-    yield _first(plan, sized)
-    more = [
-        f"{each.name} ({_counted(len(each.consumers), 'consumer')}; it {each.unsized})"
-        for each in plan.candidates
-        if not each.fault
-    ]
-    if more:
-        yield (
-            f"Without an expected error, and so without a rank: {', '.join(more)}. Declare it, or "
-            "give it with --fault."
+    yield from _first(plan)
+    if unsized := [each for each in plan.candidates if not each.fault]:
+        reasons = dict.fromkeys(each.unsized for each in unsized)
+        named = {why: [each.name for each in unsized if each.unsized == why] for why in reasons}
+        told = "; ".join(
+            f"{_both(names)} ({'each' if len(names) > 1 else 'it'} {why})"
+            for why, names in named.items()
         )
+        yield (
+            f"Without an expected error, and so without an audit: {told}. Declare it in the "
+            "interface, or give it with --fault."
+        )
+    if plan.unplanned:
+        due = "; ".join(f"{name} ({why})" for name, why in plan.unplanned.items())
+        yield f"Of these the recursion leads to the following, where the same audit is due: {due}."
     if plan.repaired:
         yield f"Taken as changed by the repair: {_both(plan.repaired)}."
     else:
         yield (
-            "Which module the repair changes cannot be seen from what the variants read: every "
-            "module is struck alone all the same; --module names it."
+            "Which module the repair changes cannot be seen: every module is struck alone all the "
+            "same; --module names it."
         )
-    if plan.unplanned:
-        open_ = ", ".join(f"{name} ({why})" for name, why in plan.unplanned.items())
-        yield f"The same audit is due, but cannot be planned without an expected error: {open_}."
     audited = {audit.name for audit in plan.study.audits}
-    yield from (each.note for each in sized if each.name in audited and each.note)
-    yield ("Each fault has one size and sign, and lasts; `faultpath map` covers both signs.")
+    yield from (each.note for each in plan.candidates if each.name in audited and each.note)
+    yield "Each fault has one size and sign, and lasts; `faultpath map` covers both signs."
     if len(audited) > 1:
         yield "Each audit decides by itself: no correction is made for their number."
     yield _cost(plan)
 
 
-def _first(plan: Plan, sized: Sequence[Candidate]) -> str:
-    first, *others = sized
+def _first(plan: Plan) -> Iterator[str]:
+    """Say which source comes first, and which one is audited first where that is another."""
+    first, *others = plan.candidates
     count = _counted(len(first.consumers), "consumer")
-    if not others:
-        return f"{first.name} ({count}) is the only source with an expected error: no rank is due."
     tied = [each for each in others if each.rank == first.rank]
     alike = [each for each in others if len(each.consumers) == len(first.consumers)]
-    if not alike:
-        return f"{first.name} comes first: {count}, more than any other source in the ranking."
-    names = _both([each.name for each in (tied or alike)])
-    if tied:
-        equal = "and the same probe response" if first.response is not None else "and no probe"
-        own = ", since the system runs a loop of its own" if not plan.probed else ""
-        return (
-            f"{first.name} and {names} tie: {count} each, {equal}{own}. {first.name} is audited "
-            "first because it is declared first."
+    names = _both([each.name for each in (tied or alike)]) if alike else ""
+    if not others:
+        yield f"{first.name} ({count}) is the only uncertain source: no rank is due."
+    elif not alike:
+        yield f"{first.name} comes first: {count}, more than any other source."
+    elif tied:
+        yield f"{first.name} and {names} tie: {count} each, {_equal(plan, first, tied)}"
+    else:
+        yield f"{first.name} comes first: {count}, as {names}, and {_moved(plan, first, alike)}"
+    if not first.fault:
+        audited = next(each.name for each in plan.candidates if each.fault)
+        yield (
+            f"{first.name} cannot be audited without an expected error; {audited} is the first in "
+            "the ranking that has one."
         )
+
+
+def _equal(plan: Plan, first: Candidate, tied: Sequence[Candidate]) -> str:
+    equal = "and no probe" if first.response is None else "and the same probe response"
+    if not first.fault:
+        return f"{equal}."
+    if not any(each.fault for each in tied):
+        return f"{equal}. {first.name} is audited first because it alone has an expected error."
+    own = ", since the system runs a loop of its own" if not plan.probed else ""
+    return f"{equal}{own}. {first.name} is audited first because it is declared first."
+
+
+def _moved(plan: Plan, first: Candidate, alike: Sequence[Candidate]) -> str:
     known = [each.response for each in alike if each.response is not None]
-    open_ = [each.name for each in alike if each.response is None]
-    moved = f"a probe response ({first.response:.3g})"
+    unknown = [each.name for each in alike if each.response is None]
+    found = f"a probe response ({first.response:.3g})"
     if known:
-        moved = f"the largest probe response ({first.response:.3g}, next {known[0]:.3g})"
-    return (
-        f"{first.name} comes first: {count}, as {names}, and {moved}"
-        + (f"; none is known of {_both(open_)}" if open_ else "")
-        + f". These are point estimates from {_counted(plan.probed, 'scene')}; no test compares "
-        "them."
-    )
+        found = f"the largest probe response ({first.response:.3g}, next {known[0]:.3g})"
+    none = f"; none is known of {_both(unknown)}" if unknown else ""
+    scenes = _counted(plan.probed, "scene")
+    return f"{found}{none}. These are point estimates from {scenes}; no test compares them."
 
 
 def _cost(plan: Plan) -> str:

@@ -1,48 +1,54 @@
 """The tables of a plan: sources in order, and the audits that are proposed."""
 
+from faultpath.proposal.order import placed
 from faultpath.proposal.plan import Plan
 from faultpath.proposal.sources import Candidate
 from faultpath.tables import MISSING, Line, Table, line
 
 
 def by_rank(plan: Plan) -> Table:
-    """Return the uncertain sources in order: who reads them, and how far they move commands."""
-    asked = plan.study
-    columns = ("read by", "expected error", asked.baseline, asked.repair)
+    """Return the uncertain sources in order, with who reads them and how far they may err."""
+    columns = ("read by", "expected error")
     notes = ["Order: number of consumers, then the larger probe response; equal ones share a rank."]
-    if plan.probed:
-        notes.append(
-            f"Under each variant: its probe response, the median change of its commands under the "
-            f"expected error, as a fraction of their root mean square, over {plan.probed} scenes; "
-            "the largest among the paths of the error, which is named."
-        )
+    if not all(placed(each, plan.candidates) for each in plan.candidates):
+        notes.append("?: no response is known, so among as many consumers the place is open.")
     return Table(
-        title="Uncertain sources, the one to audit first in front",
+        title="Uncertain sources by rank",
         corner="source",
         columns=columns,
-        words=columns[:2],
+        words=columns,
         lines=tuple(_source(plan, each) for each in plan.candidates),
         notes=tuple(notes),
     )
 
 
 def _source(plan: Plan, each: Candidate) -> Line:
-    alike = sum(other.rank == each.rank for other in plan.candidates) > 1
-    rank = MISSING if each.rank is None else f"{each.rank}{'=' if alike else ''}"
+    mark = "=" if sum(other.rank == each.rank for other in plan.candidates) > 1 else ""
+    mark += "" if placed(each, plan.candidates) else "?"
+    fault = each.fault or "none known"
+    return line(f"{each.rank}{mark} {each.name}", "\n".join(each.consumers), fault)
+
+
+def by_response(plan: Plan) -> Table:
+    """Return how far commands move under the expected error of each source, path by path."""
     variants = (plan.study.baseline, plan.study.repair)
-    return line(
-        f"{rank} {each.name}",
-        "\n".join(each.consumers),
-        each.fault or "none declared",
-        *(_largest(each.responses.get(variant, {})) for variant in variants),
+    lines: list[Line] = []
+    for each in plan.candidates:
+        paths = dict.fromkeys(path for found in each.responses.values() for path in found)
+        lines += [line(each.name)] if paths else []
+        for path in paths:
+            found = (each.responses.get(variant, {}).get(path) for variant in variants)
+            lines.append(line(path, *(MISSING if r is None else f"{r:.3g}" for r in found)))
+    return Table(
+        title="Probe responses",
+        corner="struck",
+        columns=variants,
+        lines=tuple(lines),
+        notes=(
+            "Median change of the commands under the expected error, as a fraction of their root "
+            f"mean square, over {plan.probed} scenes. The largest of a source counts.",
+        ),
     )
-
-
-def _largest(responses: dict[str, float]) -> str:
-    if not responses:
-        return MISSING
-    path, found = max(responses.items(), key=lambda each: each[1])
-    return f"{found:.3g} ({path})"
 
 
 def by_audit(plan: Plan) -> Table:
@@ -58,7 +64,7 @@ def by_audit(plan: Plan) -> Table:
                 each.fault,
                 each.why,
                 "\n".join(
-                    arm.path if arm.role in (arm.path, "attribution") else f"{arm.path}, {arm.role}"
+                    arm.path if arm.role == arm.path else f"{arm.path}, {arm.role}"
                     for arm in each.arms
                 ),
                 str(trials),

@@ -8,11 +8,12 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.reduction import ForkingPickler
 from queue import SimpleQueue
+from threading import Semaphore
 
 import ray
 
 from faultpath.version import __version__
-from faultpath.work.executor import live_on
+from faultpath.work.executor import Told, live_on
 from faultpath.work.process import served, show
 
 
@@ -36,19 +37,30 @@ class OnNode:
         """Return where this is in words, the node's id, and the version of faultpath."""
         return self._place, ray.get_runtime_context().get_node_id(), __version__
 
+    @ray.method(_generator_backpressure_num_objects=1)
     def serve(self, packed: bytes) -> Iterator[bytes]:
-        """Run a call; yield what it tells as it tells it, and its end last."""
+        """Run a call; yield what it tells as it tells it, and its end last.
+
+        What it tells has reached the driver before it goes on: Ray loses what a worker has only
+        begun to send when it ends, and a flight that ends it would not be known to have begun.
+        """
         news: SimpleQueue[tuple[bytes, bool]] = SimpleQueue()
-        self._thread.submit(_run, packed, news.put)
+        heard = Semaphore(0)
+
+        def told(message: object) -> None:
+            news.put((bytes(ForkingPickler.dumps((message,))), False))
+            heard.acquire()
+
+        self._thread.submit(_run, packed, told, news.put)
         last = False
         while not last:
             message, last = news.get()
-            yield message
+            yield message  # until the driver has taken it: see the decorator
+            heard.release()
 
 
-def _run(packed: bytes, put: Callable[[tuple[bytes, bool]], None]) -> None:
+def _run(packed: bytes, told: Told, put: Callable[[tuple[bytes, bool]], None]) -> None:
     try:
-        end = served(packed, lambda told: put((bytes(ForkingPickler.dumps((told,))), False)))
-        put((bytes(end), True))
+        put((bytes(served(packed, told)), True))
     except BaseException:  # as a process ends that cannot go on
         os._exit(1)
