@@ -10,6 +10,7 @@ from declared_toy import Declared
 import faultpath
 from faultpath.door.planned import Planned
 from faultpath.errors import UserError
+from faultpath.execution.attempt import Done
 from faultpath.faults import Coupled, Fault
 from faultpath.faults.values import Scale
 from faultpath.interface import read_interface
@@ -299,9 +300,21 @@ def test_the_plan_of_the_toy(planned):
     assert planned.plan.trials == (160, 80, 40)
     said = " ".join(planned.sentences)
     assert "280 trials, about" in said
-    assert "estimated from one block of 20 scenes under correct inputs" in said
+    assert "one block of 20 scenes under correct inputs with each variant, of which 10 were" in said
     assert "without an audit: odometer (it declares no uncertainty). Declare it" in said
     assert "Taken as changed by the repair: observer." in said
+
+
+def test_a_long_block_is_timed_by_some_of_its_scenes(monkeypatch):
+    def flown(system, arm, scenes):
+        return Done((), (), {"calibrated": 1.0, "blind": 2.0}[arm.variant] + 0.5 * len(scenes))
+
+    monkeypatch.setattr("faultpath.proposal.plan.attempt", flown)
+    timing = plan().plan.timing
+    assert (timing.scenes, timing.flown) == (20, 10)
+    assert timing.block_s == pytest.approx({"calibrated": 11.0, "blind": 12.0})
+    timing = plan(scenes=6).plan.timing
+    assert (timing.flown, timing.block_s) == (6, {"calibrated": 4.0, "blind": 5.0})
 
 
 def test_the_trials_told_are_those_flown(planned, tmp_path):

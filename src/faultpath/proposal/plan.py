@@ -15,17 +15,21 @@ from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Varia
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""
+TIMED_SCENES = 10
+"""So many of a block are flown to tell how long it takes."""
 Note = Callable[[int, int], None]
 """Takes how many flights are done, and of how many."""
 
 
 class Timing(Frozen, allow_inf_nan=False):
-    """What the study will take, from one block of each variant under correct inputs."""
+    """What the study will take, from a block of each variant under correct inputs."""
 
     scenes: int
     """Of the block."""
+    flown: int
+    """Of these, the ones that were flown; the others are taken to add as much, each, as these."""
     block_s: dict[str, float]
-    """Seconds that it took here, by variant."""
+    """Seconds that the block takes here, by variant."""
     workers: int
     seconds: float
     """Of the whole study, all workers together at work on it."""
@@ -188,8 +192,16 @@ class Proposal:
 
     def _seconds(self, variant: str, block: Sequence[str]) -> float:
         """Return what a block takes once all that it needs is loaded, as one scene has shown."""
-        attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), block[:1])
-        done = attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), block)
+        self._flown_s(variant, block[:1])
+        few = block[:TIMED_SCENES]
+        taken = self._flown_s(variant, few)
+        if len(few) == len(block):
+            return taken
+        more = max(0.0, taken - self._flown_s(variant, few[:1])) / (len(few) - 1)
+        return taken + more * (len(block) - len(few))
+
+    def _flown_s(self, variant: str, scenes: Sequence[str]) -> float:
+        done = attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), scenes)
         if isinstance(done, Wrong):
             raise done.error
         if isinstance(done, Raised):
@@ -213,6 +225,7 @@ def _timing(
     lanes = max(1, min(workers, blocks * len(arms[0])))
     return Timing(
         scenes=block,
+        flown=min(block, TIMED_SCENES),
         block_s=block_s,
         workers=lanes,
         seconds=sum(each) * scenes / block / lanes,

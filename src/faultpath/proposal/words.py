@@ -89,11 +89,12 @@ def _moved(plan: Plan, first: Candidate, alike: Sequence[Candidate]) -> str:
 def _cost(plan: Plan) -> str:
     timing = plan.timing
     took = " and ".join(f"{s:.2g} s with {name}" for name, s in timing.block_s.items())
+    part = f", of which {timing.flown} were flown here" if timing.flown < timing.scenes else ""
     return (
         f"{plan.total} trials, about {_clock(timing.seconds)} with "
         f"{_counted(timing.workers, 'worker')}: estimated from one block of "
-        f"{_counted(timing.scenes, 'scene')} under correct inputs, flown here once with each "
-        f"variant ({took}), as if trials under faults took as long and workers never waited."
+        f"{_counted(timing.scenes, 'scene')} under correct inputs with each variant{part} "
+        f"({took}), as if trials under faults took as long and workers never waited."
     )
 
 
