@@ -121,7 +121,7 @@ def command(
     every_seed, options = numbers(seeds, "--seeds"), settings(set_ or [])
     # What builds a system may load for seconds; until then this is all that there is to see.
     arms = f"{one_line(repair)} with {one_line(baseline)}"
-    typer.echo(f"Building {one_line(system)}, to compare {arms}.")
+    typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
 
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.sizes import audits
