@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from itertools import groupby
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -80,11 +80,17 @@ def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
         return not np.array_equal(to_numpy(one), to_numpy(two))
     if isinstance(one, int | float | complex):
         return one != two
-    if isinstance(one, list | tuple):
-        one, two = dict(enumerate(one)), dict(enumerate(two))
-    elif not isinstance(one, Mapping):
-        one, two = getattr(one, "__dict__", {}), getattr(two, "__dict__", {})
-    return one.keys() != two.keys() or any(_differ(one[name], two[name], seen) for name in one)
+    mine, theirs = _parts(one), _parts(two)
+    return mine.keys() != theirs.keys() or any(
+        _differ(part, theirs[name], seen) for name, part in mine.items()
+    )
+
+
+def _parts(of: Any) -> Mapping[Any, Any]:
+    """Return what an object holds, by name or place."""
+    if isinstance(of, list | tuple):
+        return dict(enumerate(cast("Sequence[Any]", of)))
+    return cast("Mapping[Any, Any]", of if isinstance(of, Mapping) else getattr(of, "__dict__", {}))
 
 
 def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:
