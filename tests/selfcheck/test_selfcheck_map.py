@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from faultpath.plane.lattice import COARSE, lattice
+from faultpath.plane.model import Flip
 from faultpath.selfcheck import check_map, failures
 from faultpath.selfcheck.model import Report
 from faultpath.selfcheck.plane import (
-    CorrelationCoverage,
     EqualMaps,
     Scenes,
+    Truths,
+    holds,
     true_correlation,
     truth,
 )
@@ -37,30 +39,68 @@ def test_the_true_correlation_is_where_both_arms_do_equally_well() -> None:
     assert seen.mean() == pytest.approx(0, abs=0.002)
 
 
-@pytest.mark.parametrize("of", ["place", "correlation"])
-def test_maps_of_equal_arms_announce_next_to_nothing(of: str) -> None:
-    assert EqualMaps(25, 0.0, of, 20).measure().rate <= 0.2  # .05, and three standard errors
+def test_maps_of_equal_arms_announce_next_to_nothing() -> None:
+    place, correlation = EqualMaps(25, 0.0, 10).measure()
+    assert place.rate <= 0.26  # .05, and three standard errors
+    assert correlation.rate <= 0.26
+    assert (place.setting["of"], correlation.setting["of"]) == ("place", "correlation")
 
 
 def test_places_that_hardly_depend_on_each_other_announce_no_more() -> None:
-    assert EqualMaps(25, None, "place", 10).measure().rate <= 0.26
+    assert EqualMaps(25, None, 10).measure()[0].rate <= 0.26
 
 
 def test_with_the_level_of_one_place_maps_announce_what_is_not_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("faultpath.selfcheck.plane.simultaneous", lambda *_: 1.96)
-    assert EqualMaps(25, None, "place", 8).measure().rate > 0.5
+    monkeypatch.setattr("faultpath.plane.decide.simultaneous", lambda *_: 1.96)
+    assert EqualMaps(25, None, 8).measure()[0].rate > 0.5
 
 
-@pytest.mark.parametrize("straight", [True, False])
-def test_the_true_correlation_is_covered(straight: bool) -> None:
-    assert CorrelationCoverage(25, 0.7, straight, 20).measure().rate > 0.85
+def test_what_is_true_is_covered_and_a_turn_is_found() -> None:
+    rates = {
+        (each.section, each.setting.get("straight")): each.rate
+        for each in Truths(100, 0.7, 10).measure()
+    }
+    assert min(rates["break-even correlation", straight] for straight in (0, 1)) >= 0.7
+    assert rates["turning sizes", 1] >= 0.8
+    assert rates["turning sizes found", None] >= 0.5
+
+
+def test_a_false_word_on_a_path_is_seen() -> None:
+    found = Scenes.draw(np.random.default_rng(0), 100, 0.5, equal=False).differences(
+        list(lattice(COARSE))
+    )
+    right = Flip(
+        path="second",
+        direction=1,
+        start=-1,
+        turned=1,
+        until=0.2,
+        estimate=None,
+        first=0.5,
+        last=1.0,
+    )
+    assert holds(right, found, straight=False)
+    assert not holds(right.model_copy(update={"until": 0.3}), found, straight=False)
+    assert not holds(right.model_copy(update={"first": 0.25}), found, straight=False)
+    assert not holds(right.model_copy(update={"turned": -1}), found, straight=False)
+    assert holds(right.model_copy(update={"start": 0, "until": None}), found, straight=False)
+    # The truth that is straight from the middle to half way turns further in.
+    assert not holds(right, found, straight=True)
+    assert holds(right.model_copy(update={"until": 0.15}), found, straight=True)
+    shared = right.model_copy(update={"path": "shared", "turned": 0, "first": None, "last": None})
+    assert holds(shared.model_copy(update={"until": 1.0}), found, straight=True)
 
 
 @pytest.mark.slow
 def test_the_quick_profile_keeps_every_promise() -> None:
     quick = check_map("quick")
     assert failures(quick) == []
-    assert [section.name for section in quick.sections] == ["equal maps", "break-even correlation"]
+    assert [section.name for section in quick.sections] == [
+        "equal maps",
+        "break-even correlation",
+        "turning sizes",
+        "turning sizes found",
+    ]
     assert Report.model_validate_json(quick.text()) == quick

@@ -56,20 +56,14 @@ def decided(
 ) -> MapRecord:
     """Return the record of differences, which may be simulated ones."""
     label, up_to = question.library_hash, question.up_to
-    surface, flown = surface_weights(found.points), np.eye(len(found.points))
-    paths = {key: _ray_weights(found, way) for key, way in rays(question.against).items()}
-    # One critical value for all that is said of places on the map.
-    z = simultaneous(np.concatenate([flown, surface, *paths.values()]), found, label)
+    flips, z = turns(found, question.against, up_to, label)
     foretold, missed = _foretold(found)
     record = MapRecord(
         question=question,
         scenes=found.values.shape[1],
         points=_points(question, found, z),
-        surface=_surface(Combined.of(surface, found), up_to, z),
-        flips=tuple(
-            _flip(key, found, rays(question.against)[key], Combined.of(weights, found), up_to, z)
-            for key, weights in paths.items()
-        ),
+        surface=_surface(Combined.of(surface_weights(found.points), found), up_to, z),
+        flips=flips,
         joint=_joint(question, found),
         critical=z,
         failed=failed,
@@ -82,6 +76,25 @@ def decided(
     )
     said = {"headline": words.headline(record), "sentences": words.sentences(record)}
     return record.model_copy(update=said)
+
+
+def turns(
+    found: Differences, against: Sequence[str], up_to: float, label: str
+) -> tuple[tuple[Flip, ...], float]:
+    """Return which errors turn the verdict on each path, and the critical value of the map.
+
+    There is one value for all that is said of places: points, surface and paths.
+    """
+    ways = rays(against)
+    paths = {key: _ray_weights(found, way) for key, way in ways.items()}
+    flown = np.eye(len(found.points))
+    every = np.concatenate([flown, surface_weights(found.points), *paths.values()])
+    z = simultaneous(every, found, label)
+    flips = (
+        _flip(key, found, ways[key], Combined.of(weights, found), up_to, z)
+        for key, weights in paths.items()
+    )
+    return tuple(flips), z
 
 
 def _points(question: MapQuestion, found: Differences, z: float) -> tuple[MapPoint, ...]:

@@ -9,7 +9,7 @@ correlations together, so that whatever is said of any of them holds at once.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,15 +67,23 @@ class Errors:
         Between the places of the lattice the surface is bilinear; an error beyond the map counts
         as one at its edge.
         """
-        steps = 2 * UNITS // SHOWN
-        x, y = ((np.clip(e, -1.0, 1.0) + 1.0) * steps / 2.0 for e in self.draw(correlation))
-        left, low = (np.minimum(np.floor(each), steps - 1).astype(np.int64) for each in (x, y))
-        found = np.zeros((steps + 1) ** 2)
-        for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
-            share = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - low))
-            place = (low + j) * (steps + 1) + left + i
-            found += np.bincount(place, share, minlength=len(found))
-        return found / len(x)
+        return _weights(self, correlation)
+
+
+@lru_cache(maxsize=512)
+def _weights(errors: Errors, correlation: float) -> Floats:
+    steps = 2 * UNITS // SHOWN
+    drawn = errors.draw(correlation)
+    x, y = ((np.clip(e, -1.0, 1.0) + 1.0) * steps / 2.0 for e in drawn)
+    left, low = (np.minimum(np.floor(each), steps - 1).astype(np.int64) for each in (x, y))
+    found = np.zeros((steps + 1) ** 2)
+    for i, j in ((0, 0), (1, 0), (0, 1), (1, 1)):
+        share = np.abs(1 - i - (x - left)) * np.abs(1 - j - (y - low))
+        place = (low + j) * (steps + 1) + left + i
+        found += np.bincount(place, share, minlength=len(found))
+    found /= len(x)
+    found.setflags(write=False)  # shared by all who ask
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,7 @@ A point is a pair of whole numbers: the error at the first and at the second mod
 """
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from itertools import product
 from typing import TypeAlias
 
@@ -72,6 +73,11 @@ def surface_weights(points: Sequence[Point], spacing: int = SHOWN) -> Floats:
     middles of its edges. So it is continuous, its weights are not negative and add up to 1, and
     without finer points it is bilinear in each cell.
     """
+    return _surface_weights(tuple(points), spacing)
+
+
+@lru_cache(maxsize=4)
+def _surface_weights(points: tuple[Point, ...], spacing: int) -> Floats:
     own = dict(zip(points, np.eye(len(points)), strict=True))
     rows = {place: own[place] for place in lattice(COARSE)}
 
@@ -89,4 +95,6 @@ def surface_weights(points: Sequence[Point], spacing: int = SHOWN) -> Floats:
         for x, y in middles:
             take((x, y), [(x - step, y), (x + step, y), (x, y - step), (x, y + step)])
         step //= 2
-    return np.stack([rows[place] for place in lattice(spacing)])
+    weights = np.stack([rows[place] for place in lattice(spacing)])
+    weights.setflags(write=False)  # shared by all who ask
+    return weights

@@ -5,7 +5,7 @@ scenes stay the sample and all points of the map depend on each other as they do
 """
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,9 +102,15 @@ def simultaneous(weights: Floats, found: Differences, label: str) -> float:
     if not looked_at.any():
         return one
     n_scenes = values.shape[1]
-    resamples = Resamples.draw(f"map/{label}", n_scenes, n_resamples=RESAMPLES)
+    resamples = _resamples(label, n_scenes)
     errors = spread[looked_at] * np.sqrt(n_scenes)
     centred = values[looked_at] - values[looked_at].mean(axis=1, keepdims=True)
     studentised = (centred / errors[:, np.newaxis]).T
     largest = [np.abs(block @ studentised).max(axis=1) for block in resamples.blocks()]
     return max(one, float(np.quantile(np.concatenate(largest), 0.95)))
+
+
+@lru_cache(maxsize=4)
+def _resamples(label: str, scenes: int) -> Resamples:
+    """Return the draws of a library, which every round of a map asks for again."""
+    return Resamples.draw(f"map/{label}", scenes, n_resamples=RESAMPLES)

@@ -1,4 +1,5 @@
-"""How often a map of equal arms announces anything, and holds the true break-even correlation.
+"""How often a map of equal arms announces anything, how often it holds the true break-even
+correlation, and how often what it says of turning sizes is true.
 
 A scene bears errors up to a size of its own: the baseline succeeds while the two errors differ by
 less, as they compensate each other, the repair while the first error alone is less.
@@ -10,15 +11,27 @@ from itertools import product
 
 import numpy as np
 
+from faultpath.plane.decide import turns
 from faultpath.plane.grow import next_points
 from faultpath.plane.joint import Errors, Expected
-from faultpath.plane.lattice import COARSE, UNITS, Point, lattice, surface_weights
-from faultpath.plane.surface import Combined, Differences, simultaneous
+from faultpath.plane.lattice import (
+    COARSE,
+    UNITS,
+    Point,
+    along,
+    lattice,
+    rays,
+    sizes,
+    surface_weights,
+)
+from faultpath.plane.model import Flip
+from faultpath.plane.surface import Combined, Differences
 from faultpath.selfcheck.model import Measured
 from faultpath.statistics.inputs import Floats
 from faultpath.streams import generator
 
 EQUAL_MAPS, CORRELATION = "equal maps", "break-even correlation"
+TURNS, TURNS_FOUND = "turning sizes", "turning sizes found"
 MODULES = ("first", "second")
 POINTS = 81
 SPREAD, BEARS, COST = 0.4, 0.6, 0.1
@@ -94,7 +107,7 @@ class Waves:
         return Differences(tuple(points), repair, baseline)
 
 
-def truth(points: Sequence[Point]) -> Floats:
+def truth(points: Sequence[tuple[float, float]]) -> Floats:
     """Return the true difference at points, a fraction."""
     x, y = np.array(points, dtype=np.float64).T / UNITS
     return (1.0 - COST) * np.exp(-0.5 * (x / BEARS) ** 2) - np.exp(-0.5 * ((x - y) / BEARS) ** 2)
@@ -113,57 +126,89 @@ class EqualMaps:
     scenes: int
     alike: float | None
     """Share of scenes that end alike in both arms; `None`: they are `Waves`."""
-    of: str
-    """What is announced: of a `place` on the map, or of a `correlation`."""
     runs: int
 
-    def measure(self) -> Measured:
-        """Return the share of maps that announce anything."""
+    def measure(self) -> tuple[Measured, ...]:
+        """Return the share of maps that announce anything: of a place, and of a correlation."""
         stream = generator("selfcheck", repr(self), 0)
-        announced = 0
+        announced = {"place": 0, "correlation": 0}
         for _ in range(self.runs):
             found = grown(
                 Waves.draw(stream, self.scenes)
                 if self.alike is None
                 else Scenes.draw(stream, self.scenes, self.alike, equal=True)
             )
-            announced += self._announces(found)
-        setting = {
-            "scenes": self.scenes,
-            "alike": "waves" if self.alike is None else self.alike,
-            "of": self.of,
-        }
-        return Measured(EQUAL_MAPS, setting, announced / self.runs, self.runs)
+            announced["place"] += _announces(found)
+            expected = Expected.over(_ERRORS, found, "selfcheck")
+            announced["correlation"] += not expected.undecided(_LOOKS).all()
+        alike = "waves" if self.alike is None else self.alike
+        return tuple(
+            Measured(
+                EQUAL_MAPS,
+                {"scenes": self.scenes, "alike": alike, "of": of},
+                number / self.runs,
+                self.runs,
+            )
+            for of, number in announced.items()
+        )
 
-    def _announces(self, found: Differences) -> bool:
-        if self.of == "correlation":
-            return not Expected.over(_ERRORS, found, "selfcheck").undecided(_LOOKS).all()
-        weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
-        z = simultaneous(weights, found, "selfcheck")
-        return bool(Combined.of(weights, found).signs(z).any())
+
+def _announces(found: Differences) -> bool:
+    """Return whether a side is decided anywhere on the map, its paths included."""
+    flips, z = turns(found, MODULES, 1.0, "selfcheck")
+    weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
+    places = Combined.of(weights, found).signs(z).any()
+    return bool(places) or any(flip.start or flip.turned for flip in flips)
 
 
 @dataclass(frozen=True)
-class CorrelationCoverage:
-    """Coverage of the set of correlations at which it is not decided who does better."""
+class Truths:
+    """Maps of arms that differ, by what is known of them."""
 
     scenes: int
     alike: float
-    straight: bool
-    """Whether the truth is that of the map, straight between its points; else of all errors."""
     runs: int
 
-    def measure(self) -> Measured:
-        """Return how often the true break-even correlation is in the set."""
+    def measure(self) -> tuple[Measured, ...]:
+        """Return how often the set of correlations holds the true break-even correlation, and how
+        often nothing false is said of any path; by either truth, that of the map, straight between
+        its points, and that of the errors. Last, how often a turn is found, where one is."""
         stream = generator("selfcheck", repr(self), 0)
-        covered = 0
+        held = {(section, straight): 0 for section in (CORRELATION, TURNS) for straight in (1, 0)}
+        decided = 0
         for _ in range(self.runs):
             found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=False))
             expected = Expected.over(_ERRORS, found, "selfcheck")
-            true = _of_the_map(expected) if self.straight else true_correlation()
-            covered += bool(expected.undecided(np.array([true]))[0])
-        setting = {"scenes": self.scenes, "alike": self.alike, "straight": int(self.straight)}
-        return Measured(CORRELATION, setting, covered / self.runs, self.runs)
+            true = np.array([_of_the_map(expected), true_correlation()])
+            flips, _z = turns(found, MODULES, 1.0, "selfcheck")
+            for straight, covered in zip((1, 0), expected.undecided(true).tolist(), strict=True):
+                held[CORRELATION, straight] += covered
+                held[TURNS, straight] += all(holds(f, found, bool(straight)) for f in flips)
+            decided += any(f.start and f.turned for f in flips if f.path == MODULES[1])
+        setting = {"scenes": self.scenes, "alike": self.alike}
+        rates = [
+            Measured(section, {**setting, "straight": straight}, number / self.runs, self.runs)
+            for (section, straight), number in held.items()
+        ]
+        return *rates, Measured(TURNS_FOUND, setting, decided / self.runs, self.runs)
+
+
+def holds(flip: Flip, found: Differences, straight: bool) -> bool:
+    """Return whether the truth is on the side that is announced, wherever that is on a path."""
+    way = rays(MODULES)[flip.path, flip.direction]
+    looked = np.linspace(0.0, UNITS, 4 * UNITS + 1)
+    if straight:
+        known = sizes(way, found.points)
+        heights = np.interp(looked, known, truth([along(way, size) for size in known]))
+    else:
+        heights = truth([(way[0] * size, way[1] * size) for size in looked.tolist()])
+    at = looked / UNITS
+    said = [(flip.start, 0.0, flip.until), (flip.turned, flip.first, flip.last)]
+    return all(
+        bool((sign * heights[(at >= abs(low)) & (at <= abs(high))] > 0.0).all())
+        for sign, low, high in said
+        if sign and low is not None and high is not None
+    )
 
 
 def _of_the_map(expected: Expected) -> float:
@@ -177,9 +222,9 @@ def _of_the_map(expected: Expected) -> float:
     return 0.5 * (low + high)
 
 
-def map_grid(scenes: Sequence[int], runs: int) -> Iterator[EqualMaps | CorrelationCoverage]:
-    """Yield the grid: what equal arms announce, then coverage."""
-    for n, alike, of in product(scenes, (0.0, 0.7, None), ("place", "correlation")):
-        yield EqualMaps(n, alike, of, runs)
-    for n, alike, straight in product(scenes, (0.0, 0.7), (True, False)):
-        yield CorrelationCoverage(n, alike, straight, runs)
+def map_grid(scenes: Sequence[int], runs: int) -> Iterator[EqualMaps | Truths]:
+    """Yield the grid: what equal arms announce, then what is known of arms that differ."""
+    for n, alike in product(scenes, (0.0, 0.7, None)):
+        yield EqualMaps(n, alike, runs)
+    for n, alike in product(scenes, (0.0, 0.7)):
+        yield Truths(n, alike, runs)

@@ -8,7 +8,7 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
-from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, TURNS
 from faultpath.selfcheck.sequential import ANY_LOOK, EVERY_LOOK
 
 
@@ -66,6 +66,12 @@ PROMISES = (
     ),
     Promise(EQUAL_MAPS, "a map of equal arms announces anything", most=0.05),
     Promise(CORRELATION, "the set of correlations covers the true one", least=0.93),
+    Promise(
+        TURNS,
+        "all that a map says of its paths is true",
+        least=0.95,
+        concerns=lambda cell: cell["straight"] == 1,
+    ),
     Promise(ANY_LOOK, "a sequential audit of equal arms announces anything at any look", most=0.05),
     Promise(EVERY_LOOK, "the confidence sequence holds the truth at every look", least=0.95),
 )

@@ -18,10 +18,10 @@ from faultpath.work import local, run_all
 
 
 class Task(Protocol):
-    """One setting of one simulation; the same one always gives the same rate."""
+    """One setting of one simulation; the same one always gives the same rates."""
 
-    def measure(self) -> Measured:
-        """Simulate it."""
+    def measure(self) -> Measured | tuple[Measured, ...]:
+        """Simulate it; several rates where one sample gives them."""
         ...
 
 
@@ -77,7 +77,7 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
 
 def check_map(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
     """Simulate reversal maps as `check_statistics` does audits; ``profile`` is full or quick."""
-    tasks = map_grid((25,), 10) if profile == "quick" else map_grid((10, 25, 50, 100), 400)
+    tasks = map_grid((25,), 20) if profile == "quick" else map_grid((10, 25, 50, 100), 500)
     return _simulated(profile, list(tasks), processes, progress)
 
 
@@ -87,7 +87,7 @@ def _simulated(
     start = time.perf_counter()
     # The slow ones stand at the end; mixed, the time left can be told from what is done.
     order = sorted(range(len(tasks)), key=lambda i: (i * 7919) % len(tasks))
-    found: dict[int, Measured] = {}
+    found: dict[int, Measured | tuple[Measured, ...]] = {}
 
     most = math.ceil(len(tasks) / _EACH)
     with local(min(processes, most) if processes > 1 else 0) as executor:
@@ -97,7 +97,8 @@ def _simulated(
                 spent = time.perf_counter() - start
                 left = spent * (len(tasks) - len(found)) / len(found) if len(found) > 20 else None
                 progress(len(found), len(tasks), left)
-    done = [found[index] for index in range(len(tasks))]
+    rates = (found[index] for index in range(len(tasks)))
+    done = [one for each in rates for one in (each if isinstance(each, tuple) else (each,))]
     return Report(
         profile=profile,
         seconds=round(time.perf_counter() - start, 1),

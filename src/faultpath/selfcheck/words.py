@@ -9,7 +9,7 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
-from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, TURNS, TURNS_FOUND
 from faultpath.selfcheck.rows import LEANS, Shown, Texts, across, each, of_seeds, share
 from faultpath.selfcheck.sequential import ANY_LOOK, DECIDED, EVERY_LOOK, TAKEN
 from faultpath.tables import Table
@@ -194,6 +194,33 @@ TABLES = (
                 str(c["scenes"]),
                 f"{float(c['alike']):g}",
             ),
+        ),
+    ),
+    Shown(
+        TURNS,
+        "What a map says of its paths",
+        "Share of maps in which all that is announced of the six half-lines is true: who is ahead "
+        "up to the size before the turn, and who from the size after it on. Promised: at least "
+        ".95 of the surface that is straight between the points; what that misses of the errors "
+        "themselves no interval holds.",
+        each(
+            ("truth", "scenes", "scenes alike", "all true"),
+            lambda c: (
+                "of the surface" if c["straight"] else "of the errors",
+                str(c["scenes"]),
+                f"{float(c['alike']):g}",
+            ),
+        ),
+    ),
+    Shown(
+        TURNS_FOUND,
+        "Turning sizes that are found",
+        "Of these maps, the share that decides both who is ahead under correct inputs (the "
+        "baseline, by 10 pp) and that a larger error at the second module turns it, which is so. "
+        "Nothing is promised: this is power.",
+        each(
+            ("scenes", "scenes alike", "turn found"),
+            lambda c: (str(c["scenes"]), f"{float(c['alike']):g}"),
         ),
     ),
     Shown(
