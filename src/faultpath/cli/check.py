@@ -1,5 +1,6 @@
 """`faultpath check`: does a system keep what an audit takes for granted?"""
 
+import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -38,23 +39,20 @@ def command(
 ) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
     what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
-    from faultpath.door.display import Display, Now, SafeConsole
-    from faultpath.door.systems import choose
-    from faultpath.patience import patience
-    from faultpath.review.check import Asked, check_system
+    from faultpath.door import check
+    from faultpath.door.display import Display, SafeConsole
 
-    named = tuple(name for name in (variants or "").split(",") if name)
-    with patience(system, time_limit):
-        chosen = choose(system, settings(set_ or []), workers, named)
-    if workers is None:
-        workers = 2 if chosen.system.parallel else 1
-    with Display(SafeConsole(stderr=True)).progress("Checking") as show:
-
-        def note(done: int, known: int | None) -> None:
-            show(Now(done, known, f"{done} of {known} flights" if known else f"{done} flights"))
-
-        asked = Asked(named, library, scenes, seed, workers, time_limit)
-        report = check_system(chosen.system, chosen.spec, asked, note)
+    report = check(
+        system,
+        variants=tuple(name for name in (variants or "").split(",") if name),
+        library=library,
+        scenes=scenes,
+        seed=seed,
+        options=settings(set_ or []),
+        workers=workers,
+        time_limit_s=time_limit,
+        progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),
+    )
     if as_json:
         typer.echo(report.model_dump_json(indent=2))
     else:

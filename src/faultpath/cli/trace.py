@@ -31,28 +31,16 @@ def command(
     """Print who read what, when, and draw the interface with what really ran. Exits with 1 where
     that differs from what is declared."""
     from faultpath.door.display import SafeConsole
+    from faultpath.door.reviewing import traced
     from faultpath.door.systems import choose
-    from faultpath.faults import parse_fault
     from faultpath.patience import patience
     from faultpath.report.interface_trace import draw_trace, trace_table
-    from faultpath.review.tracing import trace_system
     from faultpath.store import write_text
     from faultpath.tables.terminal import STYLES, drawn
 
     with patience(system, None):
         chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
-    built = chosen.system
-    struck = fault and parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s)
-    trace = trace_system(
-        built,
-        chosen.spec,
-        variant or next(iter(built.variants)),
-        library,
-        scene,
-        steps,
-        seed,
-        struck or None,
-    )
+    trace = traced(chosen, variant, library, scene, steps, seed, fault)
     console = SafeConsole()
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
@@ -67,7 +55,7 @@ def command(
         if not trace.findings:
             console.print("What ran is what is declared.", style=STYLES["good"])
     if svg is not None:
-        write_text(svg, draw_trace(built.interface, trace))
+        write_text(svg, draw_trace(chosen.system.interface, trace))
         if not as_json:
             console.print(f"Written: {svg}", markup=False, soft_wrap=True)
     return FOUND if trace.findings else 0
