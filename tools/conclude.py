@@ -10,11 +10,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import map_blocks
 import numpy as np
 from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
 
-from faultpath.door.saved import RECORD, SYSTEM, TRACES
+from faultpath.door.saved import MAP, RECORD, SYSTEM, TRACES
 from faultpath.faults import parse_fault
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
@@ -49,6 +50,8 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         before = json.loads((folder / "record.json").read_bytes())
         record = _audit(folder, before)
         tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
+    for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
+        tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
     for platform in shipped.shipped():
         for line in _paper(shipped.RUNS / platform, REFERENCE / "paper" / platform):
             tell(f"the paper on {platform}: {line}")

@@ -1,26 +1,33 @@
 """What the documents show of reference runs of `faultpath map`, and of its self-check."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from blocks import REFERENCE, TAKE_AGAIN, command, copied, fence, missing, parsed
+from blocks import REFERENCE, ROOT, TAKE_AGAIN, command, copied, fence, missing, parsed
 from pictures import IMAGES
 from rich.console import Console
 
 from faultpath.door.map_flying import MADE_FROM
 from faultpath.door.saved import MAP
+from faultpath.plane.decide import conclude as decide
+from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
+from faultpath.plane.study import plan_map
 from faultpath.record import RunProvenance
 from faultpath.report import wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
-from faultpath.report.plane import shown
+from faultpath.report.plane import shown, table_markdown
 from faultpath.selfcheck import Report, failures
 from faultpath.selfcheck.words import tables
+from faultpath.store import read_outcomes
+from faultpath.store.folder import OUTCOMES
+from faultpath.store.sealed import seal
 from faultpath.tables.markdown import grid
+from faultpath.trials import SystemSpec, library_of, load_system
 
 TAKEN = (*MADE_FROM, "provenance.json", "table.md")
 CHECK = REFERENCE / "map-check.json"
@@ -50,6 +57,44 @@ def take(name: str, folder: Path) -> None:
     """Make the folder of a map a reference map."""
     copied(TAKEN, folder, REFERENCE / name)
     load.cache_clear()
+
+
+def conclude(folder: Path) -> MapRecord:
+    """Decide a reference map anew from its trials; write its record and table."""
+    before = parsed(folder / MAP, MapRecord, TAKE_AGAIN)
+    asked = before.question
+    place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
+    spec = SystemSpec(name=place, options=asked.options)
+    system = load_system(spec)
+    plan = plan_map(
+        system,
+        spec,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        against=asked.against,
+        library=library_of(system, asked.library),
+        up_to=asked.up_to,
+        points=asked.points,
+        means=asked.means,
+        spreads=asked.spreads,
+        correlation=asked.correlation,
+        scenes=asked.n_scenes,
+        seeds=asked.seeds,
+    )
+    plan = replace(plan, question=asked)
+    flown = [
+        [round(error / asked.up_to * UNITS) for error in each.errors] for each in before.points
+    ]
+    outcomes = read_outcomes(folder / OUTCOMES)
+    record = decide(plan, [(x, y) for x, y in flown], outcomes, before.findings)
+    (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
+    (folder / "table.md").write_text(table_markdown(record), "utf-8")
+    origin = parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN)
+    sealed = origin.model_copy(update={"files": seal(folder, origin.files)})
+    (folder / "provenance.json").write_text(sealed.model_dump_json(indent=2) + "\n", "utf-8")
+    load.cache_clear()
+    return record
 
 
 def pictures() -> Mapping[Path, str]:

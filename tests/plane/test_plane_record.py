@@ -1,6 +1,7 @@
 """Joint errors, break-even correlation, turning sizes, and that nothing undecided is said."""
 
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,9 +10,14 @@ from plane_toys import alike, grown, question, record, reversal
 from faultpath.plane.decide import decided
 from faultpath.plane.joint import Errors, Expected
 from faultpath.plane.lattice import COARSE, SHOWN, UNITS, lattice
+from faultpath.plane.model import MapRecord
 from faultpath.plane.surface import Differences
 from faultpath.plane.words import cut
+from faultpath.record import RunProvenance
+from faultpath.report.figures.plane import correlation_picture, map_picture
+from faultpath.report.plane import page, tables
 
+REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")
 
@@ -157,3 +163,67 @@ def test_what_finer_points_showed_beside_what_was_foretold_is_told() -> None:
     assert made.missed_pp < 1
     assert record(lambda x, y: (np.ones(40), np.zeros(40))).missed_pp is None
     assert len(record(lambda x, y: (np.ones(40), np.zeros(40))).points) == len(lattice(COARSE))
+
+
+def origin() -> RunProvenance:
+    return RunProvenance.model_validate_json((REFERENCE / "map-toy/provenance.json").read_bytes())
+
+
+def shown(made: MapRecord) -> dict[str, tuple[str, ...]]:
+    """The table of turning sizes, by path and direction."""
+    (table,) = (each for each in tables(made) if each.name == "flips")
+    return {
+        f"{each.label}, {each.entries[0].text}": tuple(e.text for e in each.entries[1:])
+        for each in table.lines
+    }
+
+
+def test_the_table_of_turning_sizes_says_what_its_sentences_say() -> None:
+    made = record(reversal(100))
+    rows = shown(made)
+    assert len(rows) == 6
+    assert rows["shared, below 0"] == ("old, −40 %", "–", "–")
+    kept, turn, beyond = rows["observer alone, above 0"]
+    (said,) = (
+        s for s in made.sentences if s.startswith("With the observer alone wrong, error above")
+    )
+    assert kept.startswith("old, +")
+    assert beyond.startswith("new, +")
+    assert f"old is ahead up to {kept.removeprefix('old, ')}" in said
+    assert f"new is ahead from {beyond.removeprefix('new, ')} on" in said
+    sizes = [float(re.findall(r"[\d.]+", each)[0]) for each in (kept, turn, beyond)]
+    assert sizes == sorted(sizes)
+
+
+def test_where_correct_inputs_decide_nothing_no_verdict_is_shown_to_turn() -> None:
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        scenes = np.arange(60)
+        return scenes >= 0, scenes >= 3 + 40 * (0.4 < abs(x) < 0.8)
+
+    kept, turn, beyond = shown(record(seen))["observer alone, above 0"]
+    assert (kept, turn) == ("–", "–")
+    assert re.fullmatch(r"new, \+[\d.]+ % to \+[\d.]+ %", beyond)
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4])
+def test_of_a_few_scenes_no_turning_size_is_shown(scenes: int) -> None:
+    made = record(reversal(scenes))
+    assert [each.name for each in tables(made)] == ["paths"]
+    assert "turns" not in page(made, origin())
+    assert not any(entry.detected for each in tables(made)[0].lines for entry in each.entries)
+
+
+def test_of_ties_no_turning_size_is_shown() -> None:
+    assert set(shown(record(alike(40))).values()) == {("–", "–", "–")}
+
+
+@pytest.mark.parametrize("narrow", [False, True])
+def test_the_map_says_what_is_compared_what_0_means_and_cuts_no_label(narrow: bool) -> None:
+    made = record(reversal(40), against=("reconstruction", "predictor"))
+    drawn = [map_picture(made, narrow).render(), correlation_picture(made, narrow).render()]
+    for each in drawn:
+        assert "new minus old, " in each
+        assert "0: both succeed equally often" in each
+        assert "…" not in each
+    assert "error at the reconstruction, %" in drawn[0]
+    assert "shared" in drawn[0]

@@ -15,6 +15,7 @@ from faultpath.record import RunProvenance
 from faultpath.report import wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.frame import render
+from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.store import make_folder, write_text
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.html import html
@@ -24,8 +25,12 @@ from faultpath.version import __version__
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:
-    """Return the paths of the fault, and how large an error changes the verdict on each."""
-    return _paths(record), _flips(record)
+    """Return how large an error changes the verdict on each path, and what was seen there.
+
+    Too few scenes to decide anything have no verdict that could change.
+    """
+    flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
+    return *flips, _paths(record)
 
 
 def _paths(record: MapRecord) -> Table:
@@ -39,7 +44,7 @@ def _paths(record: MapRecord) -> Table:
     )
     return Table(
         name="paths",
-        title=f"{asked.repair} minus {asked.baseline}, pp",
+        title=f"{asked.repair} minus {asked.baseline}, success, pp",
         corner="Error",
         columns=(*(f"{name} alone" for name in asked.against), "shared"),
         lines=tuple(
@@ -67,23 +72,31 @@ def _flips(record: MapRecord) -> Table:
         name="flips",
         title="Smallest error that turns the verdict",
         corner="Path",
-        columns=("Error", "Estimate", "Before it is decided", "After it is decided"),
+        columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
         lines=tuple(_flip(record, flip) for flip in record.flips),
         notes=(
-            "Before: largest error up to which the verdict under correct inputs is decided. After: "
-            "smallest error at which the other one is. The turn lies between them.",
+            "Ahead is who is decided to be, at all sizes up to that one, or from that one on. The "
+            "turn lies between the two, which are its interval. A dash: no size on the map is "
+            "decided, or the estimate does not turn; where correct inputs decide nothing there is "
+            "no verdict to turn. All of it holds at once, with the intervals of the map.",
         ),
     )
 
 
 def _flip(record: MapRecord, flip: Flip) -> Line:
+    """Return a path; as in the sentences, nothing is rounded so that it would claim more."""
     asked = record.question
+    ahead = {1: asked.repair, -1: asked.baseline}
+    kept, turned = MISSING, MISSING
+    if flip.start and flip.until is not None:
+        kept = f"{ahead[flip.start]}, {_said(asked, cut(flip.until, out=False))}"
+    if flip.turned and flip.first is not None and flip.last is not None:
+        turned = f"{ahead[flip.turned]}, {_said(asked, cut(flip.first, out=True))}"
+        if abs(flip.last) < asked.up_to:
+            turned += f" to {_said(asked, cut(flip.last, out=False))}"
     path = SHARED if flip.path == SHARED else f"{flip.path} alone"
-    # As in the sentences, nothing is rounded so that it would claim more.
-    until = None if flip.until is None else cut(flip.until, out=False)
-    first = None if flip.first is None else cut(flip.first, out=True)
-    texts = (_said(asked, size) for size in (flip.estimate, until, first))
-    return line(path, "above 0" if flip.direction > 0 else "below 0", *texts)
+    direction = "above 0" if flip.direction > 0 else "below 0"
+    return line(path, direction, kept, _said(asked, flip.estimate), turned)
 
 
 def _said(asked: MapQuestion, size: float | None) -> str:
@@ -126,6 +139,7 @@ def shown(record: MapRecord) -> RenderableType:
 
 def page(record: MapRecord, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
+    *turns, paths = tables(record)
     return render(
         "map.html.j2",
         ("tokens.css", "svg.css", "page.css"),
@@ -136,9 +150,12 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         version=__version__,
         sentences=[wording.typeset(each) for each in record.sentences],
         headline=wording.typeset(record.headline),
-        map=Markup(map_picture(record).render()),
-        curve=Markup(correlation_picture(record).render()),
-        tables=[Markup(html(table)) for table in tables(record)],
+        maps=[Markup(map_picture(record, narrow).render()) for narrow in (False, True)],
+        curves=[Markup(correlation_picture(record, narrow).render()) for narrow in (False, True)],
+        flips=Markup(html(turns[0])) if turns else "",
+        flips_notes=turns[0].notes if turns else (),
+        paths=Markup(html(paths)),
+        paths_notes=paths.notes,
         points=Markup(html(every_point(record))),
         w=wording,
     )
@@ -157,4 +174,9 @@ def _files(record: MapRecord, provenance: RunProvenance) -> Iterator[tuple[str, 
     yield "report.html", page(record, provenance)
     yield "map.svg", map_picture(record).render(standalone=True) + "\n"
     yield "correlation.svg", correlation_picture(record).render(standalone=True) + "\n"
-    yield "table.md", "\n\n".join(map(block, (*tables(record), every_point(record)))) + "\n"
+    yield "table.md", table_markdown(record)
+
+
+def table_markdown(record: MapRecord) -> str:
+    """Return all tables as Markdown."""
+    return "\n\n".join(map(block, (*tables(record), every_point(record)))) + "\n"

@@ -9,20 +9,20 @@ from faultpath.report import wording
 from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
 from faultpath.report.svg import Svg, number, shortened
 
-_SIDE, _LEFT, _TITLE, _TOP = 420.0, 64.0, 26.0, 84.0
+_WIDE, _NARROW = 420.0, 272.0
+"""Sides of the square."""
+_LEFT, _RIGHT, _TOP = 40.0, 104.0, 148.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 """From which difference on, pp, an area has which opacity."""
+_EQUAL = "0: both succeed equally often"
 
 
-def map_picture(record: MapRecord) -> Svg:
+def map_picture(record: MapRecord, narrow: bool = False) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
-    asked = record.question
-    width = _LEFT + _SIDE + 92
-    svg = Svg(width, _TOP + _SIDE + 48, _title(record), record.headline)
-    title = f"Who succeeds more often, {asked.repair} or {asked.baseline}, at each pair of errors"
-    svg.text(0, 13, shortened(title, width, 13), "head", tip=title)
-    x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + _SIDE)
-    y = Axis(-asked.up_to, asked.up_to, _TOP + _SIDE, _TOP)
+    asked, side = record.question, _NARROW if narrow else _WIDE
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, _title(record), record.headline)
+    x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + side)
+    y = Axis(-asked.up_to, asked.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
     _key(svg, record, hatch)
     _areas(svg, record, x, y, hatch)
@@ -73,9 +73,12 @@ def _paths(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
     svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
     svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
     svg.line((x.start, y.start), (x.end, y.end), "back")
-    for name, across, up in ((first, x.end, y(0.0)), ("shared", x.end, y.end)):
-        svg.text(across + 6, up + 4, shortened(name, 84, 12), "bold", tip=name)
-    svg.text(x(0.0), y.end - 6, shortened(second, 160, 12), "bold", "middle", tip=second)
+    tips = ((first, x.end, y(0.0) - 3), (second, x(0.0), y.end - 20))
+    for name, across, up in tips:
+        anchor, left = ("middle", across) if name == second else ("start", across + 6)
+        svg.text(left, up, shortened(name, _RIGHT - 8, 12), "bold", anchor, tip=name)
+        svg.text(left, up + 14, "alone", "bold", anchor)
+    svg.text(x.end + 6, y.end + 4, "shared", "bold")
 
 
 def _square(x: Axis, y: Axis) -> str:
@@ -111,50 +114,53 @@ def _scales(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
         svg.text(x.start - 8, y(tick) + 4, tick_label(round(factor * tick, 9)), "small soft", "end")
     middle = (x.start + x.end) / 2
     across = f"error at the {asked.against[0]}, {unit}".removesuffix(", 1")
-    svg.text(middle, y.start + 36, shortened(across, _SIDE, 11), "small soft", "middle")
+    svg.text(middle, y.start + 36, shortened(across, svg.width, 11), "small soft", "middle")
     upward = f"error at the {asked.against[1]}, {unit}".removesuffix(", 1")
-    svg.text(0, y.end - 6, shortened(upward, _LEFT + _SIDE / 2 - 60, 11), "small soft")
+    svg.text(0, y.end - 38, shortened(upward, svg.width, 11), "small soft")
 
 
 def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
-    asked = record.question
-    width = (_LEFT + _SIDE + 92) / 2
-    for column, (name, side) in enumerate(
-        ((f"{asked.repair} ahead", "repair-only"), (f"{asked.baseline} ahead", "baseline-only"))
-    ):
-        left = column * width
-        svg.path(
-            f"M{number(left)} {number(_TITLE + 2)}h22v11h-22Z", side, fill_opacity=_SHADES[1][1]
-        )
-        if column:
-            svg.path(
-                f"M{number(left)} {number(_TITLE + 2)}h22v11h-22Z",
-                "",
-                fill=hatch,
-                fill_opacity="0.5",
-            )
-        svg.text(left + 30, _TITLE + 12, shortened(name, width - 40, 12), tip=name)
-    svg.path(f"M0 {number(_TITLE + 22)}h22v11h-22Z", "inner")
-    svg.text(30, _TITLE + 32, "not decided")
-    svg.line((width, _TITLE + 28), (width + 22, _TITLE + 28), "range")
-    svg.text(width + 30, _TITLE + 32, "estimate of no difference")
+    """Draw what is compared, the scale of what is decided, and what is not."""
+    asked, cell = record.question, 46.0
+    end = 6 * cell
+    title = f"{asked.repair} minus {asked.baseline}, success, percentage points"
+    svg.text(0, 12, shortened(title, svg.width, 12), "bold", tip=title)
+    for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
+        said = f"{name} ahead"
+        svg.text(left, 32, shortened(said, end / 2 - 6, 12), anchor=anchor, tip=said)
+    shades = [shade for _, shade in _SHADES]
+    for column, shade in enumerate((*shades, *reversed(shades))):
+        side = "baseline-only" if column < len(shades) else "repair-only"
+        piece = f"M{number(column * cell)} 38h{number(cell)}v12h-{number(cell)}Z"
+        svg.path(piece, side, fill_opacity=shade)
+        if column < len(shades):
+            svg.path(piece, "", fill=hatch, fill_opacity="0.5")
+    bounds = [least for least, _ in _SHADES]
+    for column, value in enumerate((*(-each for each in bounds), *reversed(bounds[:-1])), 1):
+        label = f"{value:+.0f}".replace("-", "−") if value else "0"
+        svg.text(column * cell, 63, label, "small soft", "middle")
+    svg.path("M0 74h22v11h-22Z", "inner")
+    svg.text(28, 84, "not decided")
+    svg.line((112, 80), (134, 80), "range")
+    svg.text(140, 84, f"estimate {_EQUAL}")
 
 
-def correlation_picture(record: MapRecord) -> Svg:
+def correlation_picture(record: MapRecord, narrow: bool = False) -> Svg:
     """Return the expected difference over the correlation, in an arm's colour where decided."""
     joint, asked = record.joint, record.question
     told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
-    svg = Svg(576, 296, f"Expected difference over the correlation, {asked.system}", told)
-    x = Axis(-1.0, 1.0, 40, 566)
+    width = _LEFT + (_NARROW if narrow else _WIDE) + _RIGHT
+    svg = Svg(width, 286, f"Expected difference over the correlation, {asked.system}", told)
+    x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
-    y = vertical.at(248, 52)
-    title = f"Success of {asked.repair} minus success of {asked.baseline} as the errors go together"
-    svg.text(0, 13, shortened(title, 576, 13), "head", tip=title)
-    svg.text(0, 36, "expected difference, pp", "small soft")
+    y = vertical.at(238, 44)
+    title = f"{asked.repair} minus {asked.baseline}, expected success, percentage points"
+    svg.text(0, 12, shortened(title, width, 12), "bold", tip=title)
+    svg.text(0, 28, _EQUAL, "small soft")
     draw_levels(svg, x, y, 5, zero="zero")
     for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
         draw_tick(svg, x, y, tick, tick_label(tick))
-    svg.text(x(0.0), 284, "correlation of the two errors", "small soft", "middle")
+    svg.text(x(0.0), 274, "correlation of the two errors", "small soft", "middle")
     upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
     lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
     svg.polygon([*upper, *reversed(lower)], "fan")
