@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from blocks import REFERENCE, ROOT, TAKE_AGAIN, command, copied, fence, missing, parsed
+from flown_code import flown_by
 from pictures import IMAGES
 from rich.console import Console
 
@@ -21,6 +22,7 @@ from faultpath.record import RunProvenance
 from faultpath.report import wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.plane import shown, table_markdown
+from faultpath.report.plane import tables as map_tables
 from faultpath.selfcheck import Report, failures
 from faultpath.selfcheck.words import tables
 from faultpath.store import read_outcomes
@@ -29,7 +31,7 @@ from faultpath.store.sealed import seal
 from faultpath.tables.markdown import grid
 from faultpath.trials import SystemSpec, library_of, load_system
 
-TAKEN = (*MADE_FROM, "provenance.json", "table.md")
+TAKEN = (*MADE_FROM, "provenance.json")
 CHECK = REFERENCE / "map-check.json"
 PICTURES = {"map": map_picture, "correlation": correlation_picture}
 
@@ -57,6 +59,8 @@ def take(name: str, folder: Path) -> None:
     """Make the folder of a map a reference map."""
     copied(TAKEN, folder, REFERENCE / name)
     load.cache_clear()
+    if (run := load(name)) is not None:
+        (REFERENCE / name / "table.md").write_text(table_markdown(run.record), "utf-8")
 
 
 def conclude(folder: Path) -> MapRecord:
@@ -119,6 +123,20 @@ def _picture(run: Mapped, part: str) -> str:
     return f"![{wording.typeset(run.record.headline)}]({{images}}/{run.name}-{part}.svg)"
 
 
+def _said(run: Mapped) -> str:
+    """Return the headline, what it rests on, and by which code the map was flown."""
+    record, asked = run.record, run.record.question
+    lines = [f"> **{wording.typeset(record.headline)}**"]
+    lines += [f"> {wording.typeset(each)}" for each in record.sentences]
+    flown = flown_by(run.provenance, asked.system, asked.options)
+    return "\n>\n".join(lines) + f"\n\n{flown}"
+
+
+def _turns(run: Mapped) -> str:
+    flips = next(each for each in map_tables(run.record) if each.name == "flips")
+    return "\n\n".join([grid(flips), *flips.notes])
+
+
 def _check() -> str:
     if not CHECK.is_file():
         return (
@@ -126,10 +144,19 @@ def _check() -> str:
         )
     report = parsed(CHECK, Report, "run faultpath selfcheck map again")
     broken = failures(report)
+    (runs,) = {float(cell["runs"]) for each in report.sections for cell in each.cells()}
+    precision = (
+        f"{runs:.0f} maps a setting: a rate near .05 or .95 has a standard error of "
+        f"{(0.05 * 0.95 / runs) ** 0.5:.3f}."
+    )
     said = "\n".join(f"- {each}" for each in broken)
-    kept = f"Promises broken:\n\n{said}" if said else "No promise is broken beyond three errors."
+    kept = (
+        f"Promises broken:\n\n{said}"
+        if said
+        else "No promise is broken by more than three of them."
+    )
     shown_ = [f"**{table.title}**\n\n{table.notes[0]}\n\n{grid(table)}" for table in tables(report)]
-    return "\n\n".join([kept, *shown_])
+    return "\n\n".join([precision, kept, *shown_])
 
 
 def _about(fill: Callable[..., str]) -> Callable[..., str]:
@@ -144,6 +171,8 @@ KIND: dict[str, Callable[..., str]] = {
     "command": _about(command),
     "terminal": _about(_terminal),
     "picture": _about(_picture),
+    "said": _about(_said),
+    "turns": _about(_turns),
     "check": _check,
 }
 """What fills the kinds of blocks about maps."""
