@@ -1,11 +1,11 @@
-"""The smallest size that turns the verdict is one that was flown and decided, for all sizes at once."""
+"""The smallest size that turns the verdict was flown, and is decided for all sizes at once."""
 
 from dataclasses import replace
 
 import pytest
 
 from faultpath.report.comparison.page import page
-from faultpath.report.comparison.runs import Compared
+from faultpath.report.comparison.runs import Compared, titles
 from faultpath.report.comparison.turning import turning
 from faultpath.report.inputs import ReportInput
 
@@ -33,10 +33,10 @@ def shown(source: ReportInput, correct: Decided, *shared: Decided, fault: str = 
         sized(source, f"{fault}={size}", correct, each)
         for size, each in zip(SIZES, shared, strict=True)
     ]
-    table = turning([replace(run, number=i) for i, run in enumerate(runs, 1)])
+    table = turning(runs)
     assert table is not None
     found = {each.label: tuple(e.text for e in each.entries) for each in table.lines}
-    title = next(p.title for p in source.record.paths if p.name == "shared")
+    title = titles(runs)["shared"]
     return found[f"{title}, above 0"], found[f"{title}, below 0"]
 
 

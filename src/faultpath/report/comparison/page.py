@@ -12,6 +12,7 @@ from faultpath.report import wording
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.runs import Compared, titles
 from faultpath.report.comparison.sweep import swept
+from faultpath.report.comparison.turning import turning
 from faultpath.report.figures.effects import EffectRow, effect_rows
 from faultpath.report.figures.multiples import Rows, multiple, shared_axis
 from faultpath.report.figures.over_sizes import over_sizes
@@ -61,6 +62,8 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
     parts += [Text(""), drawn(effects(runs)), Text("")]
     parts += [drawn(facts.table(runs, found))] if found else [Text(words.same(runs))]
+    if turns := turning(runs):
+        parts += [Text(""), drawn(turns), *map(Text, turns.notes)]
     return Group(*parts, Text(""), *map(Text, words.sentences(runs)))
 
 
@@ -76,7 +79,7 @@ def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
     found, panels = facts.differing(runs), _panels(runs)
     axis = shared_axis([rows for _, rows in panels])
-    sizes = swept(runs)
+    sizes, turns = swept(runs), turning(runs)
     return render(
         "comparison.html.j2",
         ("tokens.css", "svg.css", "page.css", "comparison.css"),
@@ -93,6 +96,8 @@ def page(runs: Sequence[Compared]) -> str:
         facts=Markup(html(facts.table(runs, found))) if found else "",
         same=words.same(runs),
         sizes=sizes,
+        turns=Markup(html(turns)) if turns else "",
+        turns_notes=turns.notes if turns else (),
         w=wording,
     )
 
