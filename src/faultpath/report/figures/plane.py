@@ -108,7 +108,8 @@ def _scales(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
     asked = record.question
     unit = "%" if asked.relative else asked.unit
     factor = 100.0 if asked.relative else 1.0
-    for tick in x.ticks(4):
+    for share in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        tick = share * asked.up_to
         draw_tick(svg, x, y, tick, tick_label(round(factor * tick, 9)))
         svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
         svg.text(x.start - 8, y(tick) + 4, tick_label(round(factor * tick, 9)), "small soft", "end")
@@ -123,7 +124,7 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     """Draw what is compared, the scale of what is decided, and what is not."""
     asked, cell = record.question, 46.0
     end = 6 * cell
-    title = f"{asked.repair} minus {asked.baseline}, success, percentage points"
+    title = f"{asked.repair} minus {asked.baseline}, success, pp"
     svg.text(0, 12, shortened(title, svg.width, 12), "bold", tip=title)
     for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
         said = f"{name} ahead"
@@ -154,7 +155,7 @@ def correlation_picture(record: MapRecord, narrow: bool = False) -> Svg:
     x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
     y = vertical.at(238, 44)
-    title = f"{asked.repair} minus {asked.baseline}, expected success, percentage points"
+    title = f"{asked.repair} minus {asked.baseline}, expected success, pp"
     svg.text(0, 12, shortened(title, width, 12), "bold", tip=title)
     svg.text(0, 28, _EQUAL, "small soft")
     draw_levels(svg, x, y, 5, zero="zero")
