@@ -159,16 +159,20 @@ def _check() -> str:
     return "\n\n".join([precision, kept, *shown_])
 
 
-def _about(fill: Callable[..., str]) -> Callable[..., str]:
+def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
+    """Return what fills blocks about one map; without the map the `first` kind says so, once."""
+
     def filled(name: str, *arguments: str) -> str:
         run: Any = load(name)
-        return missing(name) if run is None else fill(run, *arguments)
+        if run is None:
+            return missing(name) if first else ""
+        return fill(run, *arguments)
 
     return filled
 
 
 KIND: dict[str, Callable[..., str]] = {
-    "command": _about(command),
+    "command": _about(command, first=True),
     "terminal": _about(_terminal),
     "picture": _about(_picture),
     "said": _about(_said),
