@@ -222,7 +222,7 @@ def test_the_map_says_what_is_compared_what_0_means_and_cuts_no_label(narrow: bo
     made = record(reversal(40), against=("reconstruction", "predictor"))
     drawn = [map_picture(made, narrow).render(), correlation_picture(made, narrow).render()]
     for each in drawn:
-        assert "new minus old, " in each
+        assert "uccess of new minus that of old, pp" in each
         assert "0: both succeed equally often" in each
         assert "…" not in each
     assert "error at the reconstruction, %" in drawn[0]

@@ -124,8 +124,8 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     """Draw what is compared, the scale of what is decided, and what is not."""
     asked, cell = record.question, 46.0
     end = 6 * cell
-    title = f"{asked.repair} minus {asked.baseline}, success, pp"
-    svg.text(0, 12, shortened(title, svg.width, 12), "bold", tip=title)
+    title = f"Success of {asked.repair} minus that of {asked.baseline}, pp"
+    svg.text(0, 13, shortened(title, svg.width, 13), "head", tip=title)
     for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
         said = f"{name} ahead"
         svg.text(left, 32, shortened(said, end / 2 - 6, 12), anchor=anchor, tip=said)
@@ -155,8 +155,8 @@ def correlation_picture(record: MapRecord, narrow: bool = False) -> Svg:
     x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
     y = vertical.at(238, 44)
-    title = f"{asked.repair} minus {asked.baseline}, expected success, pp"
-    svg.text(0, 12, shortened(title, width, 12), "bold", tip=title)
+    title = f"Expected success of {asked.repair} minus that of {asked.baseline}, pp"
+    svg.text(0, 13, shortened(title, width, 13), "head", tip=title)
     svg.text(0, 28, _EQUAL, "small soft")
     draw_levels(svg, x, y, 5, zero="zero")
     for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
