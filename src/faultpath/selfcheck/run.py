@@ -77,7 +77,7 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
 
 def check_map(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
     """Simulate reversal maps as `check_statistics` does audits; ``profile`` is full or quick."""
-    tasks = map_grid((25,), 20) if profile == "quick" else map_grid((10, 25, 50, 100), 500)
+    tasks = map_grid((25,), 10) if profile == "quick" else map_grid((10, 25, 50, 100), 500)
     return _simulated(profile, list(tasks), processes, progress)
 
 
