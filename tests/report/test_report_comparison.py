@@ -63,6 +63,11 @@ def test_sizes_of_one_fault_are_drawn_over_the_size_and_their_number_is_counted(
     said = " ".join(words.sentences(three))
     assert "over all 3 sizes that chance can reach 15 %" in said
     assert "Correct inputs are the same trials at every size" in said
+    assert "verdicts differ" not in said
+    mixed = (*three[:2], signed(three[2], "shared", 0))
+    told = next(each for each in words.sentences(mixed) if "verdicts differ" in each)
+    baseline = three[0].asked.baseline
+    assert told.endswith(f"size: {baseline} ahead at −0.1 and 0.1; not decided at 0.2.")
     kept = next(each for each in words.sentences(three) if "p-values times 3" in each)
     shared = titles(three)["shared"]
     assert f"{shared}: for the baseline at −0.1 and 0.1" in kept

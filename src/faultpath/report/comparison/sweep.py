@@ -46,11 +46,25 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
         return ()
     together = min(100.0, 100 * ALPHA * len(runs))
     return (
+        *_differ(runs, sizes),
         *_same(runs),
         f"Each size is decided by itself, with a chance of at most {100 * ALPHA:g} % of a wrong "
         f"decision; over all {len(runs)} sizes that chance can reach {together:g} %.",
         *_strict(runs, sizes),
     )
+
+
+def _differ(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
+    """Say on which paths verdicts are not the same at every size, and what they are."""
+    for path, title in titles(runs).items():
+        at: dict[str, list[str]] = {}
+        for run, size in sorted(zip(runs, sizes.sizes, strict=True), key=lambda each: each[1]):
+            sign = effect.sign if (effect := run.effect(path)) else 0
+            ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
+            at.setdefault(ahead.get(sign, "not decided"), []).append(tick_label(size))
+        if len(at) > 1:
+            said = "; ".join(f"{words} at {joined(where)}" for words, where in at.items())
+            yield f"{title}, verdicts differ with the size: {said}."
 
 
 def _same(runs: Sequence[Compared]) -> Iterator[str]:
