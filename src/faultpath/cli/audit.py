@@ -153,9 +153,11 @@ def command(
 
     if as_json:
         tell_json(runs)
-    if len(runs) > 1:
-        return _tell_sweep(console, runs, out)
-    return tell(console, runs, details)
+    if len(runs) == 1:
+        return tell(console, runs, details)
+    if details:
+        tell(console, runs, details)
+    return _tell_sweep(console, runs, out)
 
 
 def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None) -> int:
