@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 import faultpath
+from faultpath.door.listing import runs
 from faultpath.door.ranges import each_size
 from faultpath.errors import UserError
 
@@ -84,3 +85,18 @@ def test_the_arms_that_sizes_share_fly_once_and_the_others_as_if_alone(tmp_path)
 def test_one_audit_takes_one_size():
     with pytest.raises(UserError, match=r"several sizes: audit each with faultpath\.audits"):
         faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)
+
+
+def test_runs_share_trials_unless_their_folder_is_named(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = {**ASKED, "workers": 1, "scenes": 8}
+    first = faultpath.audit(TOY, fault="gain:scale=0.6", **asked)
+    second = faultpath.audit(TOY, fault="gain:scale=0.8", **asked)
+    assert first.provenance.blocks_kept == 0
+    assert second.provenance.blocks_kept == 2, "both arms under correct inputs"
+    assert len(list(Path("runs/.shared").rglob("*.parquet"))) > 2
+    assert {run.folder for run in runs([Path("runs")])} == {str(first.folder), str(second.folder)}
+    named = faultpath.audit(TOY, fault="gain:scale=0.8", folder="named", **asked)
+    assert named.provenance.blocks_kept == 0
+    assert named.record == second.record
+    assert named.provenance.outcomes_sha256 == second.provenance.outcomes_sha256
