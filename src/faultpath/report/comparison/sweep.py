@@ -69,7 +69,9 @@ def _differ(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
 
 def _same(runs: Sequence[Compared]) -> Iterator[str]:
     found = [run.effect(CORRECT) for run in runs]
-    if None not in found and len({(e.success.value, e.wins, e.losses) for e in found if e}) == 1:
+    code = {run.provenance.system_fingerprint for run in runs}
+    same = {(each.success.value, each.wins, each.losses) for each in found if each}
+    if None not in found and len(same) == len(code) == 1:
         yield (
             "Correct inputs are the same trials at every size: one result, drawn as often as there "
             "are sizes."
