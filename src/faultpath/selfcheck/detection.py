@@ -10,7 +10,7 @@ from faultpath.selfcheck.coverage import tables
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import Population
 from faultpath.statistics import detectable
-from faultpath.statistics.distributions import binomial_pmf, multinomial_pmf
+from faultpath.statistics.distributions import binomial_pmf, multinomial_pmf, multinomial_ways
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import detected
 from faultpath.statistics.score import reach
@@ -19,6 +19,8 @@ from faultpath.streams import generator
 DETECTION = "detectable difference"
 _AGAIN = 400
 """Audits simulated at each reported difference."""
+_NEVER = 1e-12
+"""Chance of a number of discordant scenes that is too small to show in what is measured."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +52,16 @@ class DetectionAtTheReported:
     def _exactly(self) -> float:
         """Return the mean over every number of discordant scenes, each with its chance."""
         every, numbers = tables(self.scenes), np.arange(self.scenes + 1)
-        found = detected(self.population.sizes, every, np.ones(len(every)), self.alpha)
+        every = every[detected(self.population.sizes, every, np.ones(len(every)), self.alpha)]
+        ways = multinomial_ways(every)
         chances = binomial_pmf(numbers, self.scenes, self.population.rate)
         total = weights = 0.0
-        for discordant, chance in enumerate(chances.tolist()):
+        for discordant in np.flatnonzero(chances > _NEVER):
             least = self._reported((numbers[1:] <= discordant).astype(np.float64))
             if least is not None:
-                weights += chance
-                total += chance * float(multinomial_pmf(every, self._at(least).chances()) @ found)
+                found = multinomial_pmf(every, self._at(least).chances(), ways).sum()
+                weights += float(chances[discordant])
+                total += float(chances[discordant] * found)
         return total / weights
 
     def _simulated(self) -> tuple[float, int]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -147,6 +148,7 @@ class Taken:
         return Measured(TAKEN, setting, taken / most / self.runs, self.runs)
 
 
+@cache
 def fixed_scenes(rate: float, difference: float) -> int:
     """Return how many scenes detect a difference with `POWER`, as the first of Holm's six."""
     alpha = ALPHA / len(alpha_shares(PATHS, SHARED))

@@ -48,14 +48,21 @@ def rule_power(
 
 @lru_cache(maxsize=64)
 def _critical(n_scenes: int, alpha: float) -> NDArray[np.int64]:
-    """Return per number of discordants the largest smaller count that detects; -1: none does."""
-    fewer = np.arange(n_scenes + 1)
-    total = fewer[:, np.newaxis]
-    tested = binomial_cdf(fewer, total, 0.5) <= alpha / 2.0  # [discordants, count]
-    # Tango's statistic of no difference is (first - second)^2 / discordants.
-    apart = total - 2 * fewer
-    excluded = (apart > 0) & (apart**2 > quantile(LEVEL) ** 2 * total)
-    return (tested & excluded).sum(axis=1, dtype=np.int64) - 1
+    """Return per number of discordants the largest smaller count that detects; -1: none does.
+
+    Bisected: what detects also does so with fewer.
+    """
+    total = np.arange(n_scenes + 1)
+    low, high = np.full_like(total, -1), total.copy()  # the one detects, the other does not
+    while (apart := high - low > 1).any():
+        fewer = (low + high) // 2
+        tested = binomial_cdf(fewer, total, 0.5) <= alpha / 2.0
+        # Tango's statistic of no difference is (first - second)^2 / discordants.
+        further = total - 2 * fewer
+        excluded = (further > 0) & (further**2 > quantile(LEVEL) ** 2 * total)
+        low = np.where(apart & tested & excluded, fewer, low)
+        high = np.where(apart & ~(tested & excluded), fewer, high)
+    return low
 
 
 def simulated_power(n_scenes: int, values: Floats, chances: Floats, alpha: float) -> float:
