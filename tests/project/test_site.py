@@ -1,5 +1,6 @@
 """The site builds without a warning, leads nowhere that is not there, and fetches nothing."""
 
+import json
 import re
 import subprocess
 import sys
@@ -76,6 +77,12 @@ def test_the_api_lists_what_the_guides_import() -> None:
     wanted = set[tuple[str, str]]().union(*(imported(page.read_text("utf-8")) for page in written))
     assert len(wanted) > 40
     assert wanted - listed - {("faultpath.errors", "UserError")} == set()
+
+
+def test_notebooks_are_stored_without_outputs() -> None:
+    for place in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
+        cells = json.loads(place.read_text("utf-8"))["cells"]
+        assert not any(cell.get("outputs") or cell.get("execution_count") for cell in cells), place
 
 
 def test_every_kind_of_fault_has_its_picture() -> None:

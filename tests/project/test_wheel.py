@@ -8,6 +8,8 @@ import sys
 import zipfile
 from importlib.metadata import distribution
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from packaging.requirements import Requirement
@@ -28,7 +30,7 @@ def called(*command: str | Path, **environment: str) -> str:
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A wheel as one gets it without a compiler, from a copy: the kernels in use are left alone."""
+    """A wheel as `pip` makes it, from a copy: the kernels in use are left alone."""
     source = tmp_path_factory.mktemp("source")
     for name in BUILT_FROM:
         place = ROOT / name
@@ -38,11 +40,26 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         else:
             shutil.copy(place, source / name)
     out = tmp_path_factory.mktemp("wheel")
-    (empty := source / "bin").mkdir()
     options = ("--no-deps", "--no-build-isolation", "--no-index", "-w", out)
-    called(*PIP, "wheel", *options, source, PATH=str(empty), CXX="", PYTHONPATH="")
+    called(*PIP, "wheel", *options, source, PYTHONPATH="", HATCH_BUILD_HOOK_ENABLE_CUSTOM="")
     (made,) = out.iterdir()
     return made
+
+
+def test_with_the_hook_and_without_a_compiler_the_wheel_is_pure_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(ROOT))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    from hatch_build import KernelHook
+
+    said: list[str] = []
+    about: dict[str, Any] = {"artifacts": []}
+    told = SimpleNamespace(display_warning=said.append)
+    KernelHook(str(tmp_path), {}, None, None, "", "wheel", app=told).initialize("", about)
+    assert about == {"artifacts": []}
+    assert said == ["No C++ compiler: the portable path will run instead."]
 
 
 def needed(name: str, known: set[str] | None = None) -> set[str]:
