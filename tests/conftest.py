@@ -1,6 +1,7 @@
 """Every run of the tests tries the same inputs; `make fuzz` explores with random ones."""
 
 import secrets
+import signal
 
 import pytest
 from hypothesis import settings
@@ -8,6 +9,11 @@ from hypothesis import settings
 settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
 settings.register_profile("explore", derandomize=False, max_examples=500, deadline=None)
 settings.load_profile("fixed")
+
+
+# A shell's background starts its commands deaf to Ctrl-C, and what they start would be deaf too.
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -41,7 +41,7 @@ def unruly(**options: str) -> Unruly:
 def bounded(**options: str) -> Unruly:
     """Build one that says itself how much and how long."""
     system = Unruly(**options)
-    system.memory_limit_gib, system.time_limit_s = 4.0, 8.0
+    system.memory_limit_gib, system.time_limit_s = 4.0, 3.0
     return system
 
 
@@ -66,7 +66,7 @@ def _failed(result) -> list[str]:
 @pytest.mark.parametrize("does", ["eat", "hang"])
 def test_a_scene_that_takes_too_much_or_too_long_loses_itself_alone(tmp_path, does, says):
     asked = _study(SCENES[4:6], does=does, where="s05")
-    limits = {"memory_limit_gib": 4.0, "time_limit_s": 8.0}
+    limits = {"memory_limit_gib": 4.0, "time_limit_s": 3.0}
     if says == "system":
         system = asked.system.model_copy(update={"name": f"{__file__}:bounded"})
         asked, limits = asked.model_copy(update={"system": system}), {}
@@ -77,7 +77,7 @@ def test_a_scene_that_takes_too_much_or_too_long_loses_itself_alone(tmp_path, do
         assert error.startswith("MemoryError: Unable to allocate 8.00 GiB"), error
         assert error.endswith("(the worker was held to its memory limit of 4 GiB)")
     else:
-        assert "stopped at the time limit of 8 s" in result.failures[0].error
+        assert "stopped at the time limit of 3 s" in result.failures[0].error
 
 
 @pytest.mark.parametrize("workers", [0, 1])
