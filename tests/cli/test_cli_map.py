@@ -1,6 +1,7 @@
 """`faultpath map` from end to end: its files, its words, and what is left after it was stopped."""
 
 import json
+import shutil
 import signal
 import subprocess
 import sys
@@ -41,9 +42,9 @@ def line(out: Path, system: str = TOY, scenes: int = 8, **options: object) -> li
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("map") / "run"
-    ended = faultpath(*line(folder, scenes=24))
+    ended = faultpath(*line(folder, scenes=12))
     assert (ended.status, ended.err) == (0, "")
-    assert "25 pairs of errors first, 720 trials" in ended.out
+    assert "25 pairs of errors first, 360 trials" in ended.out
     assert "Sharing the error reverses" in ended.out or "it is not decided" in ended.out
     assert str(folder / "report.html") in ended.out
     return folder
@@ -71,9 +72,12 @@ def test_a_map_leaves_its_record_pictures_and_page(run: Path) -> None:
     assert provenance["blocks_computed"] == len(shards(run))
 
 
-def test_another_spread_flies_nothing_anew_and_json_stands_alone(run: Path) -> None:
+def test_another_spread_flies_nothing_anew_and_json_stands_alone(
+    run: Path, tmp_path: Path
+) -> None:
+    run = shutil.copytree(run, tmp_path / "run")
     before = {path.name for path in shards(run)}
-    ended = faultpath(*line(run, scenes=24, spread="0.05,0.1"), "--json")
+    ended = faultpath(*line(run, scenes=12, spread="0.05,0.1"), "--json")
     assert ended.status == 0
     record = MapRecord.model_validate_json(ended.out)
     assert record.question.spreads == (0.05, 0.1)
@@ -100,7 +104,7 @@ def test_the_pages_are_made_again_and_a_changed_record_is_refused(
 def test_a_map_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
     gate = tmp_path / "gate"
     gate.touch()
-    options = {"system": SLOW, "set": f"gate={gate}", "points": 25}
+    options = {"system": SLOW, "set": f"gate={gate}", "points": 25, "scenes": 4}
     command = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
     for stop in (signal.SIGKILL, signal.SIGINT):
         with (tmp_path / "words").open("w") as words:
@@ -138,7 +142,6 @@ def test_a_mistake_is_one_sentence_and_leaves_nothing(
 
 
 def test_a_map_from_python_is_that_of_the_command_line(run: Path, tmp_path: Path) -> None:
-    faultpath(*line(run, scenes=24))
     made = library.reversal_map(
         TOY,
         baseline="calibrated",
@@ -148,7 +151,7 @@ def test_a_map_from_python_is_that_of_the_command_line(run: Path, tmp_path: Path
         up_to=0.4,
         points=30,
         library="carts",
-        scenes=24,
+        scenes=12,
         workers=0,
         progress=False,
     )
