@@ -72,9 +72,7 @@ def test_a_map_leaves_its_record_pictures_and_page(run: Path) -> None:
     assert provenance["blocks_computed"] == len(shards(run))
 
 
-def test_another_spread_flies_nothing_anew_and_json_stands_alone(
-    run: Path, tmp_path: Path
-) -> None:
+def test_another_spread_flies_nothing_anew_and_json_stands_alone(run: Path, tmp_path: Path) -> None:
     run = shutil.copytree(run, tmp_path / "run")
     before = {path.name for path in shards(run)}
     ended = faultpath(*line(run, scenes=12, spread="0.05,0.1"), "--json")
