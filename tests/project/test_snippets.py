@@ -6,7 +6,8 @@ below each are its output, in which ``...`` stands for anything; a command witho
 only has to succeed. Commands of ``faultpath`` and ``python`` are run; the rest (git, make, pip) are
 set-up and are not. All commands of a document share one directory, which holds ``examples/``. The
 word ``not-run`` after the language (```` ```console not-run ````) keeps a block out, for what takes
-minutes. An audit of every scene of a library whose output is not shown flies eight of them. Design notes are about the past and are left alone.
+minutes. An audit of every scene of a library whose output is not shown flies eight of them. Design
+notes are about the past and are left alone.
 """
 
 import doctest
