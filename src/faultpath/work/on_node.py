@@ -40,7 +40,6 @@ class OnNode:
         """Return where this is in words, the node's id, and the version of faultpath."""
         return self._place, ray.get_runtime_context().get_node_id(), __version__
 
-    @ray.method(_generator_backpressure_num_objects=1)
     def serve(self, packed: bytes) -> Iterator[bytes]:
         """Run a call; yield what it tells as it tells it, and its end last.
 
@@ -58,7 +57,7 @@ class OnNode:
         last = False
         while not last:
             message, last = news.get()
-            yield message  # until the driver has taken it: see the decorator
+            yield message  # until the driver has taken it: see `RayWorkers.submit`
             heard.release()
 
 

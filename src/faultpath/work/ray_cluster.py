@@ -111,10 +111,11 @@ class RayWorkers(Executor):
                 self._welcome(number)
 
     def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
-        """Send the call to an actor that runs."""
+        """Send the call to an actor that runs; its stream holds one item until it is taken."""
         chosen = self._workers[worker]
         assert chosen.awaited is None
-        chosen.stream = chosen.actor.serve.remote(bytes(ForkingPickler.dumps(call)))
+        serve = chosen.actor.serve.options(_generator_backpressure_num_objects=1)
+        chosen.stream = serve.remote(bytes(ForkingPickler.dumps(call)))
         chosen.told = told
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
