@@ -1,8 +1,5 @@
 """What runs on a node of a Ray cluster: the calls that its driver sends, one after the other."""
 
-# Ray's decorators have no types.
-# pyright: reportUnknownMemberType=false
-
 import os
 import socket
 import sys
