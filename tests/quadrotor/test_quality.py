@@ -43,12 +43,10 @@ PRESENT = [("wm-a", 0), ("wm-a", 1), ("wm-a-wind", 0), ("gru", 0), ("gru", 1), (
 
 def blank(name, seed):
     """A network as it begins, but for a last layer that is not zero."""
-    learns_wind = name in MODELS
-    network = (
-        WindNetwork(MODELS[name].calibrated)
-        if learns_wind
-        else PREDICTORS[name].load(name, None, Shelf()).network
-    )
+    if learns_wind := name in MODELS:
+        network = WindNetwork(MODELS[name].calibrated)
+    else:
+        network = PREDICTORS[name].load(name, None, Shelf()).network
     draw = torch.Generator().manual_seed(seed)
     network.initialise(draw)
     if not learns_wind:
