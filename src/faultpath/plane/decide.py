@@ -44,7 +44,11 @@ CURVE = np.linspace(-1.0, 1.0, 41)
 def conclude(
     plan: MapPlan, points: Sequence[Point], table: OutcomeTable, findings: Sequence[str] = ()
 ) -> MapRecord:
-    """Return the record of a map. `UserError` where a point has no pair left."""
+    """Return the record of a map, to the bit the same in whatever order its points were flown.
+
+    `UserError` where a point has no pair left.
+    """
+    points = sorted(points)
     compared = plan.compared(points, table)
     found = plan.differences(points, compared)
     found_too = (*mismatch_words(compared.mismatches), *findings)
