@@ -12,9 +12,11 @@ INPUTS := pyproject.toml constraints.txt hatch_build.py $(wildcard src/faultpath
 BENCH := .venv-bench
 SOURCES := src tests examples benchmarks
 
-# The kernels are compiled for whoever asks. --no-compile leaves byte code to the first import: most of
-# what is installed is never imported.
-PIP_INSTALL := HATCH_BUILD_HOOK_ENABLE_CUSTOM=true $(BIN)/python -m pip install --no-compile --disable-pip-version-check --quiet -c constraints.txt
+# Installing compiles the kernels for whoever asks, and all that is installed here is for the quadrotor too.
+export HATCH_BUILD_HOOK_ENABLE_CUSTOM := true
+
+# --no-compile leaves byte code to the first import: most of what is installed is never imported.
+PIP_INSTALL := $(BIN)/python -m pip install --no-compile --disable-pip-version-check --quiet -c constraints.txt
 
 # The command refuses an option given twice, so one in ARGS takes the place of the recipe's.
 unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
