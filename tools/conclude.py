@@ -24,8 +24,10 @@ from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown
+from faultpath.report.viewer_packing import unpack
 from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
+from faultpath.store.signals import SIGNALS, decode_signals
 from faultpath.studies import reversal, shipped
 from faultpath.studies.claims import LIMITS, TOPICS, again
 from faultpath.studies.pages import PAGES, table_4
@@ -78,7 +80,7 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
     scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
     shown = system_shown(system, (asked.baseline, asked.repair), scenes)
-    stored = folder / TRACES
+    stored, kept = folder / TRACES, (folder / SIGNALS).is_file()
     tracks = read_traces(stored) if stored.is_file() else _tracks(folder / "report.html")
     text = json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
     (folder / RECORD).write_text(text, "utf-8")
@@ -93,6 +95,7 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
             outcomes=outcomes,
             traces=Traces(tracks, shown.control_dt_s),
             plans=shown.plans,
+            signals=decode_signals((folder / SIGNALS).read_bytes()) if kept else {},
         ),
         folder,
     )
@@ -183,15 +186,32 @@ def _tracks(page: Path) -> dict[TrialAddress, NDArray[np.float32]]:
     held = _DATA.search(page.read_text("utf-8"))
     if held is None:  # a system that leaves no traces
         return {}
-    data = json.loads(held[1])
+    content = json.loads(held[1])
+    if "packed" not in content:  # a page as it was made before all scenes were in it
+        return _loose_tracks(content)
+    data, series = unpack(content["packed"])
     tracks: dict[TrialAddress, NDArray[np.float32]] = {}
     for scene in data["scenes"]:
         for pair in scene["pairs"]:
             for arm in ("baseline", "repair"):
+                if not pair[arm] or (place := pair[arm]["track"]) is None:
+                    continue
                 key = TrialAddress(data[arm], pair["path"], scene["seed"], scene["scene"])
-                centimetres = np.array(pair[arm]["track_cm"], dtype=np.float32)
-                tracks[key] = centimetres.reshape(-1, 3) / np.float32(100.0)
+                centimetres = np.stack(series[place : place + 3], axis=1).astype(np.float32)
+                tracks[key] = centimetres / np.float32(100.0)
     return tracks
+
+
+def _loose_tracks(data: Mapping[str, Any]) -> dict[TrialAddress, NDArray[np.float32]]:
+    return {
+        TrialAddress(data[arm], pair["path"], scene["seed"], scene["scene"]): np.array(
+            pair[arm]["track_cm"], np.float32
+        ).reshape(-1, 3)
+        / np.float32(100.0)
+        for scene in data["scenes"]
+        for pair in scene["pairs"]
+        for arm in ("baseline", "repair")
+    }
 
 
 def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:

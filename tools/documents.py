@@ -37,6 +37,7 @@ from pictures import IMAGES, digest, made_from, make_images, name_of
 
 from faultpath.door.saved import MADE_FROM, MAP
 from faultpath.selfcheck import Report, failures, page
+from faultpath.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
@@ -177,7 +178,8 @@ def take(what: str) -> None:
     if (Path(folder) / MAP).is_file():
         map_blocks.take(name, Path(folder))
         return
-    copied(TAKEN, Path(folder), REFERENCE / name)
+    heard = (SIGNALS,) if (Path(folder) / SIGNALS).is_file() else ()
+    copied((*TAKEN, *heard), Path(folder), REFERENCE / name)
     run = load(name)
     if run is not None and run.provenance.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")

@@ -37,14 +37,17 @@ def page(request: pytest.FixtureRequest, browser: Browser, address: str) -> Iter
         "request", lambda sent: None if sent.url.startswith(address) else troubles.append(sent.url)
     )
     opened.goto(address)
+    opened.wait_for_selector("#viewer[data-ready]")
     yield opened
     context.close()
     assert [trouble for trouble in troubles if not trouble.startswith("data:,")] == []
 
 
 def test_pictures_have_a_size_and_nothing_sticks_out(page: Page) -> None:
+    page.evaluate("() => document.querySelectorAll('details').forEach((d) => (d.open = true))")
     sizes = page.evaluate(
         """() => [...document.querySelectorAll("svg.fig, #viewer svg, canvas")]
+          .filter((e) => !e.closest("[hidden]"))
           .filter((e) => getComputedStyle(e.closest("figure, li") ?? e).display !== "none")
           .map((e) => e.getBoundingClientRect()).map((r) => [r.width, r.height])"""
     )
@@ -84,15 +87,18 @@ def test_the_story_can_be_read_and_the_rest_unfolds_by_key(page: Page) -> None:
     )
     assert len(texts) > 40
     assert all(inside and size >= 10 for inside, size in texts)
-    first = page.locator("details.more p").first
+    first = page.locator(".verdict details.more p").first
     assert not first.is_visible()
-    page.locator("details.more summary").focus()
+    page.locator(".verdict details.more summary").focus()
     page.keyboard.press("Enter")
     assert first.is_visible()
 
 
 def test_forest_plot_fits_the_screen(page: Page) -> None:
-    visible = [page.locator(which).is_visible() for which in (".for-wide", ".for-narrow")]
+    visible = [
+        page.locator(f"[aria-labelledby=effects] {which}").is_visible()
+        for which in (".for-wide", ".for-narrow")
+    ]
     wide = (page.viewport_size or {"width": 0})["width"] > 800
     assert visible == [wide, not wide]
 
@@ -107,12 +113,14 @@ def test_selectors_change_the_flights(page: Page) -> None:
     assert plan.inner_html() != second
     assert page.locator("#viewer-paths button").first.get_attribute("aria-pressed") == "true"
     assert "gru-dcc" in page.locator("#viewer-ends").inner_text()
+    assert page.locator("#viewer-across .column:visible").count() == 4
+    assert page.locator("#viewer-across canvas:visible").count() == 8
 
 
 def test_no_label_of_the_heights_is_cut_off(page: Page, three_seeds: ReportInput) -> None:
     heights = page.locator("#viewer-height svg")
     heights.scroll_into_view_if_needed()
-    for scene in range(page.locator("#viewer-scene option").count()):
+    for scene in range(6):
         page.locator("#viewer-scene").select_option(index=scene)
         for path in range(len(three_seeds.record.paths)):
             page.locator("#viewer-paths button").nth(path).click()
@@ -135,9 +143,38 @@ def test_time_moves_the_vehicles(page: Page) -> None:
     assert page.locator("#viewer-clock").inner_text() == "0.50 s"
     assert page.locator("#viewer-plan").inner_html() != before
     assert page.locator("#viewer-plan .v-dot").count() == 2
+    page.locator("#viewer-on").click()
+    assert page.locator("#viewer-clock").inner_text() == "0.55 s"
+    page.locator("#viewer-speed").select_option("4")
+    page.locator("#viewer-loop").check()
     page.locator("#viewer-play").click()
-    expect(page.locator("#viewer-clock")).not_to_have_text("0.50 s")
+    expect(page.locator("#viewer-clock")).not_to_have_text("0.55 s")
     page.locator("#viewer-play").click()
+    stopped = page.locator("#viewer-clock").inner_text().removesuffix(" s")
+    assert page.evaluate("location.hash").endswith(f"&t={stopped}")
+
+
+def test_a_cell_leads_to_its_trial_by_key_and_the_address_brings_it_back(page: Page) -> None:
+    grid = page.locator("[data-pairs] svg").nth(1)
+    assert grid.locator("a[tabindex='0']").count() == 1
+    grid.locator("a").first.focus()
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("ArrowDown")
+    cell = page.evaluate("document.activeElement.getAttribute('href')")
+    assert cell.startswith("#scene=")
+    assert cell.endswith("&path=predictor")
+    page.keyboard.press("Enter")
+    expect(page.locator("#viewer-play")).to_be_focused()
+    assert page.evaluate("location.hash") == cell
+    scene = page.evaluate("decodeURIComponent(location.hash.slice(7).split('&')[0])")
+    assert scene in page.locator("#viewer-scene option:checked").inner_text()
+    chosen = page.locator("#viewer-paths button[aria-pressed='true']")
+    assert chosen.get_attribute("data-path") == "predictor"
+    page.goto(page.url.partition("#")[0] + cell.replace("predictor", "shared") + "&t=0.20")
+    expect(page.locator("#viewer-clock")).to_have_text("0.20 s")
+    assert chosen.get_attribute("data-path") == "shared"
+    page.goto(page.url.partition("#")[0] + "#scene=no&seed=%E0%A4%A")
+    assert chosen.get_attribute("data-path") == "shared"
 
 
 def test_canvas_turns_by_drag_and_by_key(page: Page) -> None:
@@ -162,6 +199,10 @@ def test_canvas_turns_by_drag_and_by_key(page: Page) -> None:
 
 
 def test_struck_taps_can_be_shown_one_path_at_a_time(page: Page) -> None:
+    wide = (page.viewport_size or {"width": 0})["width"] > 800
+    table = page.locator(".taps").first
+    assert table.is_visible() != wide
+    assert page.locator("[data-interface]").first.is_visible() == wide
     hit = page.locator("[data-interface] .tap.hit")
     everything = hit.count()
     page.locator("[data-struck-choice] button").nth(2).click()

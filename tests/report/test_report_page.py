@@ -13,6 +13,7 @@ from faultpath.report import wording
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Kind, read_pairs
+from faultpath.report.viewer_packing import unpack
 
 MINUS = "−"
 FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"
@@ -113,11 +114,14 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
     )
 
 
-def test_ids_are_unique_and_links_lead_somewhere(page: Page) -> None:
+def test_ids_are_unique_and_links_lead_somewhere(page: Page, source: ReportInput) -> None:
     ids = [a["id"] for _, a in page.tags if a.get("id")]
     assert len(ids) == len(set(ids))
     links = [a["href"] for tag, a in page.tags if tag == "a" and a.get("href")]
-    assert {link.removeprefix("#") for link in links if link} <= set(ids)
+    trials = {link for link in links if link.startswith("#scene=")}
+    assert {link.removeprefix("#") for link in links if link not in trials} <= set(ids)
+    cells = [a for tag, a in page.tags if tag == "a" and a.get("class") == "pair"]
+    assert len(cells) == len(trials) == len(source.outcomes.rows) / 2
 
 
 def test_every_figure_is_named(page: Page) -> None:
@@ -215,18 +219,21 @@ def test_viewer_data_cannot_close_its_element(html: str) -> None:
     found = re.search(r'id="viewer-data">(.*?)</script>', html, re.DOTALL)
     assert found is not None
     assert "<" not in found[1]
-    data = json.loads(found[1])
-    assert 1 <= len(data["scenes"]) <= 6
+    assert len(unpack(json.loads(found[1])["packed"])[0]["scenes"]) > 6
 
 
 def test_page_without_flights_and_void_pairs(make: Callable[..., ReportInput]) -> None:
     source = make(void=False, n_scenes=60)
     bare = replace(source, traces=Traces({}, dt_s=0.05), plans={})
     page = Page(report_page(bare))
-    assert "Some trials" not in page.text
+    ids = {attributes.get("id") for _, attributes in page.tags}
+    assert ids.isdisjoint({"viewer-plan", "viewer-3d", "viewer-height"})
+    assert "viewer-ends" in ids
     assert "A void pair" not in page.text
 
 
 def test_flights_without_floor_plans(make: Callable[..., ReportInput]) -> None:
     source = replace(make(n_scenes=60), plans={})
-    assert '"plan": null' in report_page(source)
+    found = re.search(r'id="viewer-data">(.*?)</script>', report_page(source), re.DOTALL)
+    assert found is not None
+    assert unpack(json.loads(found[1])["packed"])[0]["plans"] == {}

@@ -2,13 +2,26 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from faultpath.report.inputs import ReportInput
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Pair, read_pairs
-from faultpath.report.viewer import choose, parting_step, viewer_data
-from faultpath.trials import Outcome, Status
+from faultpath.report.viewer import viewer_data
+from faultpath.report.viewer_choice import choose, parting_step
+from faultpath.report.viewer_hits import hit
+from faultpath.report.viewer_packing import pack, unpack
+from faultpath.store import TrialAddress
+from faultpath.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
+from faultpath.trials import FloorPlan, Outcome, Pillar, Prism, Status
+
+
+def _unpacked(source: ReportInput, **more: Any) -> tuple[dict[str, Any], list[Any]]:
+    pairs = read_pairs(source.outcomes, source.record)
+    made = viewer_data(source.record, source.traces, source.plans, pairs, **more)
+    assert made is not None
+    return unpack(made.packed)
 
 
 def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
@@ -29,11 +42,11 @@ def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: Repor
     paths = [p.model_copy(update={"consumers": widest.consumers}) for p in record.paths]
     source = replace(one_seed, record=record.model_copy(update={"paths": tuple(paths)}))
     pairs = read_pairs(source.outcomes, source.record)
-    for shown, told in zip(
-        choose(source.record, source.traces, pairs),
-        viewer_data(source.record, source.traces, source.plans, pairs)["scenes"],
-        strict=True,
-    ):
+    data, _ = _unpacked(source)
+    chosen = choose(source.record, source.traces, pairs)
+    for shown, place in zip(chosen, data["picked"], strict=True):
+        told = data["scenes"][place]
+        assert told["scene"] == shown.any_pair.scene
         shared = shown.pairs["shared"].sign
         assert ("with the fault shared" in told["why"]) == (shown.rank in (0, 2))
         assert shown.rank not in (0, 2) or shared != 0
@@ -79,13 +92,91 @@ def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
     assert len(choose(source.record, source.traces, pairs)) == 4
 
 
-def test_tracks_are_kept_to_the_centimetre(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    shown = viewer_data(one_seed.record, one_seed.traces, one_seed.plans, pairs)["scenes"][0]
-    pair = shown["pairs"][0]
-    flown = one_seed.traces.positions["gru", pair["path"], shown["seed"], shown["scene"]]
-    kept = np.array(pair["baseline"]["track_cm"]).reshape(-1, 3) / 100
-    assert np.abs(kept - flown).max() < 0.0051
+def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> None:
+    data, series = _unpacked(three_seeds)
+    seen = 0
+    for scene in data["scenes"]:
+        for pair in scene["pairs"]:
+            for arm, variant in (("baseline", "gru"), ("repair", "gru-dcc")):
+                at = TrialAddress(variant, pair["path"], scene["seed"], scene["scene"])
+                place = pair[arm]["track"]
+                if place is None:
+                    assert at not in three_seeds.traces.positions
+                    continue
+                kept = np.stack(series[place : place + 3], axis=1) / 100
+                assert np.abs(kept - three_seeds.traces.positions[at]).max() < 0.0051
+                seen += 1
+    assert seen == len(three_seeds.traces.positions)
+    void = [p for s in data["scenes"] for p in s["pairs"] if p["void"]]
+    assert [p["kind"] for p in void] == ["void"]
+    assert "no</b> candidate" in void[0]["void"]
+
+
+def test_numbers_come_out_of_a_page_as_they_went_in() -> None:
+    rng = np.random.default_rng(3)
+    wild = rng.integers(-(2**31), 2**31 - 1, 50, dtype=np.int64).astype(np.int32)
+    series = [wild, np.empty(0, np.int32), np.arange(-7, 7, dtype=np.int32)]
+    content, found = unpack(pack({"said": "<ü>"}, series))
+    assert content == {"said": "<ü>"}
+    assert all(np.array_equal(a, b) for a, b in zip(series, found, strict=True))
+
+
+def test_what_was_hit_is_what_is_nearest() -> None:
+    square = Prism(((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)), 0.0, 1.0)
+    plan = FloorPlan(
+        (-9.0, -9.0, -9.0), (9.0, 9.0, 9.0), (square,), (Pillar(4, 0, 0.5, 0, 2),), (0, 0, 5),
+        (1, 1, 5), "",
+    )  # fmt: skip
+    cases = {
+        (1.2, 0.5, 0.5): ("an obstacle", 0),
+        (0.5, 0.5, 1.1): ("an obstacle", 0),
+        (3.3, 0.0, 1.0): ("a pillar", 1),
+        (5.0, 5.0, -8.9): ("the floor", None),
+        (5.0, 5.0, 8.9): ("the ceiling", None),
+        (-8.8, 5.0, 5.0): ("the edge of the free volume", None),
+    }
+    assert {at: hit(plan, np.array(at)) for at in cases} == cases
+    assert hit(plan, np.array((5.0, 5.0, 5.0))) is None
+
+
+def test_without_positions_or_with_one_axis_nothing_is_drawn_in_space(one_seed) -> None:
+    flat = {at: track * [1, 0, 0] for at, track in one_seed.traces.positions.items()}
+    for positions, space in (({}, "none"), (flat, "line")):
+        source = replace(one_seed, traces=Traces(positions, 0.05), plans={})
+        data, _ = _unpacked(source)
+        assert data["space"] == space
+        assert len(data["scenes"]) == 80
+        assert [plot["title"] for plot in data["plots"]] == ["position"] * (space == "line")
+
+
+def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: ReportInput) -> None:
+    steps = np.arange(5, dtype=np.float32)[:, None]
+
+    def told(arm: int) -> tuple[Signal, ...]:
+        return (
+            Signal("true_wind", "wind", "m/s", steps),
+            Signal("wind_again", "wind", "m/s", steps),
+            Signal("reconstructed_wind", "wind", "m/s", arm + steps / 2),
+            Signal("goal", "goal", "m", steps * 0 + 3),
+            Signal("wind error at a.b", "wind error", "m/s", steps * 0 + 1),
+            Signal(IN_FORCE, IN_FORCE, "1", np.isin(steps, (1, 2, 4)).astype(np.float32)),
+        )
+
+    scene = next(iter(one_seed.plans))
+    heard = {TrialAddress(v, "shared", 0, scene): told(i) for i, v in enumerate(("gru", "gru-dcc"))}
+    again = decode_signals(encode_signals(heard))
+    assert again.keys() == heard.keys()
+    data, series = _unpacked(one_seed, signals=again)
+    lines = ["true_wind, wind_again", "reconstructed_wind"]
+    assert data["plots"] == [
+        {"title": "wind error", "unit": "m/s", "lines": ["wind error at a.b"], "zero": True},
+        {"title": "wind", "unit": "m/s", "lines": lines, "zero": False},
+    ]
+    shown = next(s for s in data["scenes"] if s["scene"] == scene)
+    trial = next(p for p in shown["pairs"] if p["path"] == "shared")["repair"]
+    assert trial["struck"] == [[1, 3], [4, 5]]
+    (_, _, place, low, level) = next(line for line in trial["lines"] if line[:2] == [1, 1])
+    assert np.allclose(low + level * series[place], 1 + steps[:, 0] / 2, atol=1e-3)
 
 
 def test_parting_is_the_first_step_beyond_half_a_metre() -> None:

@@ -10,6 +10,7 @@ from faultpath.interface import Interface
 from faultpath.record import Path, StruckTap
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
+from faultpath.report.interface_parts import concerned, tap_rows
 from faultpath.report.interface_wiring import StruckPath, Who, Wiring, struck_paths
 from faultpath.trials import System, SystemSpec, VariantShown, load_system, variant_shown
 
@@ -118,23 +119,56 @@ def test_a_binding_that_both_have_is_the_solid_line(drawn_interface: Interface) 
     assert solid[0] == solid[1]
 
 
-def test_letters_stand_where_the_variants_differ(toy, variants) -> None:
+def test_each_variant_has_a_sign_of_its_own_at_a_tap(toy, variants) -> None:
     root = ElementTree.fromstring(draw_interface(toy.interface, STRUCK, variants))
-    tips = [
-        tip.text or ""
-        for text in root.iter(f"{SVG}text")
-        if (text.text, text.get("class")) == ("b", "bold halo baseline")
-        for tip in text.iter(f"{SVG}title")
-    ]
-    lone = {
-        f"{channel.name} at {consumer} (baseline alone)"
-        for channel in toy.interface.channels
-        for consumer in channel.consumers
-        if consumer in set(variants[0].consumers) - set(variants[1].consumers)
+    tips = {
+        tip.text or "": shape.get("class")
+        for shape in root.iter()
+        if shape.get("class") in ("tap", "tap hit", "lacking")
+        for tip in shape.iter(f"{SVG}title")
     }
-    assert lone <= set(tips)
+    assert tips["gain at observer.model, baseline calibrated: struck"] == "tap hit"
+    assert tips["gain at observer.model, repair blind: not read"] == "lacking"
+    assert tips["slope at controller.feedforward, repair blind"] == "tap"
+    assert "r: not read" in "".join(_words(root))
     same = draw_interface(toy.interface, STRUCK, (variants[0], variants[0]))
+    assert same.count('class="lacking"') == 1  # in the key
     assert "bold halo" not in same
+
+
+def test_a_variant_without_a_module_says_so(toy, variants) -> None:
+    without = tuple(name for name in variants[1].consumers if not name.startswith("observer."))
+    bare = variants[1].model_copy(update={"consumers": without})
+    assert Wiring((variants[0], bare)).lacking(MODEL) == ("", "no module")
+    assert Wiring((bare, variants[1])).lacking(MODEL) == ("no module", "not read")
+    assert Wiring((bare, bare)).lacking(INVERSE) == ("", "")
+
+
+def test_first_comes_where_the_fault_goes(toy, variants) -> None:
+    wiring = Wiring(variants)
+    part = concerned(toy.interface, STRUCK, ("gain",), wiring)
+    assert part is not None
+    assert [channel.name for channel in part.channels] == ["gain", "slope"]
+    assert {source.name for source in part.sources} == {"gain_estimate", "observed_slope"}
+    assert part.reconstructions == (("observer", "observed_slope"),)
+    assert "speedometer" not in draw_interface(part, STRUCK, variants)
+    assert concerned(toy.interface, (), (), wiring) is None
+    only = concerned(toy.interface, (), ("velocity",), wiring)
+    assert only is not None
+    assert [channel.name for channel in only.channels] == ["velocity"]
+
+
+def test_taps_in_words_tell_baseline_and_repair_apart(toy, variants) -> None:
+    rows = {
+        (channel.name, tap.consumer): tap
+        for channel in tap_rows(toy.interface, STRUCK, Wiring(variants))
+        for tap in channel.taps
+    }
+    assert rows[INVERSE].said == ("struck on 1, 3", "struck on 1, 3")
+    assert rows[MODEL].said == ("struck on 2, 3", "not read")
+    assert rows[MODEL].struck == (True, False)
+    assert rows[MODEL].absent == (False, True)
+    assert rows["slope", "controller.feedforward"].said == ("reads", "reads")
 
 
 def test_tags_stay_apart(toy, variants) -> None:

@@ -21,6 +21,7 @@ from faultpath.cli import (
     map,
     plan,
     probe,
+    replay,
     report,
     reproduce,
     runs,
@@ -80,6 +81,7 @@ _COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
     "map": map.command,
     "plan": plan.command,
     "probe": probe.command,
+    "replay": replay.command,
     "report": report.command,
     "reproduce": reproduce.command,
     "runs": runs.command,
@@ -91,7 +93,7 @@ _COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
 _PANELS = {
     "Your system": ("init", "interface", "trace", "check"),
     "Audits": ("plan", "audit", "map", "probe", "log"),
-    "Finished runs": ("runs", "compare", "report"),
+    "Finished runs": ("runs", "compare", "report", "replay"),
     "The paper and its quadrotor": ("claims", "reproduce", "scenes", "train"),
     "faultpath itself": ("selfcheck",),
 }
@@ -110,6 +112,7 @@ EXAMPLES = {
     "plan": "faultpath plan examples/toy.py:create --baseline calibrated --repair blind "
     "--fault gain:scale=0.6 --library carts",
     "probe": "faultpath probe quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
+    "replay": "faultpath replay runs/mine --scene cart/003 --signals",
     "report": "faultpath report runs/mine",
     "reproduce": "faultpath reproduce table-4",
     "runs": "faultpath runs",

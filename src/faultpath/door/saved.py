@@ -16,6 +16,7 @@ from faultpath.store import read_table
 from faultpath.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.store.parquet import Unreadable
 from faultpath.store.sealed import AGAIN, read_regular, unseal
+from faultpath.store.signals import SIGNALS, decode_signals
 from faultpath.store.tables import decode_outcomes, decode_traces
 from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
@@ -46,6 +47,7 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
     deliveries = parsed(held[DELIVERIES], folder / DELIVERIES, Deliveries)
     outcomes = _decoded(held[OUTCOMES], folder / OUTCOMES, decode_outcomes)
     traces = _decoded(held[TRACES], folder / TRACES, decode_traces)
+    heard = _decoded(held[SIGNALS], folder / SIGNALS, decode_signals) if SIGNALS in held else {}
     doubts = _doubts(record, provenance, shown, outcomes) or _unlike(record, deliveries)
     if doubts:
         raise UserError(f"the files of {folder} do not belong together ({doubts}): {AGAIN}.")
@@ -57,6 +59,7 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
         outcomes=outcomes,
         traces=Traces(traces, shown.control_dt_s),
         plans=shown.plans,
+        signals=heard,
     )
     return read, read_table(held[OUTCOMES])
 

@@ -17,23 +17,26 @@ from faultpath.report.figures.pairs import pair_grid, pair_key
 from faultpath.report.frame import fragment, render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_drawing import draw_interface
-from faultpath.report.interface_wiring import struck_paths
+from faultpath.report.interface_parts import ChannelRows, concerned, tap_rows
+from faultpath.report.interface_wiring import Wiring, struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
 from faultpath.report.svg import template
 from faultpath.report.tables import SHOWN, by_path, latex_table, markdown_table
 from faultpath.report.thresholds import by_threshold
-from faultpath.report.viewer import viewer_data
+from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
+from faultpath.report.viewer import Viewer, viewer_data
 from faultpath.store import make_folder, write_text
 from faultpath.tables.html import html
 from faultpath.trials.metrics import VEHICLE
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
-_SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js")
+_SCRIPTS = ("page.js", *VIEWER_SCRIPTS)
 
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
     pairs = read_pairs(source.outcomes, source.record)
+    viewer = viewer_data(source.record, source.traces, source.plans, pairs, source.signals)
     return render(
         "report.html.j2",
         _STYLES,
@@ -44,14 +47,14 @@ def report_page(source: ReportInput) -> str:
         paths=_path_titles(source.record),
         story=_story(source),
         tiles=_tiles(source.record),
-        pictures=_pictures(source, pairs),
+        pictures=_pictures(source, pairs, viewer),
         struck=struck_paths(source.record),
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
         n_void=sum(pair.kind is Kind.VOID for pair in pairs),
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         effects=Markup(html(by_path(source.record, SHOWN, "Effects on success, path by path"))),
-        viewer=viewer_data(source.record, source.traces, source.plans, pairs),
+        viewer=viewer,
         w=wording,
     )
 
@@ -118,23 +121,22 @@ def _tiles(record: DecisionRecord) -> list[tuple[str, Effect, Cell, Cell]]:
     ]
 
 
-def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
-    record = source.record
+def _pictures(
+    source: ReportInput, pairs: Sequence[Pair], viewer: Viewer | None
+) -> Mapping[str, object]:
+    record, shown = source.record, viewer.shown if viewer else frozenset[tuple[str, int]]()
     titles, asked = _path_titles(record), record.question
     rows = effect_rows(record)
     axis = shared_range(record.break_even)
-    drawing = draw_interface(
-        source.interface, struck_paths(record), source.variants, standalone=False
-    )
     return {
-        "interface": Markup(drawing),
+        "interface": _interface(source),
         "forest": Markup(forest(rows, asked.baseline, asked.repair)),
         "forest_narrow": Markup(forest(rows, asked.baseline, asked.repair, narrow=True)),
         "frequency": [
             Markup(frequency_panel(b, titles.get(b.path, b.path), axis)) for b in record.break_even
         ],
         "pairs": [
-            Markup(pair_grid(title, [p for p in pairs if p.path == name], asked.ends))
+            Markup(pair_grid(title, [p for p in pairs if p.path == name], asked.ends, shown))
             for name, title in titles.items()
         ],
         "pair_key": [(Markup(sign), words) for sign, words in pair_key(pairs)],
@@ -147,6 +149,21 @@ def _pictures(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object
         "thresholds": Markup(html(told)) if (told := by_threshold(record)) else "",
         "factorial": Markup(html(table)) if (table := by_factors(record)) else "",
     }
+
+
+def _interface(source: ReportInput) -> list[tuple[Markup, list[ChannelRows]]]:
+    """Return the interface as picture and in words: the fault's part first, then the whole."""
+    struck, wiring = struck_paths(source.record), Wiring(source.variants)
+    meant = (fault.channel for fault in source.record.question.faults)
+    part = concerned(source.interface, struck, meant, wiring)
+    return [
+        (
+            Markup(draw_interface(shown, struck, source.variants, standalone=False)),
+            tap_rows(shown, struck, wiring),
+        )
+        for shown in (part, source.interface)
+        if shown is not None
+    ]
 
 
 def _secondary(record: DecisionRecord) -> list[Markup]:

@@ -1,7 +1,7 @@
 """What a report is made from."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,7 @@ from faultpath.interface import Interface
 from faultpath.record.model import DecisionRecord
 from faultpath.record.provenance import RunProvenance
 from faultpath.store import TrialAddress
+from faultpath.store.signals import Signal, Signals
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 
@@ -36,3 +37,5 @@ class ReportInput:
     traces: Traces
     plans: Mapping[str, FloorPlan]
     """By scene id; scenes without one are drawn without obstacles."""
+    signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
+    """Of the trials of which signals were recorded."""

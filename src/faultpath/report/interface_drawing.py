@@ -7,8 +7,15 @@ from faultpath.report.interface_layout import (
     CHANNEL_HEIGHT,
     SOURCE_HEIGHT,
     Layout,
-    ModuleBlock,
     lay_out,
+)
+from faultpath.report.interface_taps import (
+    BESIDE,
+    BLOCK_W,
+    TAP_X,
+    draw_diamond,
+    draw_module,
+    draw_tag,
 )
 from faultpath.report.interface_wiring import StruckPath, Who, Wiring, hits
 from faultpath.report.provenance_glyphs import draw_gap, draw_provenance
@@ -17,8 +24,6 @@ from faultpath.trials.shown import VariantShown
 
 _SOURCE_X, _SOURCE_W = 46.0, 214.0
 _CHANNEL_X, _CHANNEL_W = 332.0, 142.0
-_TAP_X, _BLOCK_W = 594.0, 310.0
-_PLACE_X, _READS_X = 16.0, 148.0
 _LANE = 16.0
 
 
@@ -30,21 +35,26 @@ def draw_interface(
 ) -> str:
     """Return the drawing as SVG markup: a file of its own, or a part of a page with its styles.
 
-    `variants` are baseline and repair: what only one of them uses carries its letter, what neither
-    uses is dashed. It may be one variant alone, as it ran: what it did not use is dashed. Every
-    struck tap carries the numbers of the paths that strike it, with a letter where one variant
-    alone was struck; the key stands below.
+    `variants` are baseline and repair: each tap has a sign for either, a feed that only one of them
+    uses carries its letter, and what neither uses is dashed. It may be one variant alone, as it
+    ran: what it did not use is dashed. Taps that a variant lacks are grey and say why. Every struck
+    tap carries the numbers of the paths that strike it, with a letter where one variant alone was
+    struck; the key stands below.
     """
     layout, wiring = lay_out(interface), Wiring(variants)
+    two = len(variants) > 1
     lanes = len(interface.reconstructions)
     key_top = layout.bottom + 18 + _LANE * lanes + (12 if lanes else 0)
-    width = _TAP_X + _BLOCK_W + 14 + _LANE * max(lanes, 1)
+    width = TAP_X + BLOCK_W + 14 + _LANE * max(lanes, 1)
     height = key_top + 28 + 20 * (len(struck) + (len(variants) > 1))
     svg = Svg(width, height, *_told(interface, struck, wiring))
-    for x, words in ((_SOURCE_X, "Sources"), (_CHANNEL_X, "Channels"), (_TAP_X, "Taps, by module")):
+    for x, words in ((_SOURCE_X, "Sources"), (_CHANNEL_X, "Channels"), (TAP_X, "Taps, by module")):
         svg.text(x, 18, words, "head")
+    if two:
+        for x, by in ((TAP_X, Who.BASELINE), (TAP_X + BESIDE, Who.REPAIR)):
+            svg.text(x, 36, by.value, f"bold {by.name.lower()}", "middle")
     for block in layout.modules:
-        svg.rect(_TAP_X - 14, block.top, _BLOCK_W + 14, block.bottom - block.top, "module", 4)
+        svg.rect(TAP_X - 14, block.top, BLOCK_W + 14, block.bottom - block.top, "module", 4)
     _source_wires(svg, interface, layout, wiring)
     _tap_wires(svg, layout, struck, wiring)
     _groups(svg, interface, layout)
@@ -53,7 +63,7 @@ def draw_interface(
     for channel in interface.channels:
         _channel(svg, channel, layout.channels[channel.name])
     for block in layout.modules:
-        _module(svg, block, struck, wiring)
+        draw_module(svg, block, struck, wiring)
     _reconstructions(svg, interface, layout, wiring)
     _key(svg, key_top, struck, variants, lanes > 0)
     return svg.render(standalone)
@@ -120,7 +130,7 @@ def _source_wires(svg: Svg, interface: Interface, layout: Layout, wiring: Wiring
 def _tap_wires(svg: Svg, layout: Layout, struck: Sequence[StruckPath], wiring: Wiring) -> None:
     ordered = sorted(layout.taps.items(), key=lambda item: bool(hits(item[0], struck)))
     for tap, y in ordered:
-        d = _curve((_CHANNEL_X + _CHANNEL_W, layout.channels[tap[0]]), (_TAP_X, y))
+        d = _curve((_CHANNEL_X + _CHANNEL_W, layout.channels[tap[0]]), (TAP_X, y))
         found = hits(tap, struck)
         if found:
             svg.path(d, "wire hit", data_hit=" ".join(str(number) for number, _ in found))
@@ -136,52 +146,6 @@ def _letter(svg: Svg, by: Who, at: tuple[float, float], tip: str) -> None:
     """Write whose alone something is; nothing where it is everybody's or nobody's."""
     if by in (Who.BASELINE, Who.REPAIR):
         svg.text(*at, by.value, f"bold halo {by.name.lower()}", "middle", tip=tip)
-
-
-def _module(svg: Svg, block: ModuleBlock, struck: Sequence[StruckPath], wiring: Wiring) -> None:
-    svg.text(_TAP_X, block.top + 18, shortened(block.name, _BLOCK_W - 10, 12), "bold")
-    place_before = ""
-    for tap, y in block.rows:
-        channel, consumer = tap
-        place = consumer.partition(".")[2]
-        if place != place_before:
-            label = shortened(place, _READS_X - _PLACE_X - 8, 12)
-            svg.text(_TAP_X + _PLACE_X, y + 4, label, tip=consumer)
-        place_before = place
-        found, by = hits(tap, struck), wiring.tap(tap)
-        room = _BLOCK_W - _READS_X - 14 - sum(_tag_width(*hit) + 2 for hit in found)
-        svg.text(_TAP_X + _READS_X, y + 4, shortened(channel, room, 11), "small soft")
-        tip = f"{channel} at {consumer}{wiring.words(by)}"
-        _letter(svg, by, (_TAP_X + _READS_X - 10, y + 4), tip)
-        _tap(svg, y, found, by, tip)
-
-
-def _tap(svg: Svg, y: float, found: Sequence[tuple[int, Who]], by: Who, tip: str) -> None:
-    if not found:
-        svg.circle((_TAP_X, y), 3.5, "tap unread" if by is Who.NEITHER else "tap", tip=tip)
-        return
-    with svg.group("struck-tap", data_hit=" ".join(str(number) for number, _ in found)):
-        _diamond(svg, _TAP_X, y, tip)
-        right = _TAP_X + _BLOCK_W - 6
-        for number, struck_in in reversed(found):
-            width = _tag_width(number, struck_in)
-            with svg.group("tag-mark", data_hit=str(number)):
-                _tag(svg, right - width / 2, y, number, struck_in)
-            right -= width + 2
-
-
-def _diamond(svg: Svg, x: float, y: float, tip: str | None = None) -> None:
-    svg.polygon([(x - 6.5, y), (x, y - 6.5), (x + 6.5, y), (x, y + 6.5)], "tap hit", tip)
-
-
-def _tag(svg: Svg, x: float, y: float, number: int, by: Who) -> None:
-    width = _tag_width(number, by)
-    svg.rect(x - width / 2, y - 7.5, width, 15, "tag", 7.5)
-    svg.text(x, y + 3.5, f"{number}{by.value}", "on-tag", "middle")
-
-
-def _tag_width(number: int, by: Who) -> float:
-    return max(15.0, text_width(f"{number}{by.value}", 10) + 8)
 
 
 def _groups(svg: Svg, interface: Interface, layout: Layout) -> None:
@@ -207,11 +171,11 @@ def _reconstructions(svg: Svg, interface: Interface, layout: Layout, wiring: Wir
     """Lead what a module reconstructs round the drawing, back to the source it makes."""
     tops = {block.name: block.top for block in layout.modules}
     for lane, (module, source) in enumerate(interface.reconstructions):
-        right = _TAP_X + _BLOCK_W + 10 + _LANE * lane
+        right = TAP_X + BLOCK_W + 10 + _LANE * lane
         below = layout.bottom + 14 + _LANE * lane
         left, start, end = 6.0 + 5 * lane, tops[module] + 14, layout.sources[source]
         svg.path(
-            f"M{_TAP_X + _BLOCK_W} {start}H{right - 6}q6 0 6 6V{below - 8}q0 8 -8 8"
+            f"M{TAP_X + BLOCK_W} {start}H{right - 6}q6 0 6 6V{below - 8}q0 8 -8 8"
             f"H{left + 8}q-8 0 -8 -8V{end + 8}q0 -8 8 -8H{_SOURCE_X - 7}",
             "back",
         )
@@ -235,6 +199,9 @@ def _key(
     x, y = _SOURCE_X, top + 12
     svg.circle((x + 4, y - 4), 3.5, "tap")
     svg.text(x + 16, y, "tap", "small soft")
+    if len(variants) > 1:
+        svg.path(f"M{x + 560} {y - 4}h6", "lacking")
+        svg.text(x + 574, y, "the variant has no such tap", "small soft")
     svg.path(f"M{x + 56} {y - 4}h24", "wire other")
     unused = "used by neither variant" if len(variants) > 1 else "declared, not read here"
     other = unused if variants else "other source that may feed the channel"
@@ -248,12 +215,12 @@ def _key(
             (x, x + 420), (Who.BASELINE, Who.REPAIR), variants, strict=True
         ):
             svg.text(left + 4, y, by.value, f"bold {by.name.lower()}", "middle")
-            words = f"the {by.name.lower()} alone, {variant.name}"
+            words = f"the {by.name.lower()}, {variant.name} (at a feed: it alone uses it)"
             svg.text(left + 16, y, shortened(words, 380, 11), "small soft", tip=variant.description)
     for number, path in enumerate(struck, 1):
         y += 20
-        _diamond(svg, x + 4, y - 4)
-        _tag(svg, x + 24, y - 4, number, Who.BOTH)
+        draw_diamond(svg, x + 4, y - 4)
+        draw_tag(svg, x + 24, y - 4, number, Who.BOTH)
         svg.text(x + 40, y, shortened(path.words, 780, 12), tip=path.title)
 
 

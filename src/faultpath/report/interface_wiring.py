@@ -54,6 +54,23 @@ class Wiring:
         """Return who reads at a tap."""
         return self._who(lambda variant: tap[1] in variant.consumers)
 
+    def lacking(self, tap: Tap) -> tuple[str, str]:
+        """Say why baseline and repair have no such tap; empty for one that has it.
+
+        A variant lacks a tap because its whole module is not at work, or because the module does
+        not read there.
+        """
+        module = module_of(tap[1])
+        said: list[str] = []
+        for variant in (self.variants[0], self.variants[-1]):
+            if tap[1] in variant.consumers:
+                said.append("")
+            elif module in map(module_of, variant.consumers):
+                said.append("not read")
+            else:
+                said.append("no module")
+        return said[0], said[1]
+
     def module(self, name: str) -> Who:
         """Return who has a module at work: one whose taps are read."""
         return self._who(lambda variant: name in map(module_of, variant.consumers))

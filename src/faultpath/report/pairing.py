@@ -1,5 +1,6 @@
 """The outcome table read as pairs: baseline and repair in the same scene, path and seed."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -104,6 +105,14 @@ def read_pairs(outcomes: OutcomeTable, record: DecisionRecord) -> tuple[Pair, ..
     void = {p.scene for p in pairs if p.kind is Kind.VOID and p.path in compared}
     pairs = [replace(pair, left_out=pair.scene in void) for pair in pairs]
     return tuple(sorted(pairs, key=lambda p: (paths.index(p.path), p.topology, p.index, p.seed)))
+
+
+def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
+    """Return the pairs by scene and seed, in each by path."""
+    groups: dict[tuple[str, int], dict[str, Pair]] = {}
+    for pair in pairs:
+        groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
+    return groups
 
 
 def _met(outcome: Outcome) -> tuple[str, str, str]:

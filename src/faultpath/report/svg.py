@@ -67,8 +67,10 @@ _FILE_MARGIN = 16
 class Svg:
     """One picture. Its size is in pixels at scale 1; on a page it scales with its column."""
 
-    def __init__(self, width: float, height: float, title: str, description: str = "") -> None:
-        self.width, self.height = width, height
+    def __init__(
+        self, width: float, height: float, title: str, description: str = "", role: str = "img"
+    ) -> None:
+        self.width, self.height, self._role = width, height, role
         content = f"{title}\0{description}\0{width}\0{height}".encode(errors="backslashreplace")
         self.uid = f"fig-{blake2b(content, digest_size=6).hexdigest()}"
         self._title, self._description = title, description
@@ -115,12 +117,15 @@ class Svg:
         self._parts.append(f"<text{_attributes(cls, attributes)}>{inner}</text>")
 
     @contextmanager
-    def group(self, cls: str = "", tip: str | None = None, **attributes: str) -> Generator[None]:
-        """Put what is drawn inside into one `<g>`."""
+    def group(
+        self, cls: str = "", tip: str | None = None, link: str = "", **attributes: str
+    ) -> Generator[None]:
+        """Put what is drawn inside into one `<g>`, or into one link."""
         inner = f"<title>{escape(tip)}</title>" if tip else ""
-        self._parts.append(f"<g{_attributes(cls, attributes)}>{inner}")
+        tag, to = ("a", {"href": link}) if link else ("g", {})
+        self._parts.append(f"<{tag}{_attributes(cls, to | attributes)}>{inner}")
         yield
-        self._parts.append("</g>")
+        self._parts.append(f"</{tag}>")
 
     def hatch(self, name: str, cls: str, spacing: float = 5) -> str:
         """Define a diagonal hatching and return the `fill` that uses it."""
@@ -153,7 +158,7 @@ class Svg:
             else ""
         )
         head = (
-            f'<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="img" '
+            f'<svg xmlns="http://www.w3.org/2000/svg" class="fig" role="{self._role}" '
             f'aria-labelledby="{ids}" viewBox="{-margin} {-margin} {width} {height}" '
             f'width="{width}" height="{height}">'
             f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'

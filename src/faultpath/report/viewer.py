@@ -1,75 +1,57 @@
-"""The few scenes whose flights are shown, and what the page's scripts need to draw them.
+"""Every trial as the page's scripts need it to draw it again."""
 
-How scenes are chosen. A *showing* is one scene with one seed, and its *pattern* is who alone
-succeeded there, path by path. Scenes with a void pair and flights without a track are left out. The
-rest is ranked: first those where the arm that alone succeeds under the shared fault is not the one
-that alone succeeds on another path; then those where that arm changes between other paths; then
-those where one arm alone succeeds under the shared fault; then those where one does on any path;
-then the others. Within a rank the largest difference in terminal distance comes first, then the
-scene index and the seed. From that list the first showing of every pattern is taken, then the list
-is filled up in order, never with a scene twice. They are examples, not a sample.
-"""
-
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import SHARED, DecisionRecord, Question
+from faultpath.record import DecisionRecord, Path, Question
 from faultpath.report import wording
 from faultpath.report.inputs import Traces
-from faultpath.report.pairing import Kind, Pair
+from faultpath.report.pairing import Kind, Pair, by_scene
+from faultpath.report.viewer_choice import (
+    DISTANCE,
+    PARTING_M,
+    Track,
+    choose,
+    parting_step,
+    tracks_of,
+    why,
+)
+from faultpath.report.viewer_hits import hit
+from faultpath.report.viewer_packing import Whole, pack
+from faultpath.report.viewer_signals import Plot, drawn, in_force, plots
 from faultpath.store import TrialAddress
-from faultpath.trials import FloorPlan, Outcome
+from faultpath.store.signals import Signal, Signals
+from faultpath.trials import FloorPlan, Outcome, Status
 
-Track: TypeAlias = NDArray[np.float32]
-"""Positions at control steps, `[T, 3]`, metres."""
+SCRIPTS = ("unpacking.js", "plan.js", "small.js", "scene3d.js", "viewer.js")
+"""Of a page with the viewer, in this order."""
 
-PARTING_M = 0.5
-_DISTANCE = "terminal_distance_m"
-"""The metric that ranks scenes, where a system has it."""
-_MOST = 6
+_MOST_WITH_SIGNALS = 12
+"""Scenes, with a seed each, whose signals go into a page."""
+_ATTITUDE = ("vehicle.attitude", "attitude_estimate", "attitude")
+_WIND = ("true_wind", "wind")
+"""What is drawn at a vehicle, under the first of these names that it is recorded."""
 _FARTHEST_M = 1e6
 """Beyond this a position is no longer drawn where it was: in centimetres it must stay a number."""
 
 
 @dataclass(frozen=True)
-class Showing:
-    """One scene with one seed, all its pairs by path."""
+class Viewer:
+    """What a page needs of the viewer beside its scripts."""
 
-    pairs: dict[str, Pair]
-    rank: int
-    gap_m: float
-
-    @property
-    def any_pair(self) -> Pair:
-        """Return one of the pairs, for what they all share."""
-        return next(iter(self.pairs.values()))
-
-    @property
-    def pattern(self) -> tuple[int, ...]:
-        """Who alone succeeded, path by path: +1 the repair, -1 the baseline, 0 neither alone."""
-        return tuple(pair.sign for pair in self.pairs.values())
-
-
-def choose(record: DecisionRecord, traces: Traces, pairs: Sequence[Pair]) -> tuple[Showing, ...]:
-    """Return up to six showings by the rule at the top of this file."""
-    ranked = sorted(_showings(record.question, traces, pairs), key=_order)
-    chosen: list[Showing] = []
-    patterns: set[tuple[int, ...]] = set()
-    scenes: set[str] = set()
-    for only_new_patterns in (True, False):
-        for showing in ranked:
-            scene = showing.any_pair.scene
-            seen = showing.pattern in patterns and only_new_patterns
-            if len(chosen) == _MOST or scene in scenes or seen:
-                continue
-            chosen.append(showing)
-            patterns.add(showing.pattern)
-            scenes.add(scene)
-    return tuple(sorted(chosen, key=_order))
+    paths: tuple[Path, ...]
+    space: str
+    """`space`: flights are drawn from above and in three dimensions; `line`: their positions lie
+    on one axis and are plotted over time; `none`: the system gives no positions."""
+    parting_m: float
+    shown: frozenset[tuple[str, int]]
+    """Scenes and seeds that can be looked at."""
+    packed: str
+    """All else, for the script."""
 
 
 def viewer_data(
@@ -77,120 +59,152 @@ def viewer_data(
     traces: Traces,
     plans: Mapping[str, FloorPlan],
     pairs: Sequence[Pair],
-) -> dict[str, Any] | None:
-    """Return what `choose` does as plain data for the page's scripts; `None` for nothing."""
-    asked, chosen = record.question, choose(record, traces, pairs)
-    if not chosen:
+    signals: Signals | None = None,
+) -> Viewer | None:
+    """Return every trial for the page's scripts; `None` where nothing was flown that is kept.
+
+    Where some trials have a track, scenes without any are left out.
+    """
+    asked = record.question
+    space = _space(traces, plans)
+    groups = by_scene(pairs)
+    if space != "none":
+        groups = {
+            at: group
+            for at, group in groups.items()
+            if any(len(t) for pair in group.values() for t in tracks_of(asked, traces, pair))
+        }
+    if not groups:
         return None
-    return {
+    chosen = [(s.any_pair.scene, s.any_pair.seed) for s in choose(record, traces, pairs)]
+    kept = _kept(signals or {}, chosen, groups)
+    if space == "line":
+        kept = _with_positions(kept, traces)
+    lines, series = plots(kept), list[Whole]()
+    packing = _Packing(asked, traces, plans, kept, lines, series)
+    scenes = [packing.scene(group) for group in groups.values()]
+    places = {at: place for place, at in enumerate(groups)}
+    content = {
         "dt_s": traces.dt_s,
         "parting_m": PARTING_M,
+        "space": space,
         "baseline": asked.baseline,
         "repair": asked.repair,
         "paths": [{"name": path.name, "title": path.title} for path in record.paths],
-        "scenes": [_scene_shown(asked, traces, plans, showing) for showing in chosen],
+        "picked": [places[at] for at in chosen if at in places],
+        "plots": [plot.told for plot in lines],
+        "plans": {name: _plan(plans[name]) for name, _ in groups if name in plans},
+        "scenes": scenes,
     }
+    return Viewer(record.paths, space, PARTING_M, frozenset(groups), pack(content, series))
 
 
-def parting_step(a: Track, b: Track) -> int | None:
-    """Return the first step at which two tracks are more than `PARTING_M` apart, if any."""
-    steps = min(len(a), len(b))
-    apart = np.linalg.norm(a[:steps] - b[:steps], axis=1) > PARTING_M
-    return int(np.argmax(apart)) if apart.any() else None
+@dataclass(frozen=True)
+class _Packing:
+    """Turns trials into what the script reads; tracks and signals go into `series`."""
+
+    asked: Question
+    traces: Traces
+    plans: Mapping[str, FloorPlan]
+    signals: Signals
+    plots: tuple[Plot, ...]
+    series: list[Whole]
+
+    def scene(self, group: Mapping[str, Pair]) -> dict[str, Any]:
+        pair = next(iter(group.values()))
+        plan = self.plans.get(pair.scene)
+        sound = not any(each.kind in (Kind.VOID, Kind.LEFT_OUT) for each in group.values())
+        return {
+            "scene": pair.scene,
+            "seed": pair.seed,
+            "title": plan.title if plan else pair.topology,
+            "why": why(group) if sound else "",
+            "pairs": [self._pair(each) for each in group.values()],
+        }
+
+    def _pair(self, pair: Pair) -> dict[str, Any]:
+        tracks = tracks_of(self.asked, self.traces, pair)
+        return {
+            "path": pair.path,
+            "kind": pair.kind.value,
+            "void": pair.void_reason,
+            "baseline": self._arm(self.asked.baseline, pair, pair.baseline, tracks[0]),
+            "repair": self._arm(self.asked.repair, pair, pair.repair, tracks[1]),
+            "parting_step": parting_step(*tracks),
+        }
+
+    def _arm(self, variant: str, pair: Pair, trial: Outcome | None, track: Track) -> Any:
+        if trial is None:
+            return None
+        address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
+        named = {each.name: each for each in self.signals.get(address, ())}
+        plan = self.plans.get(pair.scene)
+        crashed = trial.status is Status.CRASH and plan is not None and len(track)
+        return {
+            "status": trial.status.value,
+            "ended": wording.ended(self.asked, trial.status),
+            "time_s": trial.time_s,
+            "distance_m": trial.metrics.get(DISTANCE),
+            "hit": hit(plan, track[-1]) if crashed and plan else None,
+            "track": self._put(_centimetres(track).T) if len(track) else None,
+            "attitude": self._frames(named),
+            "wind": self._first(named, _WIND, 3, 100.0),
+            "lines": drawn(named, self.plots, self.series),
+            "struck": in_force(named),
+        }
+
+    def _frames(self, named: Mapping[str, Signal]) -> int | None:
+        """Put down rotation matrices, body to world, row by row in thousandths."""
+        return self._first(named, _ATTITUDE, 9, 1000.0)
+
+    def _first(
+        self, named: Mapping[str, Signal], names: Iterable[str], parts: int, scale: float
+    ) -> int | None:
+        for name in names:
+            if name in named and named[name].values.shape[1] == parts:
+                values = np.nan_to_num(named[name].values.astype(np.float64))
+                return self._put(np.rint(scale * np.clip(values, -1e6, 1e6)).astype(np.int32).T)
+        return None
+
+    def _put(self, rows: NDArray[np.int32]) -> int:
+        self.series.extend(rows)
+        return len(self.series) - len(rows)
 
 
-def _showings(asked: Question, traces: Traces, pairs: Sequence[Pair]) -> Iterator[Showing]:
-    groups: dict[tuple[str, int], dict[str, Pair]] = {}
-    for pair in pairs:
-        tracks = _tracks(asked, traces, pair)
-        if pair.kind not in (Kind.VOID, Kind.LEFT_OUT) and all(map(len, tracks)):
-            groups.setdefault((pair.scene, pair.seed), {})[pair.path] = pair
-    for group in groups.values():
-        yield Showing(group, _rank(group), max(map(_distance_gap, group.values())))
-
-
-def _rank(group: dict[str, Pair]) -> int:
-    signs = {path: pair.sign for path, pair in group.items()}
-    shared = signs.get(SHARED, 0)
-    if shared and -shared in signs.values():
-        return 0
-    if {1, -1} <= set(signs.values()):
-        return 1
-    if shared:
-        return 2
-    return 3 if any(signs.values()) else 4
-
-
-def _order(showing: Showing) -> tuple[int, float, int, int]:
-    pair = showing.any_pair
-    return showing.rank, -showing.gap_m, pair.index, pair.seed
-
-
-def _distance_gap(pair: Pair) -> float:
-    ends = [
-        distance
-        for trial in (pair.baseline, pair.repair)
-        if trial is not None and (distance := trial.metrics.get(_DISTANCE)) is not None
-    ]
-    return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
-
-
-def _tracks(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
-    """Return the tracks of baseline and repair; what left none has no row."""
-    at = (pair.path, pair.seed, pair.scene)
-    none = np.empty((0, 3), np.float32)
-    arms = (asked.baseline, asked.repair)
-    return [traces.positions.get(TrialAddress(arm, *at), none) for arm in arms]
-
-
-_WHY = (
-    "In this scene one arm alone succeeds with the fault shared, the other alone on another path.",
-    "In this scene one arm alone succeeds on one path, and the other alone on another.",
-    "In this scene only one arm succeeds with the fault shared.",
-    "In this scene only one arm succeeds on at least one path.",
-    "In this scene both arms end alike on every path; how far from the goal differs most.",
-)
-
-
-def _scene_shown(
-    asked: Question, traces: Traces, plans: Mapping[str, FloorPlan], showing: Showing
-) -> dict[str, Any]:
-    pair = showing.any_pair
-    plan = plans.get(pair.scene)
-    return {
-        "scene": pair.scene,
-        "seed": pair.seed,
-        "title": plan.title if plan else pair.topology,
-        "why": _WHY[showing.rank],
-        "plan": None if plan is None else _plan(plan),
-        "pairs": [
-            _pair_shown(asked, each, *_tracks(asked, traces, each))
-            for each in showing.pairs.values()
-        ],
-    }
-
-
-def _pair_shown(asked: Question, pair: Pair, baseline: Track, repair: Track) -> dict[str, Any]:
-    return {
-        "path": pair.path,
-        "kind": pair.kind.value,
-        "baseline": _arm(asked, pair.baseline, baseline),
-        "repair": _arm(asked, pair.repair, repair),
-        "parting_step": parting_step(baseline, repair),
-    }
-
-
-def _arm(asked: Question, trial: Outcome | None, track: Track) -> dict[str, Any]:
-    assert trial is not None  # a pair without both trials is void and never shown
+def _centimetres(track: Track) -> NDArray[np.int32]:
     held = np.clip(np.nan_to_num(track), -_FARTHEST_M, _FARTHEST_M)
+    return np.rint(100.0 * held).astype(np.int32)
+
+
+def _space(traces: Traces, plans: Mapping[str, FloorPlan]) -> str:
+    if not any(map(len, traces.positions.values())):
+        return "none"
+    flat = not plans and all(not track[:, 1:].any() for track in traces.positions.values())
+    return "line" if flat else "space"
+
+
+def _with_positions(signals: Signals, traces: Traces) -> Signals:
+    """Return the signals with positions along the one axis, in place of what says the same."""
+
+    def others(at: TrialAddress, axis: Track) -> Iterator[Signal]:
+        for each in signals.get(at, ()):
+            if not np.array_equal(each.values, axis[: len(each.values)]):
+                yield each
+
     return {
-        "status": trial.status.value,
-        "ended": wording.ended(asked, trial.status),
-        "time_s": trial.time_s,
-        _DISTANCE: trial.metrics.get(_DISTANCE),
-        # `[x, y, z, x, y, z, ...]`
-        "track_cm": np.rint(100.0 * held).astype(int).ravel().tolist(),
+        at: (Signal("position", "position", "m", track[:, :1]), *others(at, track[:, :1]))
+        for at, track in traces.positions.items()
     }
+
+
+def _kept(
+    signals: Signals, chosen: Sequence[tuple[str, int]], groups: Iterable[tuple[str, int]]
+) -> Signals:
+    """Return the signals of as many scenes as a page has room for, the chosen ones first."""
+    with_signals = {(at.scene, at.seed) for at in signals}
+    order = [at for at in dict.fromkeys((*chosen, *groups)) if at in with_signals]
+    few = set(order[:_MOST_WITH_SIGNALS])
+    return {at: named for at, named in signals.items() if (at.scene, at.seed) in few}
 
 
 def _plan(plan: FloorPlan) -> dict[str, Any]:

@@ -1,10 +1,11 @@
 """Every scene as one cell: who succeeded there."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
+from urllib.parse import quote
 
 from faultpath.report.pairing import WORDS, Kind, Pair
-from faultpath.report.svg import Svg, shortened, text_width
+from faultpath.report.svg import Point, Svg, shortened, text_width
 
 _WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
 _SHORT = {
@@ -18,13 +19,19 @@ _SHORT = {
 _ALWAYS = (Kind.BOTH, Kind.REPAIR_ONLY, Kind.BASELINE_ONLY, Kind.NEITHER)
 
 
-def pair_grid(title: str, pairs: Sequence[Pair], names: Mapping[str, str]) -> str:
+def pair_grid(
+    title: str,
+    pairs: Sequence[Pair],
+    names: Mapping[str, str],
+    shown: Collection[tuple[str, int]] = (),
+) -> str:
     """Return the grid of one path: a block for each topology, a column for each scene.
 
     With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
     that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
     neither, a cross in a red box a void pair, a slash a scene left out because of one. `names` says
-    what the system calls its ends.
+    what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
+    in the viewer.
     """
     counts = {kind: sum(p.kind is kind for p in pairs) for kind in Kind}
     told = ", ".join(
@@ -37,7 +44,9 @@ def pair_grid(title: str, pairs: Sequence[Pair], names: Mapping[str, str]) -> st
     side = max(11.0, min(19.0, (_WIDTH - left) / columns - _GAP))
     row_height = n_seeds * (side + 1) + (7 if n_seeds > 1 else 4)
     rows = sum(-(-len(stacks) // columns) for _, stacks in blocks)
-    svg = Svg(_WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", told)
+    svg = Svg(
+        _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", told, "group"
+    )
     svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
     svg.text(0, 31, told, "small soft")
     y = 42.0
@@ -47,7 +56,8 @@ def pair_grid(title: str, pairs: Sequence[Pair], names: Mapping[str, str]) -> st
             x = left + (k % columns) * (side + _GAP)
             at = y + (k // columns) * row_height
             for j, pair in enumerate(stack):
-                _cell(svg, pair, x, at + j * (side + 1), side, names)
+                link = address(pair) if (pair.scene, pair.seed) in shown else ""
+                _cell(svg, pair, (x, at + j * (side + 1)), side, names, link)
         y += -(-len(stacks) // columns) * row_height + 4
     return svg.render()
 
@@ -73,15 +83,22 @@ def _blocks(pairs: Sequence[Pair]) -> list[tuple[str, list[list[Pair]]]]:
     ]
 
 
-def _cell(svg: Svg, pair: Pair, x: float, y: float, side: float, names: Mapping[str, str]) -> None:
-    seed = f", seed {pair.seed}"
+def address(pair: Pair) -> str:
+    """Return the part of a page's address that shows a pair in the viewer."""
+    return f"#scene={quote(pair.scene, safe='')}&seed={pair.seed}&path={quote(pair.path, safe='')}"
+
+
+def _cell(
+    svg: Svg, pair: Pair, at: Point, side: float, names: Mapping[str, str], link: str
+) -> None:
+    x, y = at
     ends = ", ".join(
         f"{arm} {names.get(trial.status, trial.status) if trial else 'did not run'}"
         for arm, trial in (("baseline", pair.baseline), ("repair", pair.repair))
     )
     note = f" ({WORDS[Kind.LEFT_OUT]})" if pair.kind is Kind.LEFT_OUT else ""
-    tip = f"{pair.scene}{seed}: {pair.void_reason or ends}{note}"
-    with svg.group("pair", tip, data_scene=pair.scene):
+    tip = f"{pair.scene}, seed {pair.seed}: {pair.void_reason or ends}{note}"
+    with svg.group("pair", tip, data_scene=pair.scene, link=link):
         svg.rect(x, y, side, side, "void-cell" if pair.kind is Kind.VOID else "cell", 2)
         _glyph(svg, pair.kind, x + side / 2, y + side / 2)
 

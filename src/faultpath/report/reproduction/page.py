@@ -18,11 +18,12 @@ from faultpath.report.reproduction import words
 from faultpath.report.reproduction.glossary import GLOSSARY
 from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.ledger import ledger_plots
-from faultpath.report.viewer import viewer_data
+from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
+from faultpath.report.viewer import Viewer, viewer_data
 from faultpath.tables.html import html
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css", "reproduction.css")
-_SCRIPTS = ("page.js", "plan.js", "scene3d.js", "viewer.js", "reproduction.js")
+_SCRIPTS = ("page.js", *VIEWER_SCRIPTS, "reproduction.js")
 
 
 def reproduction_page(source: ReproductionInput) -> str:
@@ -107,9 +108,9 @@ def _reversal(source: ReproductionInput, struck: tuple[StruckPath, ...]) -> Mapp
     }
 
 
-def _flights(source: ReproductionInput) -> Mapping[str, object] | None:
+def _flights(source: ReproductionInput) -> Viewer | None:
     record = source.decision
-    if record is None:
+    if record is None or not source.traces.positions:
         return None
     pairs = read_pairs(source.outcomes, record)
     return viewer_data(record, source.traces, source.plans, pairs)

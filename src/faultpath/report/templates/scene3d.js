@@ -33,8 +33,7 @@ class Scene3D {
   show(content) { this.content = content; this.draw(); }
 
   frame() {
-    const { scene, pair } = this.content;
-    const { low, high } = Flight.bounds(scene, pair);
+    const { low, high } = Flight.bounds(this.content.scene);
     const centre = low.map((v, i) => (v + high[i]) / 2);
     const radius = Math.hypot(...low.map((v, i) => high[i] - v)) / 2 || 1;
     const [cy, sy, cp, sp] = [Math.cos(this.yaw), Math.sin(this.yaw), Math.cos(this.pitch), Math.sin(this.pitch)];
@@ -84,27 +83,28 @@ class Scene3D {
   }
 
   solids({ project }) {
-    const { prisms, pillars } = this.content.scene.plan;
+    const { prisms, pillars } = this.content.scene.plan, hits = Flight.hits(this.content.pair);
     const round = (p) => Array.from({ length: 14 }, (_, i) => [p.x + p.radius * Math.cos((i * Math.PI) / 7), p.y + p.radius * Math.sin((i * Math.PI) / 7)]);
     const faces = [];
-    for (const p of [...prisms, ...pillars.map((q) => ({ ...q, corners: round(q), smooth: true }))]) {
-      const n = p.corners.length;
+    for (const [number, p] of [...prisms, ...pillars.map((q) => ({ ...q, corners: round(q), smooth: true }))].entries()) {
+      const n = p.corners.length, look = { edge: !p.smooth, hit: hits.includes(number) };
       const ring = (z) => p.corners.map(([x, y]) => project([x, y, z]));
       const [under, over] = [ring(p.bottom), ring(p.top)];
-      faces.push({ points: over, edge: true });
+      faces.push({ points: over, ...look, edge: true });
       for (let i = 0; i < n; i += 1) {
         const j = (i + 1) % n;
-        faces.push({ points: [under[i], under[j], over[j], over[i]], edge: !p.smooth });
+        faces.push({ points: [under[i], under[j], over[j], over[i]], ...look });
       }
     }
     for (const face of faces) face.depth = face.points.reduce((sum, p) => sum + p[2], 0) / face.points.length;
     faces.sort((a, b) => b.depth - a.depth);
-    for (const { points, edge } of faces) {
+    for (const { points, edge, hit } of faces) {
+      const ink = this.ink(hit ? "struck" : "soft");
       this.pen.beginPath();
       points.forEach(([x, y], i) => (i ? this.pen.lineTo(x, y) : this.pen.moveTo(x, y)));
       this.pen.closePath();
-      this.pen.globalAlpha = 0.13; this.pen.fillStyle = this.ink("soft"); this.pen.fill();
-      this.pen.globalAlpha = edge ? 0.55 : 0.12; this.pen.strokeStyle = this.ink("soft"); this.pen.lineWidth = 0.8; this.pen.stroke();
+      this.pen.globalAlpha = 0.13; this.pen.fillStyle = ink; this.pen.fill();
+      this.pen.globalAlpha = edge ? 0.55 : 0.12; this.pen.strokeStyle = ink; this.pen.lineWidth = 0.8; this.pen.stroke();
       this.pen.globalAlpha = 1;
     }
   }
@@ -123,23 +123,42 @@ class Scene3D {
   flights({ low, project }) {
     const { pair, step } = this.content;
     const floor = Math.min(0, low[2]);
-    for (const arm of Flight.arms) {
-      const track = pair[arm].track_cm, n = Flight.steps(track), now = Math.min(step, n - 1);
-      const points = Array.from({ length: n }, (_, i) => project(Flight.point(track, i)));
+    for (const arm of Flight.drawn(pair)) {
+      const trial = pair[arm], now = Math.min(step, trial.steps - 1);
+      const points = Flight.path(trial).map(project), last = points[points.length - 1];
       this.pen.setLineDash(arm === "baseline" ? [6, 3] : []);
       this.pen.globalAlpha = 0.3; this.line(points.slice(now), this.ink(arm), 2);
       this.pen.globalAlpha = 1; this.line(points.slice(0, now + 1), this.ink(arm), 2);
       this.pen.setLineDash([]);
-      const here = Flight.point(track, step);
+      const here = Flight.point(trial, step);
       this.line([here, [here[0], here[1], floor]].map(project), this.ink(arm), 0.8);
-      this.end(pair[arm].status, points[n - 1], this.ink(arm));
-      if (step < n - 1) this.dot(points[now], 5, this.ink(arm));
+      this.end(trial.status, last, this.ink(arm));
+      this.vehicle(trial, arm, now, points[now], project);
     }
     if (pair.parting_step !== null) {
-      const [x, y] = project(Flight.point(pair.repair.track_cm, pair.parting_step));
+      const [x, y] = project(Flight.point(pair.repair, pair.parting_step));
       this.pen.fillStyle = this.ink("paper"); this.pen.strokeStyle = this.ink("ink"); this.pen.lineWidth = 1.5;
       this.pen.fillRect(x - 4, y - 4, 8, 8); this.pen.strokeRect(x - 4, y - 4, 8, 8);
     }
+  }
+
+  // The body with its four arms and its upward axis, and the arrow of the wind, where known.
+  vehicle(trial, arm, now, spot, project) {
+    const here = Flight.point(trial, now), axes = Flight.axes(trial, now), wind = Flight.wind(trial, now);
+    const to = (direction, length) => project(here.map((v, i) => v + direction[i] * length));
+    if (wind) {
+      const tip = to(wind, Flight.ARROW_S), turn = Math.atan2(tip[1] - spot[1], tip[0] - spot[0]);
+      const head = (bend) => [tip[0] + 8 * Math.cos(turn + bend), tip[1] + 8 * Math.sin(turn + bend)];
+      this.line([spot, tip], this.ink("soft"), 1.5);
+      this.line([head(2.6), tip, head(-2.6)], this.ink("soft"), 1.5);
+    }
+    if (axes) {
+      for (const l of [1, -1]) {
+        const side = axes[0].map((v, i) => v + l * axes[1][i]);
+        this.line([to(side, 0.22), to(side, -0.22)], this.ink(arm), 2.5);
+      }
+      this.line([spot, to(axes[2], 0.35)], this.ink(arm), 1.5);
+    } else if (now < trial.steps - 1) this.dot(spot, 5, this.ink(arm));
   }
 
   line(points, colour, width) {

@@ -1,0 +1,95 @@
+"""`faultpath replay`: fly trials of a finished run again, to check, to listen, or to film them."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from faultpath.cli.options import path as as_path
+from faultpath.errors import UserError
+
+DIFFERS = 1
+
+
+def command(
+    folder: Annotated[Path, typer.Argument(parser=as_path, help="Folder of a finished audit.")],
+    scene: Annotated[
+        list[str] | None,
+        typer.Option(help="Scene by its id, several times for several; default those shown first."),
+    ] = None,
+    path: Annotated[
+        list[str] | None, typer.Option(help="Path of the fault, such as shared; default all.")
+    ] = None,
+    signals: Annotated[
+        bool, typer.Option("--signals", help="Keep what was heard, and make the report again.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            parser=as_path, help="Film a scene into a .gif or .mp4, or write a .rrd; flies nothing."
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Seed to film; default the first.")
+    ] = None,
+    speed: Annotated[float, typer.Option(min=0.1, max=10, help="Of the film.")] = 1.0,
+) -> int:
+    """Fly trials of a finished run again and compare them with the run, to the bit; it runs the
+    system that the run names. Exits with 1 where one differs."""
+    if not (folder / "provenance.json").exists():
+        raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
+
+    from faultpath.door.display import SafeConsole
+    from faultpath.door.replaying import chosen_scenes, keep_signals, replay
+    from faultpath.door.saved import RECORD, read_provenance, read_run
+    from faultpath.report.wording import counted
+    from faultpath.tables.terminal import STYLES
+
+    if RECORD not in read_provenance(folder).files:
+        raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
+    held, _ = read_run(folder)
+    scenes = chosen_scenes(held, scene or (), path or ())
+    console = SafeConsole()
+    if out is not None:
+        from faultpath.report.film import film
+        from faultpath.report.rerun_export import export
+
+        if signals:
+            raise UserError("--out flies nothing, so there is nothing to hear: leave one out.")
+        if out.suffix == ".rrd":
+            export(held, scenes[0], seed, out)
+        else:
+            film(held, scenes[0], seed, tuple(path or ()), speed, out)
+        console.print(f"Written: {out}", markup=False, soft_wrap=True)
+        return 0
+    if seed is not None:
+        raise UserError("--seed says what to film with --out: all seeds are flown again.")
+    asked = held.record.question
+    more = {}
+    if asked.system == "quadrotor":
+        from faultpath.quadrotor.evidence.signals import quadrotor_signals
+
+        more = {asked.system: quadrotor_signals}
+    found = replay(held, scenes, path or (), more, lambda said: console.print(said, markup=False))
+    unlike = [each for each in found if each.differs]
+    for each in unlike:
+        at = each.address
+        where = f"{at.variant}, {at.path}, seed {at.seed}, {at.scene}"
+        console.print(f"{where}: {each.differs}.", markup=False, style=STYLES["bad"])
+    if unlike:
+        console.print(
+            f"{len(unlike)} of {len(found)} trials came out otherwise than in the run: the code, "
+            "the packages or the processor are not those that provenance.json names.",
+            markup=False,
+        )
+    else:
+        console.print(
+            f"{counted(len(found), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
+            "run, to the bit.",
+            markup=False,
+            style=STYLES["good"],
+        )
+    if signals and len(unlike) < len(found):
+        for written in keep_signals(folder, held, found):
+            console.print(f"Written: {written}", markup=False, soft_wrap=True)
+    return DIFFERS if unlike else 0

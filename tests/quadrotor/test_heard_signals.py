@@ -1,0 +1,48 @@
+"""What a heard flight of the quadrotor says: it is the flight, and its errors are the paper's."""
+
+import numpy as np
+
+from faultpath.execution.attempt import Done, attempt
+from faultpath.execution.differences import difference
+from faultpath.faults import parse_fault
+from faultpath.quadrotor.evidence.signals import quadrotor_signals
+from faultpath.review.hearing import fly_heard, signals
+from faultpath.trials import Arm, SystemSpec, load_system
+
+SCENE = ("selection/002",)
+
+
+def test_a_heard_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
+    system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
+    fault = parse_fault(
+        "calibration=+0.1", system.interface, system.fault_presets, system.control_dt_s
+    )
+    struck = fault.resolved(system.interface, system.variants["dob"].consumers)
+    told: list[dict[str, np.ndarray]] = []
+    for faults in ((), struck):
+        arm = Arm(variant="dob", faults=faults)
+        done, heard = fly_heard(system, arm, SCENE)
+        assert isinstance(done, Done)
+        if faults:
+            again = attempt(system, arm, SCENE)
+            assert isinstance(again, Done)
+            assert difference(again.outcomes, done) == ""
+        named = signals(heard, done, system.control_dt_s)[0]
+        named += quadrotor_signals(system, heard, done)[0]
+        told.append({each.name: each.values for each in named})
+        trace = done.outcomes[0].trace
+        assert trace is not None
+        assert np.array_equal(told[-1]["vehicle.position"], trace[:-1])
+    correct, wrong = told
+    assert not correct["nominal acceleration error"].any()
+    nominal, combined = (
+        wrong[f"{name} acceleration error"].mean() for name in ("nominal", "combined")
+    )
+    assert nominal > 1.5
+    assert combined < 0.5 * nominal  # the reconstruction errs by the same, with the opposite sign
+    assert np.allclose(wrong["mass at predictor.dynamics"], 1.1 * wrong["vehicle.mass"])
+    assert (correct["commanded thrust"] > 0).all()
+    predicted = correct["position predicted 1 s before"][20:]
+    flown = correct["vehicle.position"]
+    missed = np.linalg.norm(predicted - flown[20:], axis=1).mean()
+    assert missed < 0.3 * np.linalg.norm(flown[20:] - flown[:-20], axis=1).mean()
