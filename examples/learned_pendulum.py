@@ -5,13 +5,13 @@ gain of its motor, newton metres for a unit of command:
 
     encoder   makes a latent state of the last angles, the commands that were executed, and the gain
     planner   imagines where commands lead from that latent state, for which it needs the gain too,
-              and takes the best (model predictive path integral control)
+              and takes the best (cross-entropy method)
 
 One network holds both, fitted to predict the angles and rates to come. Baseline `exact` is fitted
-with the true gain. Repair `uncertain` is fitted with a gain that errs by up to 20 %, once a window.
+with the true gain. Repair `uncertain` is fitted with a gain that errs by up to 40 %, once a window.
 
     faultpath audit examples/learned_pendulum.py:create --baseline exact --repair uncertain \
-        --fault motor_gain:scale=0.8 --library selection --scenes 20
+        --fault motor_gain:scale=0.6 --library selection --scenes 20
 
 The weights lie beside this file. `python examples/learned_pendulum.py` fits others, into
 `runs/learned-pendulum`; `--weights runs/learned-pendulum` audits those.
@@ -133,6 +133,13 @@ class Planner(Module):
 
 
 # --- scenes ---
+SCENES = {  # seeds of resets that no window of the fit has
+    "training": range(10_000, 10_100),
+    "selection": range(10_500, 10_600),
+    "held-out": range(11_000, 11_100),
+}
+
+
 class Pushed(gymnasium.ActionWrapper):
     """The pendulum with a motor of some gain, and a torque, N m, that nobody ordered."""
 
@@ -148,7 +155,7 @@ class Pushed(gymnasium.ActionWrapper):
 
 
 def setup(env, rng):
-    env.gain, env.push = rng.uniform(6.0, 10.0), rng.uniform(-2.0, 2.0)
+    env.gain, env.push = rng.uniform(6.0, 10.0), rng.uniform(-4.0, 4.0)
     return {"motor_gain": env.gain}
 
 
@@ -191,7 +198,7 @@ def create(weights: Annotated[str, "Folder of fitted weights; default: those shi
         steps=80,
         dt_s=DT_S,
         setup=setup,
-        succeeded=lambda flown: offset_rad(flown) <= 0.5,
+        succeeded=lambda flown: offset_rad(flown) <= 0.15,
         metrics={"offset_rad": Measure(Metric(unit="rad", better="less"), offset_rad)},
     )
     folder = Path(weights).absolute() if weights else SHIPPED
@@ -203,6 +210,7 @@ def create(weights: Annotated[str, "Folder of fitted weights; default: those shi
             "uncertain": Parts("Fitted with a gain that errs.", modules("uncertain", folder)),
         },
         units={"angle": "1", "motor_gain": "N m", "latent": "1", "command": "1"},
+        scenes=SCENES,
     )
     system.folder = folder
     return system
@@ -235,15 +243,15 @@ def windows(count):
 
 def fit_both(folder, seed, count, epochs):
     data = windows(count)
-    schedule = Schedule(epochs=epochs, batch_size=128, learning_rate=4e-3, clip_norm=1.0)
+    schedule = Schedule(epochs=epochs, batch_size=128, learning_rate=1.5e-3, clip_norm=1.0)
     told = {"schedule": schedule, "seed": seed, "folder": folder}
-    error = uncertainty_training("motor_gain:uniform_scale=0.2")
+    error = uncertainty_training("motor_gain:uniform_scale=0.4")
     exact = fit(WorldModel, data, name="exact", **told)
     uncertain = fit(WorldModel, data, name="uncertain", repair=error, **told)
     print(matched(exact, uncertain))
     for name, each in (("exact", exact), ("uncertain", uncertain)):
-        wrong = evaluate(each, data, faults=["motor_gain:scale=0.8"])
-        print(f"{name}: {evaluate(each, data):.4f} with the true gain, {wrong:.4f} with 0.8 of it")
+        wrong = evaluate(each, data, faults=["motor_gain:scale=0.6"])
+        print(f"{name}: {evaluate(each, data):.4f} with the true gain, {wrong:.4f} with 0.6 of it")
 
 
 def main():
@@ -251,7 +259,7 @@ def main():
     parser.add_argument("--folder", type=Path, default=Path("runs/learned-pendulum"))
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--windows", type=int, default=3000)
-    parser.add_argument("--epochs", type=int, default=80)
+    parser.add_argument("--epochs", type=int, default=120)
     given = parser.parse_args()
     fit_both(given.folder, given.seed, given.windows, given.epochs)
 

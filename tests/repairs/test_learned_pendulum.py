@@ -20,7 +20,7 @@ run = faultpath.audit(
     example,
     baseline="exact",
     repair="uncertain",
-    fault="motor_gain:scale=0.8",
+    fault="motor_gain:scale=0.6",
     library="training",
     scenes=2,
     options={"weights": "runs/learned-pendulum"},
