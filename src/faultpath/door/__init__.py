@@ -4,6 +4,18 @@ A call flies, decides, writes a run folder and returns what came out. It leaves 
 and random state of its caller as they were. `check` and `trace` are offered here.
 """
 
-from faultpath.door.reviewing import check, trace
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from faultpath.door.reviewing import check, trace
 
 __all__ = ["check", "trace"]
+
+
+def __getattr__(name: str) -> object:
+    """Load the two when they are first used: every command comes through here."""
+    if name not in __all__:
+        raise AttributeError(f"module 'faultpath.door' has no attribute {name!r}")
+    from faultpath.door import reviewing
+
+    return getattr(reviewing, name)
