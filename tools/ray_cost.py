@@ -28,6 +28,7 @@ from faultpath.execution.provenance import checkout, processor
 
 RESULT = REFERENCE / "ray-cost.json"
 MANY = 1_000_000
+_MILLION = f"{MANY:,}".replace(",", " ")
 WORKERS = (1, 2, 4)
 FARTHER = (64, 256, 1024)
 """Workers for which times are extrapolated."""
@@ -202,12 +203,12 @@ def _measured(cost: Cost) -> str:
     columns = {
         "on": "{on}",
         "workers": "{workers}",
-        "start and end, s": "{starting:.1f}",
-        "trials a second": "{rate:.1f}",
-        "driver a trial, ms": "{driver:.2f}",
-        f"{MANY:,} trials, h".replace(",", " "): "{hours:.1f}",
+        "start and end, s": "{starting:1}",
+        "trials a second": "{rate:1}",
+        "driver a trial, ms": "{driver:2}",
+        f"{_MILLION} trials, h": "{hours:1}",
     }
-    return tabled("audit", rows, columns, code=True)
+    return tabled("audit", rows, columns, code=True, words="on")
 
 
 def _extrapolated(cost: Cost) -> str:
@@ -218,10 +219,10 @@ def _extrapolated(cost: Cost) -> str:
         if (each.executor, each.workers) == ("ray", 1)
         for name, longer_s in LONGER.items()
     ]
-    columns = {"worker hours": "{one:.1f}"}
-    columns |= {f"{n} workers, h": f"{{on{n}:.2f}}" for n in FARTHER}
-    columns |= {"the driver keeps up with": "{busy:.0f} workers"}
-    return tabled(f"{MANY:,} trials of".replace(",", " "), rows, columns)
+    columns = {"worker hours": "{one:1}"}
+    columns |= {f"{n} workers, h": f"{{on{n}:2}}" for n in FARTHER}
+    columns |= {"the driver keeps up with": "{busy:0} workers"}
+    return tabled(f"{_MILLION} trials of", rows, columns)
 
 
 def _shared_out(name: str, trial_s: float, driver_s: float) -> Mapping[str, Any]:
