@@ -44,8 +44,8 @@ def test_a_stored_run_is_decided_and_shown_anew(conclude, tmp_path: Path) -> Non
     kept = conclude._tracks(ROOT / "docs" / "reference" / "toy" / "report.html")
     again = conclude._tracks(toy / "report.html")
     assert kept
-    assert set(again) <= set(kept)
-    assert all((again[key] == kept[key]).all() for key in again)
+    assert set(kept) <= set(again)
+    assert all((again[key] == kept[key]).all() for key in kept)
 
 
 @pytest.fixture(scope="module")
