@@ -19,3 +19,7 @@ def __getattr__(name: str) -> object:
     from faultpath.door import reviewing
 
     return getattr(reviewing, name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
