@@ -88,6 +88,17 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
         {"--svg": ("a.svg", "folder"), "--yaml": ("a.yaml", "text.txt/a"), "--set": ("a=1",)},
     ),
     "report": (["folder"], {}),
+    "replay": (
+        ["folder"],
+        {
+            "--scene": ("carts/000", "nowhere"),
+            "--path": ("shared", "nobody"),
+            "--signals": (None,),
+            "--out": ("a.gif", "a.mp4", "a.txt", "folder"),
+            "--seed": ("0", "7"),
+            "--speed": ("2", "0", "nan"),
+        },
+    ),
     "runs": (["folder"], {"--json": (None,)}),
     "compare": (["folder", "text.txt"], {"--out": ("page.html", "folder", "nowhere/page.html")}),
     "log": (

@@ -77,7 +77,8 @@ def test_maps_and_audits_latest_first_and_once() -> None:
     assert [each.date for each in found] == sorted((e.date for e in found), reverse=True)
     assert len({each.folder for each in found}) == len(found)
     kinds = {Path(each.folder).name: each.kind for each in found}
-    assert (kinds["toy"], kinds["map-toy"]) == ("audit", "map")
+    assert (kinds["toy"], kinds["map-toy"], kinds["drift-L3"]) == ("audit", "map", "run")
+    assert {each.state for each in found} == {"finished"}
 
 
 def test_how_far_an_unfinished_run_has_come(begun: Path) -> None:

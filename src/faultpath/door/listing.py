@@ -120,7 +120,11 @@ def _verdict(folder: Path, provenance: RunProvenance, told: Listed) -> Listed:
     kind = _kind(folder)
     needed = {"audit": RECORD, "map": MAP, "reproduction": _REPRODUCTION}.get(kind)
     if needed is None:
-        raise UserError(f"{folder} holds no {RECORD}: give the folder of a finished run.")
+        if not provenance.files.keys().isdisjoint((RECORD, MAP, _REPRODUCTION)):
+            raise UserError(f"{folder} holds no {RECORD}: give the folder of a finished run.")
+        unseal(folder, provenance.files, (OUTCOMES,))
+        words = "Trials of a study; what they decide stands elsewhere."
+        return replace(told, words=words, trials=rows_in(folder / OUTCOMES))
     held = unseal(folder, provenance.files, (needed, OUTCOMES))
     if kind == "audit":
         audit = parsed(held[RECORD], folder / RECORD, DecisionRecord)
