@@ -82,8 +82,8 @@ def tap_rows(
 
 def _row(tap: Tap, struck: Sequence[StruckPath], wiring: Wiring) -> TapRow:
     numbers = [
-        [str(n) for n, path in enumerate(struck, 1) if tap in taps(path)]
-        for taps in (lambda path: path.baseline, lambda path: path.repair)
+        [str(n) for n, taps in enumerate(side, 1) if tap in taps]
+        for side in ([path.baseline for path in struck], [path.repair for path in struck])
     ]
     lacks = wiring.lacking(tap)
     said = [
