@@ -65,6 +65,14 @@ def end_of(executor, call, told=lambda message: None):
     raise AssertionError("waited in vain")
 
 
+def _runs(pid):
+    """Return whether a process of this machine lives, and is not only still listed."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
 def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path):
     """Two nodes of one CPU each hold a unit when one of them is killed."""
     lost = head.add_node(**node())
@@ -75,6 +83,11 @@ def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path
     def kill(progress):
         if gate.exists() and len(log.read_text().splitlines()) == 2:
             head.remove_node(lost, allow_graceful=False)
+            workers = [int(line.split()[3]) for line in log.read_text().splitlines()]
+            deadline = time.monotonic() + 60
+            # Until a worker has noticed that its node is gone, it would go on and finish its unit.
+            while all(map(_runs, workers)) and time.monotonic() < deadline:
+                time.sleep(0.05)
             gate.unlink()
 
     asked = study(hang_while=str(gate), log=str(log))
