@@ -83,6 +83,8 @@ def _systems(tmp_path: Path, *names: str) -> list[Path]:
 def own_modules(monkeypatch):
     """Leave neither modules nor places to look for them to other tests."""
     monkeypatch.setattr(sys, "path", list(sys.path))
+    for name in ("mine", "helper_of_mine"):  # commands that tests run in this process leave theirs
+        monkeypatch.delitem(sys.modules, name, raising=False)
     before = dict(sys.modules)
     yield
     for name in set(sys.modules) - set(before):
