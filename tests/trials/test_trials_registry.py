@@ -82,9 +82,8 @@ def _systems(tmp_path: Path, *names: str) -> list[Path]:
 @pytest.fixture
 def own_modules(monkeypatch):
     """Leave neither modules nor places to look for them to other tests."""
-    monkeypatch.setattr(sys, "path", list(sys.path))
-    for name in ("mine", "helper_of_mine"):  # commands that tests run in this process leave theirs
-        monkeypatch.delitem(sys.modules, name, raising=False)
+    # Commands that other tests ran in this process left the folders of their systems.
+    monkeypatch.setattr(sys, "path", [each for each in sys.path if "/pytest-of-" not in each])
     before = dict(sys.modules)
     yield
     for name in set(sys.modules) - set(before):
