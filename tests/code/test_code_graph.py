@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import CodeState, Root, read_code
+from faultpath.code.places import release
 
 Files = Callable[..., Path]
 
@@ -148,3 +149,11 @@ def test_an_installed_system_is_entered_and_what_it_uses_is_not(tmp_path, monkey
     (place / "zz_own.py").touch()  # of no distribution: its contents are all that is known
     (place / "zz_mine" / "__init__.py").write_text("import zz_own\n")
     assert "zz_own.py" in read_code([Root("zz_mine")]).state.files
+
+
+def test_no_distribution_is_looked_for_that_has_a_module_of_python(monkeypatch):
+    def asked(*_: object) -> None:
+        raise AssertionError("reading what every package holds takes seconds")
+
+    monkeypatch.setattr("faultpath.code.places.distributions", asked)
+    assert release.__wrapped__("json") is None

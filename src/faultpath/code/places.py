@@ -92,6 +92,8 @@ def release(package: str) -> str | None:
     One that was installed from a folder or an archive of the user's own keeps its version while
     its contents change; a digest of what was installed stands beside it.
     """
+    if package in sys.stdlib_module_names:  # no distribution has them, and looking takes seconds
+        return None
     found = _distribution(package)
     if found is None:
         return None
