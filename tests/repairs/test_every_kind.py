@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from faultpath.errors import UserError
 from faultpath.faults import (
     INTERVENTIONS,
     Bias,
@@ -91,6 +92,17 @@ def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: Interventio
         ]
         np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
         assert sum(count.altered_steps for count in counts)
+
+
+def test_two_faults_that_would_draw_the_same_own_numbers_are_refused() -> None:
+    faults = [
+        Fault(channel="image", intervention=Bias(std=0.1), consumers=(module,), loading=0.5)
+        for module in ("encoder", "guard")
+    ]
+    with pytest.raises(UserError, match=r"at encoder.* at guard.*: give each an `own_cause`"):
+        Taps(INTERFACE, faults, scenes=("one",), dt_s=DT_S, seed=0)
+    apart = [fault.model_copy(update={"own_cause": str(fault.consumers)}) for fault in faults]
+    Taps(INTERFACE, apart, scenes=("one",), dt_s=DT_S, seed=0)
 
 
 def test_errors_of_one_channel_at_two_modules_have_the_correlation_of_their_loadings() -> None:

@@ -56,7 +56,8 @@ class Fault(Frozen):
     """Share of the cause in the random numbers: two faults of one cause with the loadings a and b
     have errors of correlation a * b."""
     own_cause: str | None = None
-    """What addresses the rest of the random numbers; `None`: the channel and the kind."""
+    """What addresses the rest of the random numbers; `None`: the channel and the kind. Two faults
+    of one channel and kind, at two modules for instance, name one each."""
 
     @model_validator(mode="after")
     def _recovers_from_an_end(self) -> Self:
@@ -83,8 +84,11 @@ class Fault(Frozen):
         """Return the random numbers of the fault, which whoever it strikes shares."""
         if self.loading == 1.0:
             return Draws(scenes, seed, self.drawn_from)
-        own = self.own_cause or f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
-        return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, own))
+        return Draws(scenes, seed, self.drawn_from, self.loading, Draws(scenes, seed, self._own))
+
+    @property
+    def _own(self) -> str:
+        return self.own_cause or f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
 
     def striking(self, *names: str) -> Self:
         """Return the same fault at other consumers: `module.place`, modules, or `*`."""
@@ -153,6 +157,10 @@ class Fault(Frozen):
                 f"'{missing[0]}'; name every scene that runs"
             )
         return np.array([steps[scene] for scene in scenes], dtype=np.int64)
+
+    def same_numbers(self, other: "Fault") -> bool:
+        """Return whether both have random numbers beside their cause's, and the same ones."""
+        return abs(self.loading) < 1 > abs(other.loading) and self._own == other._own
 
     def describe(self) -> str:
         """Return the fault in a few words."""

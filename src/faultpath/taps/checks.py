@@ -1,12 +1,26 @@
-"""What a reading has to be before a consumer gets it."""
+"""What faults and readings have to be before a tap delivers."""
 
+from collections.abc import Sequence
+from itertools import combinations
 from typing import Any, cast
 
 import numpy as np
 
 from faultpath.arrays import Array, HostArray, device_kind, differs, is_array, namespace, to_numpy
+from faultpath.errors import UserError
+from faultpath.faults import Fault
 from faultpath.taps.errors import MalformedReading, NotFinite
 from faultpath.taps.tap import Tap
+
+
+def check_draws(faults: Sequence[Fault]) -> None:
+    """Raise `UserError` for two faults whose own random numbers are the same."""
+    for one, other in combinations(faults, 2):
+        if one.same_numbers(other):
+            raise UserError(
+                f"faults '{one.describe()}' and '{other.describe()}' have a loading and draw the "
+                "same numbers nevertheless: give each an `own_cause`"
+            )
 
 
 def check_first(tap: Tap, value: Any, scenes: tuple[str, ...]) -> None:

@@ -13,7 +13,7 @@ from faultpath.arrays import Array, differs, read_only
 from faultpath.errors import UserError
 from faultpath.faults import Coupled, Draws, Fault
 from faultpath.interface import Interface, modules
-from faultpath.taps.checks import check_finite, check_first, check_same, check_shape
+from faultpath.taps.checks import check_draws, check_finite, check_first, check_same, check_shape
 from faultpath.taps.errors import (
     IllegalRead,
     MalformedReading,
@@ -90,8 +90,9 @@ class Taps:
     def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
         present = {consumer for _, consumer in self._taps}
         draws: dict[tuple[str, float, str | None], Draws] = {}
-        for declared in faults:
-            everywhere = declared.resolved(self._interface)
+        resolved = [declared.resolved(self._interface) for declared in faults]
+        check_draws([fault for parts in resolved for fault in parts])
+        for declared, everywhere in zip(faults, resolved, strict=True):
             if not declared.resolved(self._interface, present):
                 names = {consumer for fault in everywhere for consumer in fault.consumers}
                 raise UserError(
