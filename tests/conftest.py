@@ -6,8 +6,6 @@ import signal
 import pytest
 from hypothesis import settings
 
-from faultpath import blame
-
 settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
 settings.register_profile("explore", derandomize=False, max_examples=500, deadline=None)
 settings.load_profile("fixed")
@@ -29,9 +27,3 @@ def fuzz_seed(request: pytest.FixtureRequest) -> int:
     """The seed of what a fuzz test tries; a failing test names it."""
     given = request.config.getoption("--fuzz-seed")
     return secrets.randbelow(10**9) if given == "random" else int(given)
-
-
-@pytest.fixture(autouse=True)
-def _systems_of_this_test_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A test that loads a module of the standard library as a system would have it blamed later."""
-    monkeypatch.setattr(blame, "_systems", set(blame._systems))

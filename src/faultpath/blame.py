@@ -28,8 +28,13 @@ _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
 
 
 def note_system(file: str) -> None:
-    """Note that the code beside `file` is a system's, even where it is an installed package."""
-    _systems.add(os.path.dirname(os.path.realpath(file)) + os.sep)
+    """Note that the code beside `file` is a system's, even where it is an installed package.
+
+    Python's own modules are nobody's system, whoever names one by mistake.
+    """
+    folder = os.path.dirname(os.path.realpath(file)) + os.sep
+    if not folder.startswith(_STANDARD) or any(part in folder for part in _PACKAGES):
+        _systems.add(folder)
 
 
 def place(error: BaseException) -> str:

@@ -1,12 +1,15 @@
 """From a name to a system."""
 
+import json
 import os
+import py_compile
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from faultpath import blame
 from faultpath.errors import UserError
 from faultpath.trials import SystemSpec, load_system
 
@@ -26,6 +29,35 @@ def test_a_file_may_import_the_file_beside_it(tmp_path, monkeypatch):
     (tmp_path / "parts_of_mine.py").write_text(FILE.read_text())
     (tmp_path / "mine.py").write_text("from parts_of_mine import create\n")
     assert load_system(SystemSpec(name=f"{tmp_path}/mine.py:create")).name == "toy"
+
+
+def test_what_is_loaded_by_mistake_is_blamed_for_nothing():
+    with pytest.raises(UserError, match="returned a dict"):
+        load_system(SystemSpec(name="json:loads", options={"s": "{}"}))
+    with pytest.raises(ValueError, match="Expecting") as found:
+        json.loads("nothing")
+    assert blame.place(found.value).startswith(os.path.relpath(__file__))
+
+
+@pytest.mark.parametrize("edited", ["mine.py", "parts_of_mine.py"])
+def test_two_edits_within_a_second_are_two(tmp_path, edited):
+    """Python takes compiled code of a file with the same time in seconds and the same size."""
+    (tmp_path / "parts_of_mine.py").write_text(f"{FILE.read_text()}\nSAID = 'a'\n")
+    text = "from parts_of_mine import SAID, create as made\nLED = 'a'\n"
+    text += "def create(): return made(fingerprint=SAID + LED)\n"
+    (tmp_path / "mine.py").write_text(text)
+    for stem in ("mine", "parts_of_mine"):
+        file = tmp_path / f"{stem}.py"
+        os.utime(file, (1e9, 1e9))
+        py_compile.compile(str(file))
+        if file.name == edited:
+            file.write_text(file.read_text().replace("= 'a'", "= 'b'"))
+            os.utime(file, (1e9, 1e9))
+    code = "import sys; from faultpath.trials import SystemSpec, load_system\n"
+    code += "print(load_system(SystemSpec(name=sys.argv[1])).fingerprint())"
+    asked = [sys.executable, "-c", code, f"{tmp_path}/mine.py:create"]
+    done = subprocess.run(asked, capture_output=True, text=True, check=True)
+    assert sorted(done.stdout.strip()) == ["a", "b"]
 
 
 def test_a_module_of_the_working_directory_is_found(tmp_path, monkeypatch):

@@ -13,13 +13,11 @@ from faultpath.errors import UserError
 from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
+from faultpath.trials.registry import factory_name
 from faultpath.work import Executor, local
 
 LOCAL, RAY = "local", "ray"
 """Where trials fly."""
-
-_FACTORY = "create"
-"""What builds the system in a file that is named without it."""
 
 _BRING = "bring"
 """The option of a system that takes parts of the user's own, separated by commas; a system without
@@ -129,9 +127,7 @@ def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
             "'quadrotor' or 'my_system.py:create'."
         )
     name = os.fspath(cast("str | PathLike[str]", system))
-    return SystemSpec(
-        name=f"{name}:{_FACTORY}" if name.endswith(".py") else name, options=as_text(options)
-    )
+    return SystemSpec(name=factory_name(name), options=as_text(options))
 
 
 def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:

@@ -7,9 +7,15 @@ import sys
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
 from hashlib import sha256
-from importlib.machinery import SourceFileLoader
+from importlib.machinery import (
+    EXTENSION_SUFFIXES,
+    SOURCE_SUFFIXES,
+    ExtensionFileLoader,
+    FileFinder,
+    SourceFileLoader,
+)
 from pathlib import Path
-from types import ModuleType
+from types import CodeType, ModuleType
 from typing import TYPE_CHECKING
 
 from faultpath.blame import note_system
@@ -37,10 +43,11 @@ _EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco", "gymnasium": "gymnasium"}
 def load_system(spec: SystemSpec) -> System:
     """Build the system that `spec` names.
 
-    The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`. The attribute
-    is called with the options, read as `trials.options` says, and returns a `System`.
-    `UserError` for a name, attribute or option that does not exist, a missing package, or a module
-    of the system's own of which this process would run another one of that name.
+    The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`, the attribute
+    being `create` where a file is named alone. The attribute is called with the options, read as
+    `trials.options` says, and returns a `System`. `UserError` for a name, attribute or option that
+    does not exist, a missing package, or a module of the system's own of which this process would
+    run another one of that name.
 
     The caller's process stays as it was, but for two things that the system needs as long as it
     flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
@@ -130,9 +137,14 @@ def load_measurer(name: str) -> "Measurer":
         return getattr(importlib.import_module(place), attribute)
 
 
+def factory_name(name: str) -> str:
+    """Return the name of a system with its factory, `create` where a file is named alone."""
+    return f"{name}:create" if name.endswith(".py") else name
+
+
 def _target(name: str) -> tuple[str, str]:
     try:
-        return _split(BUILT_IN.get(name, name))
+        return _split(factory_name(BUILT_IN.get(name, name)))
     except UserError:
         raise UserError(
             f"there is no system {name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
@@ -169,22 +181,34 @@ def _load_module(name: str, system: str) -> ModuleType:
 def _load_file(place: str) -> ModuleType:
     path = _file(place)
     name = _module_name(path)
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
+    loader = _FromSource(name, str(path))
+    spec = importlib.util.spec_from_file_location(name, path, loader=loader)
+    if spec is None:
         raise UserError(f"{place!r} cannot be imported: it must be a Python file")
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
-    _compile(place, name)
+    _compile(place, loader)
     _check_own(Root(name, path), path.parent)
     sys.modules[name] = module  # dataclasses look their module up by name
-    spec.loader.exec_module(module)
+    loader.exec_module(module)
     return module
 
 
-def _compile(place: str, name: str) -> None:
+class _FromSource(SourceFileLoader):
+    """Compiles what the file holds now, of which the digest is taken.
+
+    Compiled code that Python keeps stands for the time of the file in whole seconds and its size:
+    two edits within a second may have both in common.
+    """
+
+    def get_code(self, fullname: str) -> CodeType:
+        return self.source_to_code(self.get_data(self.path), self.path)
+
+
+def _compile(place: str, loader: _FromSource) -> None:
     """Raise what is wrong with a file before anything of it runs."""
     try:
-        SourceFileLoader(name, place).get_code(name)
+        loader.get_code(loader.name)
     except SyntaxError as error:
         error.filename = error.filename or place  # a file with NUL bytes has neither
         raise
@@ -249,8 +273,12 @@ def _look_here() -> None:
 
 def _look_beside(path: Path) -> None:
     """Find the files beside one, which it may import."""
-    if str(path.parent) not in sys.path:
-        sys.path.append(str(path.parent))
+    folder = str(path.parent)
+    if folder not in sys.path:
+        sys.path.append(folder)
+    fresh = (_FromSource, SOURCE_SUFFIXES)
+    compiled = (ExtensionFileLoader, EXTENSION_SUFFIXES)
+    sys.path_importer_cache[folder] = FileFinder(folder, compiled, fresh)
 
 
 @contextmanager
