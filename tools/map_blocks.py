@@ -24,7 +24,7 @@ from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.plane import shown, table_markdown
 from faultpath.report.plane import tables as map_tables
 from faultpath.selfcheck import Report, failures
-from faultpath.selfcheck.words import tables
+from faultpath.selfcheck.pages import tables
 from faultpath.store import read_outcomes
 from faultpath.store.folder import OUTCOMES
 from faultpath.store.sealed import seal

@@ -62,6 +62,26 @@ def test_json_is_the_record_and_nothing_else_on_the_standard_output(run, monkeyp
     assert told == {"folder": str(run), "record": json.loads((run / "record.json").read_text())}
 
 
+def test_signals_are_heard_right_after_the_audit(tmp_path):
+    ended = audit("--signals", out="run")
+    assert ended.status == 0, ended.err
+    assert re.search(r"\d+ trials in \d+ scenes came out as in the run, to the bit", ended.out)
+    addresses = {tuple(address) for address in zip(*_columns("run/signals.parquet"), strict=True)}
+    assert {scene for _, _, scene in addresses} <= {f"cart/{i:03}" for i in range(6)}
+    assert {(variant, path) for variant, path, _ in addresses} >= {("blind", SHARED)}
+
+
+def _columns(file: str) -> list[list[str]]:
+    table = pq.read_table(file)
+    return [table.column(name).to_pylist() for name in ("variant", "path", "scene")]
+
+
+@pytest.mark.parametrize("verb", ["interface", "trace", "check"])
+def test_a_file_alone_is_a_system_for_every_verb(verb):
+    ended = faultpath(verb, TOY.removesuffix(":create"))
+    assert ended.status == 0, ended.err
+
+
 def _again(folder: Path, **options: object):
     return audit(scenes=100, out=folder, system="examples/toy.py:create", **options)
 

@@ -62,6 +62,16 @@ def test_making_scenes_shows_how_many_there_are(
     assert "so far" in made.err
 
 
+def test_a_reproduction_is_json(tmp_path: Path) -> None:
+    """A page of scenes flies nothing."""
+    done = faultpath("reproduce", "figure-2", "--json", "--workers", 0, "--out", tmp_path / "r")
+    assert done.status == 0, done.err
+    told = json.loads(done.out)
+    assert Path(told["folder"], "reproduction.html").is_file()
+    assert told["record"]["trials"] == 0
+    assert told["record"]["gallery"]
+
+
 def test_the_shipped_claims_are_json() -> None:
     done = faultpath("claims", "--json", "--platform", "first")
     assert done.status == 0, done.err

@@ -1,12 +1,17 @@
 """`faultpath replay`: fly trials of a finished run again, to check, to listen, or to film them."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from faultpath.cli.options import path as as_path
 from faultpath.errors import UserError
+
+if TYPE_CHECKING:
+    from faultpath.door.display import SafeConsole
+    from faultpath.report.inputs import ReportInput
 
 DIFFERS = 1
 
@@ -40,10 +45,8 @@ def command(
         raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
 
     from faultpath.door.display import SafeConsole
-    from faultpath.door.replaying import chosen_scenes, keep_signals, replay
+    from faultpath.door.replaying import chosen_scenes
     from faultpath.door.saved import RECORD, read_provenance, read_run
-    from faultpath.report.wording import counted
-    from faultpath.tables.terminal import STYLES
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
@@ -64,13 +67,32 @@ def command(
         return 0
     if seed is not None:
         raise UserError("--seed says what to film with --out: all seeds are flown again.")
+    return fly_again(console, folder, held, scenes, path or (), signals)
+
+
+def fly_again(
+    console: "SafeConsole",
+    folder: Path,
+    held: "ReportInput",
+    scenes: Sequence[str],
+    paths: Sequence[str],
+    signals: bool,
+) -> int:
+    """Fly trials of a run again, say how they came out, and return the status of the command.
+
+    With `signals` what was heard is kept in the run's folder.
+    """
+    from faultpath.door.replaying import keep_signals, replay
+    from faultpath.report.wording import counted
+    from faultpath.tables.terminal import STYLES
+
     asked = held.record.question
     more = {}
     if asked.system == "quadrotor":
         from faultpath.quadrotor.evidence.signals import quadrotor_signals
 
         more = {asked.system: quadrotor_signals}
-    found = replay(held, scenes, path or (), more, lambda said: console.print(said, markup=False))
+    found = replay(held, scenes, paths, more, lambda said: console.print(said, markup=False))
     unlike = [each for each in found if each.differs]
     for each in unlike:
         at = each.address

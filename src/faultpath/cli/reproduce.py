@@ -1,5 +1,6 @@
 """`faultpath reproduce`: the paper's tables, figures and claims."""
 
+import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -37,6 +38,9 @@ def command(
     ] = None,
     executor: Executor = "local",
     time_limit: TimeLimit = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print folder and record as JSON; words go to stderr.")
+    ] = False,
 ) -> int:
     """Fly every study of the paper, or some of its pages, and compare the results with it."""
     from faultpath.door.display import Display, SafeConsole
@@ -52,9 +56,13 @@ def command(
         device=device,
         platform=platform,
         time_limit_s=time_limit,
-        progress=Display(SafeConsole(), ("faultpath", *sys.argv[1:])),
+        progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
     )
-    tell(run, whole=not pages)
+    if as_json:
+        record = run.record.model_dump(mode="json")
+        typer.echo(json.dumps({"folder": str(run.folder), "record": record}, indent=1))
+    else:
+        tell(run, whole=not pages)
     return FAILED_TRIALS if run.record.failed_trials else 0
 
 

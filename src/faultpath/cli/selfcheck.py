@@ -53,7 +53,7 @@ def _checked(
 
     from faultpath.door.display import Display, Now, SafeConsole
     from faultpath.selfcheck import failures
-    from faultpath.selfcheck.words import show
+    from faultpath.selfcheck.pages import show
     from faultpath.store import check_writable, write_text
 
     if out is not None:

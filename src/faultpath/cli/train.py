@@ -30,7 +30,7 @@ def command(
         ),
     ] = None,
     platform: Annotated[
-        str | None, typer.Option(help="Platform whose models are fitted; default first.")
+        str | None, typer.Option(help="Platform whose models are fitted; default matched.")
     ] = None,
     data: Annotated[
         Path | None,

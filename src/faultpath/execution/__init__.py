@@ -3,5 +3,6 @@
 # pyright: reportUnusedImport=false
 from faultpath.execution.attempt import WrongOutcomes
 from faultpath.execution.provenance import Stopwatch, run_provenance
-from faultpath.execution.runner import Failure, Interrupted, RunResult, run_study
+from faultpath.execution.result import Failure, Interrupted, RunResult
+from faultpath.execution.runner import run_study
 from faultpath.execution.standing import Progress

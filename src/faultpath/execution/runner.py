@@ -1,14 +1,13 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from faultpath.code import Code, named
+from faultpath.code import named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
@@ -16,22 +15,22 @@ from faultpath.execution.limits import TimeLimit, memory_limit
 from faultpath.execution.looks import Looks, Stop
 from faultpath.execution.machine import processor
 from faultpath.execution.rechecks import Rechecks
+from faultpath.execution.result import Failure, Interrupted, RunResult
 from faultpath.execution.schedule import Recheck, Schedule, Task, Unit, plan
 from faultpath.execution.standing import Progress, ProgressCallback, Standing
 from faultpath.execution.worker import Brief, Order, fly, fly_here
-from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
 from faultpath.store.shared import SharedTrials
-from faultpath.store.tables import Trace, TrialAddress, traces_of
-from faultpath.trials.arm import Arm, Study
+from faultpath.store.tables import traces_of
+from faultpath.trials.arm import Study
 from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.outcome import failed_outcome
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
 from faultpath.trials.system import System
-from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
+from faultpath.trials.table import assemble, check_rows, selected
 from faultpath.version import __version__
 from faultpath.work import Call, Executor, local
 
@@ -39,54 +38,6 @@ _log = logging.getLogger("faultpath")
 
 
 _OTHERWISE = "it does not repeat: flown again in the same way, it came out otherwise"
-
-
-class Interrupted(Exception):
-    """Ctrl-C stopped a run; everything finished is stored, and the same command resumes."""
-
-    def __init__(self, done: int, total: int) -> None:
-        super().__init__(f"interrupted with {done} of {total} blocks done")
-        self.done = done
-        self.total = total
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A trial in which the program raised an error or died."""
-
-    arm: Arm
-    scene: str
-    error: str
-    details: Path | None
-    """The file with the traceback, when there is one."""
-
-
-@dataclass(frozen=True)
-class RunResult:
-    """A finished run."""
-
-    outcomes: OutcomeTable
-    deliveries: Deliveries
-    """What the taps did, row by row."""
-    traces: Mapping[TrialAddress, Trace]
-    """Position at each control step, `[T, 3]`, metres, world frame."""
-    blocks_computed: int
-    blocks_kept: int
-    failures: tuple[Failure, ...]
-    outcomes_sha256: str
-    system_fingerprint: str
-    """Of `code`, shortened; for several runs together, of all of them."""
-    code: tuple[Code, ...]
-    """What flew, of each run that this is made of."""
-    library_hash: str
-    flown_again: tuple[FlownAgain, ...] = ()
-    """What was flown a second time, to see whether results repeat."""
-
-    @property
-    def findings(self) -> tuple[str, ...]:
-        """What the run found that a reader has to know: results that do not repeat or depend on
-        their block, consumers that never read or that write, hashes that prove nothing."""
-        return self.deliveries.findings
 
 
 def run_study(

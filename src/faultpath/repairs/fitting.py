@@ -6,7 +6,6 @@ error of size zero changes no bit; the process keeps the random numbers of torch
 
 from __future__ import annotations
 
-import copy
 import math
 import time
 from collections.abc import Callable, Iterable, Mapping
@@ -19,6 +18,7 @@ import numpy as np
 from faultpath.errors import UserError
 from faultpath.faults import AnyFault
 from faultpath.repairs.code import code_sha256, name_of
+from faultpath.repairs.network import adam, fresh
 from faultpath.repairs.record import FitRecord, Loss, Schedule
 from faultpath.repairs.repair import Repair, kept, understood
 from faultpath.repairs.weights import architecture, fill, machine, save, weights_sha256
@@ -99,7 +99,7 @@ def fit(
         # fit's own in here, and the caller's again behind.
         drawn = key("repairs/torch", "fit", seed) % 2**63
         torch.manual_seed(drawn)
-        net = _fresh(module)
+        net = fresh(module)
         torch.manual_seed(drawn)  # also where the module was not made here
         work = _Work(net, data, loss, _several(repair, data), seed, schedule, validation)
         work.run()
@@ -170,7 +170,7 @@ class _Work:
         """Fit all epochs."""
         import torch
 
-        optimiser = _optimiser(self.net, self.schedule)
+        optimiser = adam(self.net, self.schedule)
         self.initial_loss = self.mean_loss(self._permuted(0)[: self.schedule.batch_size], ())
         for epoch in range(self.schedule.epochs):
             order = self._permuted(epoch)
@@ -278,25 +278,3 @@ def _cut(index: np.ndarray, schedule: Schedule) -> list[np.ndarray]:
 def _several(repair: Repair | Iterable[Repair], data: Windows) -> tuple[Repair, ...]:
     given = (repair,) if isinstance(repair, Repair) else tuple(repair)
     return tuple(each.against(data.interface, data.dt_s, data.consumers) for each in given)
-
-
-def _fresh(module: nn.Module | Callable[[], nn.Module]) -> nn.Module:
-    from torch import nn
-
-    if isinstance(module, nn.Module):
-        return copy.deepcopy(module)
-    made = module()
-    if not isinstance(made, nn.Module):
-        raise UserError(f"fit: {name_of(module)} returned a {name_of(made)}, no torch module")
-    return made
-
-
-def _optimiser(net: nn.Module, schedule: Schedule) -> Any:
-    from torch.optim import Adam, AdamW
-
-    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
-    if not fitted:
-        raise UserError(f"fit: {name_of(net)} has no parameters to fit")
-    if schedule.optimiser == "adam":
-        return Adam(fitted, lr=schedule.learning_rate)
-    return AdamW(fitted, lr=schedule.learning_rate, weight_decay=schedule.weight_decay)

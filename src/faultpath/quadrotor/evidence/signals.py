@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from faultpath.execution.attempt import Done
+from faultpath.quadrotor.chunks import Chunk
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
@@ -113,11 +114,11 @@ def _predicted(heard: Heard) -> Mapping[int, Mapping[int, Values]]:
 
 
 def _commands(
-    actions: Values, parts: Sequence[object], like: Sequence[Tensor]
+    actions: Values, parts: Sequence[Chunk], like: Sequence[Tensor]
 ) -> tuple[Tensor, ...]:
     """Return actions `[H, B, 4]` as candidates `[H, 4, S, K]` of each part."""
     every = torch.from_numpy(actions).movedim(-1, 1).to(like[0])
     return tuple(
-        every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()  # type: ignore[attr-defined]
+        every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
         for part in parts
     )
