@@ -32,6 +32,7 @@ import paper_blocks
 import platform_blocks
 import ray_cost
 import replayed
+import training_time
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
@@ -57,6 +58,7 @@ KINDS: Mapping[str, Any] = {
     "platform": platform_blocks.fill,
     "ray-cost": ray_cost.fill,
     "replayed": replayed.fill,
+    "training-time": training_time.fill,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""
 

@@ -14,17 +14,16 @@ import sys
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from blocks import REFERENCE, Run, parsed, tabled
 from flown_code import ROOT
+from machine import Machine
 from pydantic import BaseModel
 
 import faultpath
-from faultpath.execution.provenance import checkout, processor
 
 RESULT = REFERENCE / "ray-cost.json"
 MANY = 1_000_000
@@ -96,17 +95,12 @@ class Timed(BaseModel):
         return (self.more.driver_s - self.few.driver_s) / self.trials
 
 
-class Cost(BaseModel):
+class Cost(Machine):
     """All that was measured, and on what."""
 
-    date: str
-    processor: str
-    cores: int
     load: float
     """Of the machine before the first run."""
     ray: str
-    commit: str | None
-    dirty: bool | None
     timed: tuple[Timed, ...]
 
 
@@ -116,7 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--only", choices=CASES, help="one of the audits")
     parser.add_argument("--try", dest="brief", action="store_true", help="few trials, none kept")
     asked = parser.parse_args(arguments)
-    commit, dirty = checkout(ROOT / "src" / "faultpath")
+    machine = Machine.here(ROOT / "src" / "faultpath")
     load = os.getloadavg()[0]
     cases = [asked.only] if asked.only else list(CASES)
     for case in cases:  # what the first audit of a process loads is no price of its trials
@@ -131,13 +125,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("More trials took no longer than few: nothing is kept; run it on a quiet machine.")
         return 1
     cost = Cost(
-        date=datetime.now(UTC).date().isoformat(),
-        processor=processor(),
-        cores=len(os.sched_getaffinity(0)),
+        **machine.model_dump(),
         load=load,
         ray=version("ray"),
-        commit=commit,
-        dirty=dirty,
         timed=tuple(timed),
     )
     print(_measured(cost) if asked.brief else f"Written: {RESULT}")
@@ -178,12 +168,9 @@ def fill() -> str:
 
 
 def _where(cost: Cost) -> str:
-    changed = " with uncommitted changes" if cost.dirty else ""
     busy = "" if cost.load < 0.3 else " **The machine was busy**: all times are too long."
     return (
-        f"Measured on {cost.date}: {cost.processor}, {cost.cores} cores, load {cost.load:.1f} "
-        f"before the first run, Ray {cost.ray}, "
-        f"commit `{(cost.commit or 'unknown')[:12]}`{changed}.{busy}"
+        f"Measured {cost.words}, Ray {cost.ray}, load {cost.load:.1f} before the first run.{busy}"
     )
 
 

@@ -1,0 +1,105 @@
+"""How long it takes to collect all flights and to fit every model of the quadrotor from nothing.
+
+    python tools/training_time.py FOLDER     on a quiet machine; FOLDER is new
+
+Runs `faultpath train quadrotor` into the folder and compares every model with the shipped one.
+Writes `docs/reference/training-time.json`, of which `docs/learning-quality.md` makes a block.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from blocks import REFERENCE, parsed, tabled
+from flown_code import ROOT
+from machine import Machine, Others, busy
+
+from faultpath.quadrotor.platform_name import DEFAULT_NAME
+
+RESULT = REFERENCE / "training-time.json"
+SHIPPED = ROOT / "src" / "faultpath" / "quadrotor" / "checkpoints" / DEFAULT_NAME.value
+
+
+class Trained(Machine):
+    """What was fitted, in what time."""
+
+    wall_s: float
+    others: float
+    """Share of the processor's time that other work took."""
+    fits: dict[str, float]
+    """Seconds of each fit, which has one core, by model and seed."""
+    alike: dict[str, bool]
+    """Whether the weights are those that are shipped, to the bit."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Measure; return the exit status."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args(arguments).folder
+    if folder.exists():
+        print(f"{folder} exists: name a folder that is new", file=sys.stderr)
+        return 2
+    machine = Machine.here(ROOT / "src" / "faultpath")
+    others, began = Others(), time.monotonic()
+    command = [str(Path(sys.executable).with_name("faultpath")), "train", "quadrotor"]
+    command += ["--data", str(folder / "data"), "--out", str(folder / "models")]
+    status = subprocess.run(command, check=False).returncode
+    if status:
+        return status
+    wall_s, share = time.monotonic() - began, others.share()
+    cards = {path.stem: _card(path) for path in sorted((folder / "models").glob("*.json"))}
+    trained = Trained(
+        **machine.model_dump(),
+        wall_s=wall_s,
+        others=share,
+        fits={name: card["duration_s"] for name, card in cards.items()},
+        alike={name: _same(name, card) for name, card in cards.items()},
+    )
+    RESULT.write_text(trained.model_dump_json(indent=1) + "\n", "utf-8")
+    print(f"Written: {RESULT}")
+    return 0
+
+
+def _card(path: Path) -> dict[str, object]:
+    return json.loads(path.read_bytes())
+
+
+def _same(name: str, card: dict[str, object]) -> bool:
+    shipped = SHIPPED / f"{name}.json"
+    return shipped.is_file() and _card(shipped)["weights_sha256"] == card["weights_sha256"]
+
+
+def fill() -> str:
+    """Return the block of the page."""
+    if not RESULT.exists():
+        return "*Not measured yet: `python tools/training_time.py FOLDER` does it.*"
+    found = parsed(RESULT, Trained, "run python tools/training_time.py FOLDER")
+    names = sorted({_model(fit) for fit in found.fits})
+    rows = [_row(name, found) for name in names]
+    alike = sum(found.alike.values())
+    return "\n\n".join(
+        [
+            f"All flights collected and {len(found.fits)} models fitted from nothing in "
+            f"{found.wall_s / 60:.0f} min {found.words}. {busy(found.others)} {alike} of "
+            f"{len(found.alike)} models have the shipped weights to the bit.",
+            tabled("model", rows, {"fits": "{fits}", "minutes a fit": "{minutes:1}"}, code=True),
+        ]
+    )
+
+
+def _row(name: str, found: Trained) -> dict[str, object]:
+    took = [seconds for fit, seconds in found.fits.items() if _model(fit) == name]
+    return {"name": name, "fits": str(len(took)), "minutes": sum(took) / len(took) / 60}
+
+
+def _model(fit: str) -> str:
+    return fit.rpartition("-")[0]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
