@@ -16,6 +16,7 @@ from faultpath.faults import Fault, Offset
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.trials import Status, SystemSpec, load_system
+from faultpath.trials.registry import load_parts
 from faultpath.trials.state import system_code
 
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
@@ -260,6 +261,37 @@ def test_the_code_of_an_environment_that_nobody_imports_counts(tmp_path, monkeyp
     code = system_code(built, SystemSpec(name="examples/pendulum.py:create"))
     assert any(name.endswith("their_walk.py") for name in code.state.files)
     assert "Theirs-v0" in built.fingerprint()
+
+
+WRAPPED = """
+import gymnasium
+from gymnasium.wrappers import TransformReward
+from faultpath.systems.gymnasium import GymnasiumPlant
+
+class Own(gymnasium.Wrapper, gymnasium.utils.RecordConstructorArgs):
+    def __init__(self, env, law):
+        gymnasium.utils.RecordConstructorArgs.__init__(self, law=law)
+        super().__init__(env)
+
+def made():
+    return GymnasiumPlant(
+        lambda: Own(TransformReward(gymnasium.make("Pendulum-v1"), abs), lambda reward: reward),
+        observes={"angle": 0}, action="torque", succeeded=bool, dt_s=0.05,
+    )
+"""
+
+
+def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
+    """Their hash is in records; with another one a run could be flown again in its folder only."""
+    made = []
+    for folder in ("here", "there"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "wrapped.py").write_text(WRAPPED)
+        made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"]).values()
+    here, there = (make().identity() for make in made)
+    assert "faultpath_system_:Own" in here
+    assert "function" in here
+    assert here == there
 
 
 def test_the_pendulum_counts_the_simulator_and_needs_its_package(monkeypatch):

@@ -5,6 +5,7 @@ moved only while its episode lasts. A vector environment is taken as it comes, i
 modes of autoreset: what it does after the end of an episode is not looked at.
 """
 
+import re
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from types import ModuleType
@@ -31,6 +32,10 @@ from faultpath.systems.episodes import (
     seed_of,
     stacked,
 )
+
+_PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
+"""Where a system's file lies, which its module is called after, and where in memory a function is:
+both differ from machine to machine."""
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 
@@ -271,7 +276,7 @@ def _identity(env: Any) -> str:
     ]
     used = {v.__name__.partition(".")[0] for s in spaces for v in s.values() if _is_module(v)}
     versions = {name: found for name in sorted(used) if (found := release(name))}
-    return f"{env.spec} {versions}"
+    return f"{_PLACE.sub('', str(env.spec))} {versions}"
 
 
 def _is_module(value: Any) -> bool:
