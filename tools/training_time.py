@@ -87,14 +87,14 @@ def fill() -> str:
             f"All flights collected and {len(found.fits)} models fitted from nothing in "
             f"{found.wall_s / 60:.0f} min {found.words}. {busy(found.others)} {alike} of "
             f"{len(found.alike)} models have the shipped weights to the bit.",
-            tabled("model", rows, {"fits": "{fits}", "minutes a fit": "{minutes:1}"}, code=True),
+            tabled("model", rows, {"fits": "{fits}", "seconds a fit": "{took:0}"}, code=True),
         ]
     )
 
 
 def _row(name: str, found: Trained) -> dict[str, object]:
     took = [seconds for fit, seconds in found.fits.items() if _model(fit) == name]
-    return {"name": name, "fits": str(len(took)), "minutes": sum(took) / len(took) / 60}
+    return {"name": name, "fits": str(len(took)), "took": sum(took) / len(took)}
 
 
 def _model(fit: str) -> str:
