@@ -11,7 +11,7 @@ from faultpath.report.svg import Svg, number, shortened
 
 _WIDE, _NARROW = 420.0, 272.0
 """Sides of the square."""
-_LEFT, _RIGHT, _TOP = 40.0, 104.0, 148.0
+_LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 """From which difference on, pp, an area has which opacity."""
 _EQUAL = "0: both succeed equally often"
@@ -144,6 +144,10 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     svg.text(28, 84, "not decided")
     svg.line((112, 80), (134, 80), "range")
     svg.text(140, 84, f"estimate {_EQUAL}")
+    svg.circle((11, 100), 2.6, "dot")
+    svg.text(28, 104, "flown, decided")
+    svg.circle((134, 100), 2.6, "dot open")
+    svg.text(146, 104, "flown, not decided")
 
 
 def correlation_picture(record: MapRecord, narrow: bool = False) -> Svg:
