@@ -142,6 +142,17 @@ def plain(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: li
         lines.insert(0, "")  # else napoleon takes what stands before a colon for a type
 
 
+PRIVATE = re.compile(r"[(\s]_\w+:")
+
+
+def public(
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, taken: str | None, given: Any
+) -> tuple[str, Any] | None:
+    """Show no call of a class that takes something private: only faultpath makes one."""
+    del app, name, thing, options
+    return ("", given) if what == "class" and PRIVATE.search(taken or "") else None
+
+
 def _restructured(text: str) -> Iterator[str]:
     for i, part in enumerate(CODE.split(text)):
         yield f"``{' '.join(part.split())}``" if i % 2 else MARKUP.sub(r"\\\g<0>", part)
@@ -155,4 +166,5 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("doctree-read", linked)
     app.connect("build-finished", with_reports)
     app.connect("autodoc-process-docstring", plain, priority=400)  # before napoleon
+    app.connect("autodoc-process-signature", public)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

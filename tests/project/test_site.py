@@ -102,6 +102,7 @@ def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     assert list(fetched(site)) == []
     assert list(broken(site)) == []
+    assert "_held" not in (site / "api" / "front.html").read_text("utf-8")
     for notebook in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
         shown = (site / "notebooks" / f"{notebook.stem}.html").read_text("utf-8")
         assert 'class="highlight-text' in shown, f"{notebook.name} printed nothing"

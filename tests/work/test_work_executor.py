@@ -122,7 +122,8 @@ def test_a_worker_that_dies_between_two_calls_is_replaced():
     with Processes(1) as executor:
         pid = end_of(executor, calls.settings).value[0]
         os.kill(pid, signal.SIGKILL)
-        until(lambda: not alive(pid))
+        # Its first thread is gone before the others are, and only with them its end can be seen.
+        until(lambda: os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT))
         assert end_of(executor, partial(calls.double, 1)) == Returned(2)
 
 
