@@ -12,6 +12,7 @@ from faultpath.cli.options import (
     SET,
     Executor,
     MemoryLimit,
+    Share,
     TimeLimit,
     numbers,
     path,
@@ -96,13 +97,7 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
     ] = None,
-    share: Annotated[
-        Path | None,
-        typer.Option(
-            parser=path,
-            help="Folder in which runs share trials, with --out; without it runs/.shared.",
-        ),
-    ] = None,
+    share: Share = None,
     workers: Annotated[
         int | None,
         typer.Option(

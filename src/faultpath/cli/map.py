@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import SET, Executor, TimeLimit, numbers, path, settings, sizes
+from faultpath.cli.options import SET, Executor, Share, TimeLimit, numbers, path, settings, sizes
 
 FAILED_TRIALS = 1
 
@@ -52,6 +52,7 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<question>-<code>.")
     ] = None,
+    share: Share = None,
     workers: Annotated[
         int | None, typer.Option(help="Worker processes, 0 for this process alone.")
     ] = None,
@@ -85,6 +86,7 @@ def command(
         seeds=drawn,
         options=options,
         folder=out,
+        share=share,
         workers=workers,
         executor=executor,
         time_limit_s=time_limit,

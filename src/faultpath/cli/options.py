@@ -130,3 +130,13 @@ def path(text: str | Path) -> Path:
     except RuntimeError:  # what `resolve` raises for a link that leads back to itself
         raise typer.BadParameter(f"the link {str(text)!r} leads back to itself") from None
     return Path(text)
+
+
+Share = Annotated[
+    Path | None,
+    typer.Option(
+        parser=path,
+        help="Folder in which runs share trials, with --out; without it runs/.shared.",
+    ),
+]
+"""`--share` of the verbs whose runs do."""

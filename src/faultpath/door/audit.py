@@ -146,7 +146,7 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     held = None if after is None or chosen.own else Path(after)
-    between = _shared(share, folder) if executor == LOCAL else None
+    between = between_runs(share, folder, executor)
     with hands(built, chosen.workers, chosen.executor) as workforce:
         carry_out(
             built, asked, place, workforce, told, time_limit_s, memory_limit_gib, held, between
@@ -156,7 +156,12 @@ def audit(
     return run
 
 
-def _shared(share: str | PathLike[str] | None, folder: str | PathLike[str] | None) -> Path | None:
+def between_runs(
+    share: str | PathLike[str] | None, folder: str | PathLike[str] | None, executor: str
+) -> Path | None:
+    """Return the folder in which a run shares trials with others, if it does."""
+    if executor != LOCAL:
+        return None
     if share is not None:
         return Path(share)
     return _SHARED if folder is None else None

@@ -33,9 +33,14 @@ _KEPT = "Kept "
 
 
 def fly_map(
-    plan: MapPlan, folder: Path, hands: Executor, told: Display, time_limit_s: float | None
+    plan: MapPlan,
+    folder: Path,
+    hands: Executor,
+    told: Display,
+    time_limit_s: float | None,
+    share: Path | None = None,
 ) -> None:
-    """Fly, decide and write what the pages of a map are made from.
+    """Fly, decide and write what the pages of a map are made from; runs share trials in `share`.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where nothing is left to compare.
     """
@@ -43,7 +48,7 @@ def fly_map(
     backend = plan.system.backend
     if backend:
         told.say(f"Computing with {backend}.")
-    points, result = _Flying(plan, folder, hands, told, time_limit_s).fly()
+    points, result = _Flying(plan, folder, hands, told, time_limit_s, share).fly()
     tell_failures(told, result, folder)
     record = conclude(plan, points, result.outcomes, result.findings)
     write_text(folder / MAP, record.model_dump_json(indent=1) + "\n", folder)
@@ -61,6 +66,7 @@ class _Flying:
     hands: Executor
     told: Display
     time_limit_s: float | None
+    share: Path | None
 
     def fly(self) -> "tuple[list[Point], RunResult]":
         """Return the points, and the result of all of them.
@@ -130,6 +136,7 @@ class _Flying:
             executor=self.hands,
             time_limit_s=self.time_limit_s,
             recheck=recheck,
+            share=self.share,
         )
 
 

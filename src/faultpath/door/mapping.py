@@ -6,7 +6,13 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from faultpath.door.audit import checked_count, checked_seeds, checked_texts, run_folder
+from faultpath.door.audit import (
+    between_runs,
+    checked_count,
+    checked_seeds,
+    checked_texts,
+    run_folder,
+)
 from faultpath.door.display import Display, display
 from faultpath.door.systems import LOCAL, choose, hands
 from faultpath.patience import patience
@@ -38,6 +44,7 @@ def reversal_map(
     time_limit_s: float | None = None,
     progress: bool | Display = True,
     executor: str = LOCAL,
+    share: str | PathLike[str] | None = None,
 ) -> "MapRun":
     """Map who is ahead over the error at one module and that at another, of the same source.
 
@@ -65,6 +72,8 @@ def reversal_map(
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As for `audit`.
         executor: As for `audit`.
+        share: As for `audit`, with which a map has correct inputs, isolated and shared faults in
+            common.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -106,7 +115,8 @@ def reversal_map(
     from faultpath.door.mapped import read_map
 
     with hands(built, chosen.workers, chosen.executor) as workforce:
-        fly_map(plan, place, workforce, told, time_limit_s)
+        between = between_runs(share, folder, executor)
+        fly_map(plan, place, workforce, told, time_limit_s, between)
     run = read_map(place)
     run.report()
     return run

@@ -70,7 +70,8 @@ def run_study(
     or what there is. `recheck` flies a few scenes of one block again and tells what differs, see
     `RunResult.findings`; trials that do not repeat are void. What the run in the
     folder `after` holds of the same units, flown by the same code, is taken over. So is what runs
-    into other folders left in `share`, and what this one flew is left there, as far as it is sound.
+    into other folders left in `share`, and what this one flew is left there, as far as it is sound
+    and was flown again.
     `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
     up to that look.
 
@@ -135,7 +136,7 @@ def run_study(
                 notice(finding)
             digest = run.save_tables(table, deliveries)
             told = flying.undeclared or held.in_process or again.findings()
-            if store and not told and (sound := _sound(looks.units, standing)):
+            if store and recheck and not told and (sound := _sound(looks.units, standing)):
                 store.keep(run, sound, notice)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
