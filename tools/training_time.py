@@ -11,8 +11,9 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from blocks import REFERENCE, parsed, tabled
 from flown_code import ROOT
@@ -65,11 +66,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _card(path: Path) -> dict[str, object]:
+def _card(path: Path) -> dict[str, Any]:
     return json.loads(path.read_bytes())
 
 
-def _same(name: str, card: dict[str, object]) -> bool:
+def _same(name: str, card: Mapping[str, Any]) -> bool:
     shipped = SHIPPED / f"{name}.json"
     return shipped.is_file() and _card(shipped)["weights_sha256"] == card["weights_sha256"]
 
