@@ -70,8 +70,8 @@ def run_study(
     or what there is. `recheck` flies a few scenes of one block again and tells what differs, see
     `RunResult.findings`; trials that do not repeat are void. What the run in the
     folder `after` holds of the same units, flown by the same code, is taken over. So is what runs
-    into other folders left in `share`, and what this one flew is left there, as far as it is sound
-    and was flown again.
+    into other folders left in `share`, and what this one flew is left there, as far as it is sound;
+    without `recheck` nothing is.
     `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
     up to that look.
 

@@ -5,10 +5,7 @@ moved only while its episode lasts. A vector environment is taken as it comes, i
 modes of autoreset: what it does after the end of an episode is not looked at.
 """
 
-import re
-import sys
 from collections.abc import Callable, Mapping, Sequence
-from types import ModuleType
 from typing import Any, cast
 
 import gymnasium
@@ -16,10 +13,10 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.arrays import HostArray
-from faultpath.code.places import release
 from faultpath.errors import SystemMistake
 from faultpath.loop import Batch
 from faultpath.streams import generator
+from faultpath.systems.environments import code, identity
 from faultpath.systems.episodes import (
     RETURN,
     Episode,
@@ -32,10 +29,6 @@ from faultpath.systems.episodes import (
     seed_of,
     stacked,
 )
-
-_PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
-"""Where a system's file lies, which its module is called after, and where in memory a function is:
-both differ from machine to machine."""
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 
@@ -78,7 +71,7 @@ class GymnasiumPlant(EpisodePlant):
         self._environment, self._vector, self._setup = environment, vector, setup
         self._limit = steps
         sample = vector(1) if vector else self._make()
-        self._identity, self._code = _identity(sample), _code(sample)
+        self._identity, self._code = identity(sample), code(sample)
         single = getattr(sample.unwrapped, "envs", [sample])[0]
         steps = steps or getattr(single.spec, "max_episode_steps", None)
         dt_s = dt_s or getattr(single.unwrapped, "dt", None)
@@ -266,37 +259,3 @@ def _said(info: Mapping[str, Any], i: int) -> Mapping[str, Any]:
 def _stream(env: Any) -> Any:
     """Return where an environment's random numbers stand, so far as it has any."""
     return None if env is None else env.unwrapped.np_random.bit_generator.state
-
-
-def _identity(env: Any) -> str:
-    """Return how an environment is made, and the packages that its class computes with."""
-    kinds = type(env.unwrapped).__mro__
-    spaces = [
-        vars(sys.modules[kind.__module__]) for kind in kinds if kind.__module__ in sys.modules
-    ]
-    used = {v.__name__.partition(".")[0] for s in spaces for v in s.values() if _is_module(v)}
-    versions = {name: found for name in sorted(used) if (found := release(name))}
-    return f"{_PLACE.sub('', str(env.spec))} {versions}"
-
-
-def _is_module(value: Any) -> bool:
-    return isinstance(value, ModuleType)
-
-
-def _code(env: Any) -> tuple[str, ...]:
-    """Return the classes of an environment and its wrappers that are not Gymnasium's own.
-
-    What is registered under an id is imported by nobody, and its code counts all the same.
-    """
-    parts: list[Any] = [env, *getattr(env.unwrapped, "envs", ())]
-    while hasattr(parts[-1], "env"):
-        parts.append(parts[-1].env)
-    names = ((part.__class__.__module__, part.__class__.__name__) for part in parts)
-    return tuple(dict.fromkeys(f"{place}:{name}" for place, name in names if _findable(place)))
-
-
-def _findable(module: str) -> bool:
-    """Return whether a module can be imported by its name and is neither Gymnasium's nor the file
-    of a system, which count already."""
-    ours = module.partition(".")[0] == "gymnasium" or module.startswith("faultpath_system_")
-    return not ours and getattr(sys.modules.get(module), "__spec__", None) is not None
