@@ -29,6 +29,7 @@ import fault_pictures
 import learning_blocks
 import map_blocks
 import paper_blocks
+import paper_time
 import platform_blocks
 import ray_cost
 import replayed
@@ -54,6 +55,7 @@ KINDS: Mapping[str, Any] = {
     "beside": beside_blocks.KIND,
     "faults": fault_pictures.KIND,
     "paper": paper_blocks.KIND,
+    "paper-time": paper_time.fill,
     "performance": performance.KIND,
     "platform": platform_blocks.fill,
     "ray-cost": ray_cost.fill,

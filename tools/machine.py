@@ -2,6 +2,9 @@
 
 import os
 import resource
+import subprocess
+import sys
+import time
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Self
@@ -45,6 +48,28 @@ class Machine(BaseModel):
             f"on {self.date}: {self.processor}, {self.cores} cores, "
             f"commit `{(self.commit or 'unknown')[:12]}`{changed}"
         )
+
+
+class Timed(Machine):
+    """How long a command took there."""
+
+    wall_s: float
+    others: float
+    """Share of the processor's time that other work took."""
+
+    @classmethod
+    def run(cls, package: Path, *arguments: str) -> Self:
+        """Return the time that `faultpath` takes for these; `CalledProcessError` where it fails."""
+        machine, others, began = Machine.here(package), Others(), time.monotonic()
+        command = [str(Path(sys.executable).with_name("faultpath")), *arguments]
+        subprocess.run(command, check=True)
+        wall_s = time.monotonic() - began
+        return cls(**machine.model_dump(), wall_s=wall_s, others=others.share())
+
+    @property
+    def took(self) -> str:
+        """How long, when, on what and how quietly, as sentences can go on."""
+        return f"{self.wall_s / 60:.0f} min {self.words}. {busy(self.others)}"
 
 
 class Others:

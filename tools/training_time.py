@@ -10,14 +10,13 @@ import argparse
 import json
 import subprocess
 import sys
-import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from blocks import REFERENCE, parsed, tabled
 from flown_code import ROOT
-from machine import Machine, Others, busy
+from machine import Timed
 
 from faultpath.quadrotor.platform_name import DEFAULT_NAME
 
@@ -25,12 +24,9 @@ RESULT = REFERENCE / "training-time.json"
 SHIPPED = ROOT / "src" / "faultpath" / "quadrotor" / "checkpoints" / DEFAULT_NAME.value
 
 
-class Trained(Machine):
+class Trained(Timed):
     """What was fitted, in what time."""
 
-    wall_s: float
-    others: float
-    """Share of the processor's time that other work took."""
     fits: dict[str, float]
     """Seconds of each fit, which has one core, by model and seed."""
     alike: dict[str, bool]
@@ -45,19 +41,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if folder.exists():
         print(f"{folder} exists: name a folder that is new", file=sys.stderr)
         return 2
-    machine = Machine.here(ROOT / "src" / "faultpath")
-    others, began = Others(), time.monotonic()
-    command = [str(Path(sys.executable).with_name("faultpath")), "train", "quadrotor"]
-    command += ["--data", str(folder / "data"), "--out", str(folder / "models")]
-    status = subprocess.run(command, check=False).returncode
-    if status:
-        return status
-    wall_s, share = time.monotonic() - began, others.share()
+    places = ["--data", str(folder / "data"), "--out", str(folder / "models")]
+    try:
+        timed = Timed.run(ROOT / "src" / "faultpath", "train", "quadrotor", *places)
+    except subprocess.CalledProcessError as failed:
+        return failed.returncode
     cards = {path.stem: _card(path) for path in sorted((folder / "models").glob("*.json"))}
     trained = Trained(
-        **machine.model_dump(),
-        wall_s=wall_s,
-        others=share,
+        **timed.model_dump(),
         fits={name: card["duration_s"] for name, card in cards.items()},
         alike={name: _same(name, card) for name, card in cards.items()},
     )
@@ -86,8 +77,8 @@ def fill() -> str:
     return "\n\n".join(
         [
             f"All flights collected and {len(found.fits)} models fitted from nothing in "
-            f"{found.wall_s / 60:.0f} min {found.words}. {busy(found.others)} {alike} of "
-            f"{len(found.alike)} models have the shipped weights to the bit.",
+            f"{found.took} {alike} of {len(found.alike)} models have the shipped weights to the "
+            "bit.",
             tabled("model", rows, {"fits": "{fits}", "seconds a fit": "{took:0}"}, code=True),
         ]
     )
