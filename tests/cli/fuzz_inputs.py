@@ -101,7 +101,10 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
         },
     ),
     "runs": (["folder"], {"--json": (None,)}),
-    "compare": (["folder", "text.txt"], {"--out": ("page.html", "folder", "nowhere/page.html")}),
+    "compare": (
+        ["folder", "text.txt"],
+        {"--out": ("page.html", "folder", "nowhere/page.html"), "--json": (None,)},
+    ),
     "log": (
         ["text.csv"],
         {

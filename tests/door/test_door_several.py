@@ -220,5 +220,10 @@ def test_compare_on_the_command_line(toy: Path, tmp_path: Path) -> None:
     record = faultpath.open_run(toy).record
     assert shown.count(record.verdict.headline) == 4
     assert (tmp_path / "page.html").stat().st_size < 3_000_000
+    told = json.loads(command("compare", *folders, "--json").out)
+    assert told["headline"] in shown
+    assert told["differs"] == {}
+    assert [each["folder"] for each in told["runs"]] == [str(folder) for folder in folders]
+    assert told["runs"][0]["record"] == json.loads((toy / "record.json").read_text())
     assert "two or more" in command("compare", toy).refused()
     assert "cannot write" in command("compare", *folders, "--out", tmp_path).refused()

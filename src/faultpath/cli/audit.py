@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from faultpath.cli.options import (
+    FAILED_TRIALS,
     SET,
     Executor,
     MemoryLimit,
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from faultpath.door.display import SafeConsole
     from faultpath.door.run import Run
 
-FAILED_TRIALS = 1
 Json = Annotated[
     bool,
     typer.Option(
@@ -200,11 +200,11 @@ def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -
 
 def tell_json(runs: "Sequence[Run]") -> None:
     """Print the folder and the record of each run."""
+    typer.echo(json.dumps([folder_and_record(run.folder) for run in runs], indent=1))
+
+
+def folder_and_record(folder: Path) -> dict[str, object]:
+    """Return what `--json` tells of an audit, for `json.dumps`."""
     from faultpath.door.saved import RECORD
 
-    records = (json.loads((run.folder / RECORD).read_text("utf-8")) for run in runs)
-    told = [
-        {"folder": str(run.folder), "record": record}
-        for run, record in zip(runs, records, strict=True)
-    ]
-    typer.echo(json.dumps(told, indent=1))
+    return {"folder": str(folder), "record": json.loads((folder / RECORD).read_text("utf-8"))}

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import TimeLimit, path, refuse_unless, refuse_with
+from faultpath.cli.options import FAILED_TRIALS, TimeLimit, path, refuse_unless, refuse_with
 
 if TYPE_CHECKING:
     from faultpath.record import Ledger
-
-FAILED_TRIALS = 1
 
 
 def command(

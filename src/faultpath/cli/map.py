@@ -6,9 +6,17 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import SET, Executor, Share, TimeLimit, numbers, path, settings, sizes
-
-FAILED_TRIALS = 1
+from faultpath.cli.options import (
+    FAILED_TRIALS,
+    SET,
+    Executor,
+    Share,
+    TimeLimit,
+    numbers,
+    path,
+    settings,
+    sizes,
+)
 
 
 def command(

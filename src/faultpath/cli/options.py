@@ -1,4 +1,4 @@
-"""Reading what several verbs take."""
+"""What several verbs take, and how they end."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -14,6 +14,8 @@ _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
 LARGEST = 2**63 - 1
 """What the tables hold."""
+FAILED_TRIALS = 1
+"""Exit status of a verb that finished although trials failed."""
 
 
 TimeLimit = Annotated[

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import Executor, TimeLimit, path
+from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path
 
 if TYPE_CHECKING:
     from faultpath.door.reproduction import ReproductionRun
-
-FAILED_TRIALS = 1
 
 
 def command(
