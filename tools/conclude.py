@@ -15,7 +15,7 @@ import numpy as np
 from blocks import REFERENCE, ROOT
 from numpy.typing import NDArray
 
-from faultpath.door.saved import MAP, RECORD, SYSTEM, TRACES
+from faultpath.door.saved import MAP, RECORD, SYSTEM, TRACES, as_text
 from faultpath.faults import parse_fault
 from faultpath.record import DecisionRecord, Question, RunProvenance, decide
 from faultpath.record import Path as FaultPath
@@ -36,6 +36,7 @@ from faultpath.tables import latex, markdown
 from faultpath.taps import TapCount
 from faultpath.trials import (
     Deliveries,
+    OutcomeTable,
     RowDeliveries,
     System,
     SystemSpec,
@@ -52,6 +53,9 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         before = json.loads((folder / "record.json").read_bytes())
         record = _audit(folder, before)
         tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
+    for folder in sorted(path.parent for path in REFERENCE.glob("new-scenes/*/record.json")):
+        _, record, _ = _decided(folder, json.loads((folder / "record.json").read_bytes()))
+        tell(f"{folder.name} of new scenes: {record.verdict.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
     for platform in shipped.shipped():
@@ -60,6 +64,34 @@ def conclude_all(tell: Callable[[str], None]) -> None:
 
 
 def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
+    system, record, outcomes = _decided(folder, before)
+    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
+    scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
+    shown = system_shown(system, (record.question.baseline, record.question.repair), scenes)
+    stored, kept = folder / TRACES, (folder / SIGNALS).is_file()
+    tracks = read_traces(stored) if stored.is_file() else _tracks(folder / "report.html")
+    if SYSTEM in origin.files:
+        (folder / SYSTEM).write_text(shown.model_dump_json(indent=1) + "\n", "utf-8")
+    write_report(
+        ReportInput(
+            record=record,
+            provenance=_reseal(folder, origin),
+            interface=shown.interface,
+            variants=shown.variants,
+            outcomes=outcomes,
+            traces=Traces(tracks, shown.control_dt_s),
+            plans=shown.plans,
+            signals=decode_signals((folder / SIGNALS).read_bytes()) if kept else {},
+        ),
+        folder,
+    )
+    return record
+
+
+def _decided(
+    folder: Path, before: Mapping[str, Any]
+) -> tuple[System, DecisionRecord, OutcomeTable]:
+    """Return the record that the outcomes of a folder make now, written there too."""
     asked = Question.model_validate(before["question"])
     place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
     system = load_system(SystemSpec(name=place, options=asked.options))
@@ -77,29 +109,8 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
     outcomes = read_outcomes(folder / "outcomes.parquet")
     record = decide(asked, paths, outcomes, findings=tuple(before.get("findings", ())))
-    origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
-    shown = system_shown(system, (asked.baseline, asked.repair), scenes)
-    stored, kept = folder / TRACES, (folder / SIGNALS).is_file()
-    tracks = read_traces(stored) if stored.is_file() else _tracks(folder / "report.html")
-    text = json.dumps(record.model_dump(mode="json"), indent=2) + "\n"
-    (folder / RECORD).write_text(text, "utf-8")
-    if SYSTEM in origin.files:
-        (folder / SYSTEM).write_text(shown.model_dump_json(indent=1) + "\n", "utf-8")
-    write_report(
-        ReportInput(
-            record=record,
-            provenance=_reseal(folder, origin),
-            interface=shown.interface,
-            variants=shown.variants,
-            outcomes=outcomes,
-            traces=Traces(tracks, shown.control_dt_s),
-            plans=shown.plans,
-            signals=decode_signals((folder / SIGNALS).read_bytes()) if kept else {},
-        ),
-        folder,
-    )
-    return record
+    (folder / RECORD).write_text(as_text(record), "utf-8")
+    return system, record, outcomes
 
 
 def _paper(folder: Path, target: Path) -> list[str]:

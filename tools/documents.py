@@ -28,6 +28,7 @@ import drift_blocks
 import fault_pictures
 import learning_blocks
 import map_blocks
+import new_scenes
 import paper_blocks
 import paper_time
 import platform_blocks
@@ -54,6 +55,7 @@ KINDS: Mapping[str, Any] = {
     "map": map_blocks.KIND,
     "beside": beside_blocks.KIND,
     "faults": fault_pictures.KIND,
+    "new-scenes": new_scenes.fill,
     "paper": paper_blocks.KIND,
     "paper-time": paper_time.fill,
     "performance": performance.KIND,

@@ -1,10 +1,9 @@
 """Carrying an audit out: run it, tell of it, and leave the files that its pages are made from."""
 
-import json
 from pathlib import Path
 
 from faultpath.door.display import Display, Now
-from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM
+from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM, as_text
 from faultpath.errors import Stopped
 from faultpath.execution import (
     Failure,
@@ -52,9 +51,7 @@ def carry_out(
     result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after, share)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
-    absent = {"factorial"} if record.factorial is None else None
-    content = record.model_dump(mode="json", exclude=absent)
-    write_text(folder / RECORD, json.dumps(content, indent=2) + "\n", folder)
+    write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
     files = seal(folder, MADE_FROM)
     provenance = run_provenance(result, stopwatch, told.command, hands, system.backend, files)

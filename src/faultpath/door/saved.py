@@ -1,5 +1,6 @@
 """What a finished audit left in its folder, read as data: nothing that it names is imported."""
 
+import json
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
@@ -26,6 +27,12 @@ MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)
 
 _Model = TypeVar("_Model", bound=BaseModel)
 _Table = TypeVar("_Table")
+
+
+def as_text(record: DecisionRecord) -> str:
+    """Return a record as its file holds it."""
+    absent = {"factorial"} if record.factorial is None else None
+    return json.dumps(record.model_dump(mode="json", exclude=absent), indent=2) + "\n"
 
 
 def read_provenance(folder: Path) -> RunProvenance:

@@ -1,0 +1,93 @@
+"""The question of the main job, asked of scenes that nobody has flown before.
+
+    python tools/new_scenes.py FOLDER     make the scenes and fly them; FOLDER is new
+
+The design below was committed before its scenes were made. Ships what it takes to decide anew, in
+`docs/reference/new-scenes`, of which `docs/quadrotor.md` makes a block.
+"""
+
+import argparse
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from blocks import REFERENCE, TAKE_AGAIN, copied, parsed
+from flown_code import flown_by
+
+from faultpath.record import DecisionRecord, RunProvenance
+from faultpath.report.comparison.page import effects
+from faultpath.report.comparison.runs import Compared
+from faultpath.report.comparison.words import CAVEAT
+from faultpath.report.wording import seeds, typeset
+from faultpath.store.folder import OUTCOMES
+from faultpath.tables.markdown import block
+
+RUNS = REFERENCE / "new-scenes"
+FILES = (OUTCOMES, "record.json", "provenance.json")
+
+SEED, SCENES = 7, 300
+"""Of the library: three times as many scenes as the main job has, since it left much undecided."""
+FAULT = "calibration=0.1,0.2"
+"""The error of the main job, and one at which the map of the held-out scenes turns round."""
+QUESTION = ("quadrotor", "--baseline", "gru", "--repair", "gru+dcc", "--wind", "L3")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Fly; return the exit status."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path, metavar="FOLDER")
+    folder = parser.parse_args(arguments).folder
+    if folder.exists():
+        print(f"{folder} exists: name a folder that is new", file=sys.stderr)
+        return 2
+    folder.mkdir(parents=True)
+    library, runs = str(folder / "new-scenes.json"), folder / "runs"
+    size = ("--seed", str(SEED), "--count", str(SCENES))
+    asked = (*QUESTION, "--fault", FAULT, "--library", library, "--out", str(runs))
+    for command in (("scenes", "generate", library, *size), ("audit", *asked)):
+        status = subprocess.run([_faultpath(), *command], check=False).returncode
+        if status:
+            return status
+    for record in sorted(runs.glob("*/record.json")):
+        copied(FILES, record.parent, RUNS / record.parent.name)
+    return 0
+
+
+def _faultpath() -> str:
+    return str(Path(sys.executable).with_name("faultpath"))
+
+
+def folders() -> list[Path]:
+    """Return the folder of each size that was flown."""
+    return sorted(path.parent for path in RUNS.glob("*/record.json"))
+
+
+def fill() -> str:
+    """Return the block of the page."""
+    runs = [_read(number, folder) for number, folder in enumerate(folders(), 1)]
+    if not runs:
+        return "*Not flown yet: `python tools/new_scenes.py FOLDER` does it.*"
+    first = runs[0]
+    headlines = "\n".join(
+        f"> - `{run.asked.fault}`: **{typeset(run.record.verdict.headline)}**" for run in runs
+    )
+    flown = {flown_by(run.provenance, run.asked.system, run.asked.options) for run in runs}
+    return "\n\n".join(
+        [
+            headlines,
+            block(effects(runs)),
+            f"{first.asked.n_scenes} scenes, {seeds(first.asked.seeds)}. Intervals are for "
+            f"{first.record.estimand}. {CAVEAT} {' '.join(sorted(flown))}",
+        ]
+    )
+
+
+def _read(number: int, folder: Path) -> Compared:
+    record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
+    made = parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN)
+    return Compared(number, folder.name, record, made)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
