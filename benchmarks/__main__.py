@@ -9,6 +9,7 @@ import time
 
 from benchmarks import machine, page
 from benchmarks.comparison import Effort
+from benchmarks.quiet import Others
 from benchmarks.results import RESULTS, Record, Results, load, save
 from benchmarks.table import COMPARISONS
 
@@ -17,12 +18,13 @@ TRY = Effort(share=0.02)
 
 def measure(only: list[str], effort: Effort, keep: bool) -> None:
     """Take comparisons one after the other; what is kept is saved after each."""
-    here = machine.describe()
+    here, others = machine.describe(), Others()
     results = load() if RESULTS.exists() else Results(machine=here)
     for name in only or COMPARISONS:
         start, comparison = time.monotonic(), COMPARISONS[name]
         found = list(comparison.take(effort))
         if keep:
+            here = here.model_copy(update={"others": others.share()})
             results = results.replaced(here, name, found, bool(only), comparison.edition)
             save(results)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)

@@ -24,7 +24,6 @@ def describe() -> Machine:
         processor=processor(),
         cores=len(os.sched_getaffinity(0)),
         memory_gib=os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30,
-        load=os.getloadavg()[0],
         system=platform.platform(aliased=True),
         python=platform.python_version(),
         packages={name: installed[name] for name in PACKAGES if name in installed},

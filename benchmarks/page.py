@@ -8,6 +8,7 @@ from pathlib import Path
 
 from benchmarks import pictures
 from benchmarks.pictures import number
+from benchmarks.quiet import QUIET, busy
 from benchmarks.results import ROOT, Machine, Record, Results, Target, load
 from benchmarks.table import COMPARISONS
 from faultpath.tables import MISSING, Entry, Line, Table, line
@@ -16,8 +17,6 @@ from faultpath.tables.markdown import grid
 IMAGES = ROOT / "docs" / "images"
 
 _COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
-BUSY = 0.5
-"""Load above which the page warns."""
 
 
 def files() -> Mapping[Path, str]:
@@ -68,11 +67,11 @@ def _machine(machine: Machine) -> Iterator[str]:
         f"{machine.memory_gib:.0f} GiB, {machine.system}; Python {machine.python}, {packages}; "
         f"kernels `{machine.kernels}`, compiler {machine.compiler or 'unknown'}; {commit}."
     )
-    if machine.load > BUSY:
+    yield busy(machine.others)
+    if machine.others > QUIET:
         yield (
-            f"**The machine was busy**: its load was {machine.load:.1f} before the last run. Rows "
-            "by the clock on the wall (one vehicle, workers, start-up) are then too slow, and all "
-            "rates suffer from sharing caches and memory: measure again on a quiet machine."
+            "Rows by the clock on the wall (one vehicle, workers, start-up) are then too slow, and "
+            "all rates suffer from sharing caches and memory: measure again on a quiet machine."
         )
 
 

@@ -113,8 +113,8 @@ class Machine(_Frozen):
     processor: str
     cores: int
     memory_gib: float
-    load: float
-    """Processes that wanted a processor in the minute before: zero on a quiet machine."""
+    others: float
+    """Share of the processor's time that other work took meanwhile."""
     system: str
     python: str
     packages: dict[str, str]
