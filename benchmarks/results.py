@@ -113,7 +113,7 @@ class Machine(_Frozen):
     processor: str
     cores: int
     memory_gib: float
-    others: float
+    others: float = 0.0
     """Share of the processor's time that other work took meanwhile."""
     system: str
     python: str
