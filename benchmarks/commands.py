@@ -37,7 +37,7 @@ def _command(*arguments: str) -> list[str]:
 
 
 def _environment() -> dict[str, str]:
-    """Return that of commands, which may keep byte code, as they may wherever they are installed."""
+    """Return that of commands: they may keep byte code, as wherever they are installed."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
