@@ -72,13 +72,14 @@ def fill() -> str:
     headlines = "\n".join(
         f"> - `{run.asked.fault}`: **{typeset(run.record.verdict.headline)}**" for run in runs
     )
-    flown = {flown_by(run.provenance, run.asked.system, run.asked.options) for run in runs}
+    by_code = {run.provenance.system_fingerprint: run for run in reversed(runs)}
+    flown = [flown_by(r.provenance, r.asked.system, r.asked.options) for r in by_code.values()]
     return "\n\n".join(
         [
             headlines,
             block(effects(runs)),
             f"{first.asked.n_scenes} scenes, {seeds(first.asked.seeds)}. Intervals are for "
-            f"{first.record.estimand}. {CAVEAT} {' '.join(sorted(flown))}",
+            f"{first.record.estimand}. {CAVEAT} {' '.join(flown)}",
         ]
     )
 
