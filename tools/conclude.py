@@ -53,9 +53,10 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         before = json.loads((folder / "record.json").read_bytes())
         record = _audit(folder, before)
         tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
-    for folder in sorted(path.parent for path in REFERENCE.glob("new-scenes/*/record.json")):
-        _, record, _ = _decided(folder, json.loads((folder / "record.json").read_bytes()))
-        tell(f"{folder.name} of new scenes: {record.verdict.headline}")
+    for place in sorted(REFERENCE.glob("new-scenes/*/decided.json")):
+        _, record, _ = _decided(place.parent, json.loads(place.read_bytes()))
+        place.write_text(as_text(record), "utf-8")
+        tell(f"{place.parent.name} of new scenes: {record.verdict.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
     for platform in shipped.shipped():
@@ -65,6 +66,7 @@ def conclude_all(tell: Callable[[str], None]) -> None:
 
 def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
     system, record, outcomes = _decided(folder, before)
+    (folder / RECORD).write_text(as_text(record), "utf-8")
     origin = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
     scenes = list(dict.fromkeys(row.outcome.scene for row in outcomes.rows))
     shown = system_shown(system, (record.question.baseline, record.question.repair), scenes)
@@ -91,7 +93,7 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
 def _decided(
     folder: Path, before: Mapping[str, Any]
 ) -> tuple[System, DecisionRecord, OutcomeTable]:
-    """Return the record that the outcomes of a folder make now, written there too."""
+    """Return the record that the outcomes of a folder make now."""
     asked = Question.model_validate(before["question"])
     place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
     system = load_system(SystemSpec(name=place, options=asked.options))
@@ -109,7 +111,6 @@ def _decided(
     paths = [FaultPath.model_validate(path) for path in before["paths"]]
     outcomes = read_outcomes(folder / "outcomes.parquet")
     record = decide(asked, paths, outcomes, findings=tuple(before.get("findings", ())))
-    (folder / RECORD).write_text(as_text(record), "utf-8")
     return system, record, outcomes
 
 

@@ -7,12 +7,13 @@ The design below was committed before its scenes were made. Ships what it takes 
 """
 
 import argparse
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from blocks import REFERENCE, TAKE_AGAIN, copied, parsed
+from blocks import REFERENCE, TAKE_AGAIN, parsed
 from flown_code import flown_by
 
 from faultpath.record import DecisionRecord, RunProvenance
@@ -24,7 +25,9 @@ from faultpath.store.folder import OUTCOMES
 from faultpath.tables.markdown import block
 
 RUNS = REFERENCE / "new-scenes"
-FILES = (OUTCOMES, "record.json", "provenance.json")
+DECIDED, FLOWN = "decided.json", "flown.json"
+"""Record and provenance by names of their own: without the rest of a run's folder it is none."""
+SHIPPED = {OUTCOMES: OUTCOMES, "record.json": DECIDED, "provenance.json": FLOWN}
 
 SEED, SCENES = 404, 300
 """Of the library: three times as many scenes as the main job has, since it left much undecided."""
@@ -50,7 +53,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if status:
             return status
     for record in sorted(runs.glob("*/record.json")):
-        copied(FILES, record.parent, RUNS / record.parent.name)
+        target = RUNS / record.parent.name
+        target.mkdir(parents=True, exist_ok=True)
+        for name, here in SHIPPED.items():
+            shutil.copyfile(record.parent / name, target / here)
     return 0
 
 
@@ -60,7 +66,7 @@ def _faultpath() -> str:
 
 def folders() -> list[Path]:
     """Return the folder of each size that was flown."""
-    return sorted(path.parent for path in RUNS.glob("*/record.json"))
+    return sorted(path.parent for path in RUNS.glob(f"*/{DECIDED}"))
 
 
 def fill() -> str:
@@ -85,8 +91,8 @@ def fill() -> str:
 
 
 def _read(number: int, folder: Path) -> Compared:
-    record = parsed(folder / "record.json", DecisionRecord, TAKE_AGAIN)
-    made = parsed(folder / "provenance.json", RunProvenance, TAKE_AGAIN)
+    record = parsed(folder / DECIDED, DecisionRecord, TAKE_AGAIN)
+    made = parsed(folder / FLOWN, RunProvenance, TAKE_AGAIN)
     return Compared(number, folder.name, record, made)
 
 
