@@ -1,13 +1,13 @@
 """On what, when and how quietly a measurement of time was made."""
 
 import os
-import subprocess
 import sys
 import time
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Self
 
+from command import faultpath
 from flown_code import ROOT
 from pydantic import BaseModel
 
@@ -57,10 +57,9 @@ class Timed(Machine):
 
     @classmethod
     def run(cls, package: Path, *arguments: str) -> Self:
-        """Return the time that `faultpath` takes for these; `CalledProcessError` where it fails."""
+        """Return the time that `faultpath` takes for these; exit with its status where it fails."""
         machine, others, began = Machine.here(package), Others(), time.monotonic()
-        command = [str(Path(sys.executable).with_name("faultpath")), *arguments]
-        subprocess.run(command, check=True)
+        faultpath(*arguments)
         wall_s = time.monotonic() - began
         return cls(**machine.model_dump(), wall_s=wall_s, others=others.share())
 

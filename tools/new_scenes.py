@@ -6,14 +6,13 @@ The design below was committed before its scenes were made. Ships what it takes 
 `docs/reference/new-scenes`, of which `docs/quadrotor.md` makes a block.
 """
 
-import argparse
 import shutil
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from blocks import REFERENCE, TAKE_AGAIN, parsed
+from command import faultpath, new_folder
 from flown_code import flown_by
 
 from faultpath.record import DecisionRecord, RunProvenance
@@ -38,30 +37,19 @@ QUESTION = ("quadrotor", "--baseline", "gru", "--repair", "gru+dcc", "--wind", "
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Fly; return the exit status."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    folder = parser.parse_args(arguments).folder
-    if folder.exists():
-        print(f"{folder} exists: name a folder that is new", file=sys.stderr)
-        return 2
+    folder = new_folder(__doc__, arguments)
     folder.mkdir(parents=True)
     library, runs = str(folder / "new-scenes.json"), folder / "runs"
     size = ("--seed", str(SEED), "--count", str(SCENES))
     asked = (*QUESTION, "--fault", FAULT, "--library", library, "--out", str(runs))
-    for command in (("scenes", "generate", library, *size), ("audit", *asked)):
-        status = subprocess.run([_faultpath(), *command], check=False).returncode
-        if status:
-            return status
+    faultpath("scenes", "generate", library, *size)
+    faultpath("audit", *asked)
     for record in sorted(runs.glob("*/record.json")):
         target = RUNS / record.parent.name
         target.mkdir(parents=True, exist_ok=True)
         for name, here in SHIPPED.items():
             shutil.copyfile(record.parent / name, target / here)
     return 0
-
-
-def _faultpath() -> str:
-    return str(Path(sys.executable).with_name("faultpath"))
 
 
 def folders() -> list[Path]:

@@ -6,13 +6,12 @@ Runs `faultpath reproduce --profile paper` into the folder and compares every tr
 run. Writes `docs/reference/paper-time.json`, of which `docs/reproduction.md` makes a block.
 """
 
-import argparse
-import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 from blocks import REFERENCE, parsed
+from command import new_folder
 from flown_code import ROOT
 from machine import Timed
 
@@ -34,17 +33,9 @@ class Flown(Timed):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure; return the exit status."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    folder = parser.parse_args(arguments).folder
-    if folder.exists():
-        print(f"{folder} exists: name a folder that is new", file=sys.stderr)
-        return 2
+    folder = new_folder(__doc__, arguments)
     asked = ("reproduce", "--profile", "paper", "--out", str(folder))
-    try:
-        timed = Timed.run(ROOT / "src" / "faultpath", *asked)
-    except subprocess.CalledProcessError as failed:
-        return failed.returncode
+    timed = Timed.run(ROOT / "src" / "faultpath", *asked)
     platform = shipped.default_platform()
     trials = _trials(folder)
     before = _trials(shipped.RUNS / platform)

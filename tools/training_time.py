@@ -6,15 +6,14 @@ Runs `faultpath train quadrotor` into the folder and compares every model with t
 Writes `docs/reference/training-time.json`, of which `docs/learning-quality.md` makes a block.
 """
 
-import argparse
 import json
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from blocks import REFERENCE, parsed, tabled
+from command import new_folder
 from flown_code import ROOT
 from machine import Timed
 
@@ -35,17 +34,9 @@ class Trained(Timed):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure; return the exit status."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("folder", type=Path, metavar="FOLDER")
-    folder = parser.parse_args(arguments).folder
-    if folder.exists():
-        print(f"{folder} exists: name a folder that is new", file=sys.stderr)
-        return 2
+    folder = new_folder(__doc__, arguments)
     places = ["--data", str(folder / "data"), "--out", str(folder / "models")]
-    try:
-        timed = Timed.run(ROOT / "src" / "faultpath", "train", "quadrotor", *places)
-    except subprocess.CalledProcessError as failed:
-        return failed.returncode
+    timed = Timed.run(ROOT / "src" / "faultpath", "train", "quadrotor", *places)
     cards = {path.stem: _card(path) for path in sorted((folder / "models").glob("*.json"))}
     trained = Trained(
         **timed.model_dump(),
