@@ -9,7 +9,6 @@ Writes `docs/reference/ray-cost.json`, of which `docs/many-trials.md` makes its 
 """
 
 import argparse
-import os
 import sys
 import tempfile
 import time
@@ -20,7 +19,7 @@ from typing import Any
 
 from blocks import REFERENCE, Run, parsed, tabled
 from flown_code import ROOT
-from machine import Machine
+from machine import Machine, Others, busy
 from pydantic import BaseModel
 
 import faultpath
@@ -78,6 +77,8 @@ class Timed(BaseModel):
     workers: int
     few: Spent
     more: Spent
+    others: float | None
+    """Share of the processor that other work took; None for Ray, whose workers count as others."""
 
     @property
     def trials(self) -> int:
@@ -98,8 +99,6 @@ class Timed(BaseModel):
 class Cost(Machine):
     """All that was measured, and on what."""
 
-    load: float
-    """Of the machine before the first run."""
     ray: str
     timed: tuple[Timed, ...]
 
@@ -111,7 +110,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--try", dest="brief", action="store_true", help="few trials, none kept")
     asked = parser.parse_args(arguments)
     machine = Machine.here(ROOT / "src" / "faultpath")
-    load = os.getloadavg()[0]
     cases = [asked.only] if asked.only else list(CASES)
     for case in cases:  # what the first audit of a process loads is no price of its trials
         _spent(CASES[case][0] | {"scenes": 1}, "local", 1)
@@ -124,12 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if any(each.trial_s <= 0 for each in timed):
         print("More trials took no longer than few: nothing is kept; run it on a quiet machine.")
         return 1
-    cost = Cost(
-        **machine.model_dump(),
-        load=load,
-        ray=version("ray"),
-        timed=tuple(timed),
-    )
+    cost = Cost(**machine.model_dump(), ray=version("ray"), timed=tuple(timed))
     print(_measured(cost) if asked.brief else f"Written: {RESULT}")
     if not asked.brief:
         RESULT.write_text(cost.model_dump_json(indent=1) + "\n", "utf-8")
@@ -140,8 +133,16 @@ def _timed(case: str, executor: str, workers: int, brief: bool) -> Timed:
     common, few, more = CASES[case]
     if brief:
         few, more = {"scenes": 2}, {"scenes": 6}
+    others = Others()
     spent = [_spent(common | size, executor, workers) for size in (few, more)]
-    found = Timed(case=case, executor=executor, workers=workers, few=spent[0], more=spent[1])
+    found = Timed(
+        case=case,
+        executor=executor,
+        workers=workers,
+        few=spent[0],
+        more=spent[1],
+        others=others.share() if executor == "local" else None,
+    )
     print(f"{case}, {executor}, {workers}: {1000 * found.trial_s:.2f} ms a trial", flush=True)
     return found
 
@@ -168,10 +169,9 @@ def fill() -> str:
 
 
 def _where(cost: Cost) -> str:
-    busy = "" if cost.load < 0.3 else " **The machine was busy**: all times are too long."
-    return (
-        f"Measured {cost.words}, Ray {cost.ray}, load {cost.load:.1f} before the first run.{busy}"
-    )
+    others = max(each.others for each in cost.timed if each.others is not None)
+    least_quiet = "That was while processes flew, where it was most."
+    return f"Measured {cost.words}, Ray {cost.ray}. {busy(others)} {least_quiet}"
 
 
 def _measured(cost: Cost) -> str:
@@ -208,14 +208,14 @@ def _extrapolated(cost: Cost) -> str:
     ]
     columns = {"worker hours": "{one:1}"}
     columns |= {f"{n} workers, h": f"{{on{n}:2}}" for n in FARTHER}
-    columns |= {"the driver keeps up with": "{busy:0} workers"}
+    columns |= {"the driver keeps up with": "{fed:0} workers"}
     return tabled(f"{_MILLION} trials of", rows, columns)
 
 
 def _shared_out(name: str, trial_s: float, driver_s: float) -> Mapping[str, Any]:
     hours = {f"on{n}": MANY * max(trial_s / n, driver_s) / 3600 for n in FARTHER}
-    busy = max(1.0, trial_s / driver_s) if driver_s > 0 else float("inf")
-    return {"name": name, "one": MANY * trial_s / 3600, "busy": busy} | hours
+    fed = max(1.0, trial_s / driver_s) if driver_s > 0 else float("inf")
+    return {"name": name, "one": MANY * trial_s / 3600, "fed": fed} | hours
 
 
 if __name__ == "__main__":
