@@ -35,6 +35,7 @@ import platform_blocks
 import ray_cost
 import replayed
 import training_time
+import unsteady_blocks
 import wind_error
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
@@ -64,6 +65,7 @@ KINDS: Mapping[str, Any] = {
     "ray-cost": ray_cost.fill,
     "replayed": replayed.fill,
     "training-time": training_time.fill,
+    "unsteady-wind": unsteady_blocks.fill,
     "wind-error": wind_error.fill,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""

@@ -12,13 +12,13 @@ records and trials in `docs/reference/unsteady-wind`.
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from blocks import REFERENCE, TAKE_AGAIN, parsed
 from flown_code import ROOT
 from machine import Machine
+from unsteady_blocks import DECIDED, FLOWN, OBSERVED, RUNS, Observed, nearest
 from unsteady_flown import (
     FITTED,
     SEEDS,
@@ -30,40 +30,15 @@ from unsteady_flown import (
     pools,
 )
 
-from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report.comparison.runs import Compared
 from faultpath.store import atomic
 from faultpath.store.folder import OUTCOMES
-from faultpath.studies.pages.table_6 import paper_acceleration
 from faultpath.work import local, run_all
 
-RUNS = REFERENCE / "unsteady-wind"
-OBSERVED, DECIDED, FLOWN = "observer.json", "decided.json", "flown.json"
 SHIPPED = {OUTCOMES: OUTCOMES, "record.json": DECIDED, "provenance.json": FLOWN}
 TIMES = tuple(1 + quarter / 4 for quarter in range(9))
 """How many times stronger than the frozen ones turbulence and gusts are tried."""
-WANTED = paper_acceleration("dob", "correct")
-"""The acceleration error of the paper's observer under correct inputs, m/s^2."""
 RECONSTRUCTED, GIVEN = ("gru", "gru+dcc"), ("zero-wind", "true-wind")
 """The arms whose difference is asked for, and those that say how strong the wind is."""
-
-
-class Observed(Machine):
-    """How the observer errs, by how many times stronger turbulence and gusts are."""
-
-    error: dict[float, float]
-    table_6: dict[str, dict[str, dict[str, float]]]
-    """Errors of all reconstructions in the wind as it is frozen, and in the chosen one."""
-
-    @property
-    def chosen(self) -> float:
-        """How many times: the one at which the error is nearest the paper's."""
-        return nearest(self.error)
-
-
-def nearest(errors: Mapping[float, float]) -> float:
-    """Return how many times stronger the observer errs most nearly as the paper's."""
-    return min(errors, key=lambda times: abs(errors[times] - WANTED))
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -108,14 +83,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for name, here in SHIPPED.items():
             atomic.write(target / here, (place / name).read_bytes())
     return 0
-
-
-def read(name: str, kind: str, number: int = 0) -> Compared:
-    """Return an audit that was flown."""
-    folder = RUNS / name / kind
-    record = parsed(folder / DECIDED, DecisionRecord, TAKE_AGAIN)
-    made = parsed(folder / FLOWN, RunProvenance, TAKE_AGAIN)
-    return Compared(number, f"{name}", record, made)
 
 
 if __name__ == "__main__":
