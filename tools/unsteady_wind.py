@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with local(2) as hands:
         tried = [partial(observer_error, times, folder) for times in TIMES]
         errors = {TIMES[place]: error for place, error in run_all(hands, tried)}
-        times, models = nearest(errors), folder / "models"
+        times, models = nearest(errors), folder.resolve() / "models"
         print(f"Observer: {errors}; {times:g} times", flush=True)
 
         ((_, data),) = run_all(hands, [partial(pools, times, folder)])
