@@ -25,6 +25,7 @@ from typing import Any
 import beside_blocks
 import blocks
 import drift_blocks
+import erring_blocks
 import fault_pictures
 import learning_blocks
 import map_blocks
@@ -35,7 +36,6 @@ import platform_blocks
 import ray_cost
 import replayed
 import training_time
-import unsteady_blocks
 import wind_error
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
@@ -56,6 +56,7 @@ KINDS: Mapping[str, Any] = {
     "learning": learning_blocks.KIND,
     "map": map_blocks.KIND,
     "beside": beside_blocks.KIND,
+    "erring": erring_blocks.fill,
     "faults": fault_pictures.KIND,
     "new-scenes": new_scenes.fill,
     "paper": paper_blocks.KIND,
@@ -65,7 +66,6 @@ KINDS: Mapping[str, Any] = {
     "ray-cost": ray_cost.fill,
     "replayed": replayed.fill,
     "training-time": training_time.fill,
-    "unsteady-wind": unsteady_blocks.fill,
     "wind-error": wind_error.fill,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""

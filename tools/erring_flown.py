@@ -1,4 +1,4 @@
-"""What is fitted, flown and measured in a wind less steady than a platform's, in one process."""
+"""What is fitted, flown and measured where reconstructions err more, in one process each."""
 
 import shutil
 from collections.abc import Iterator, Sequence
@@ -67,11 +67,11 @@ def observer_error(times: float, folder: Path) -> float:
     return float(np.median(found.values(asked).values))
 
 
-def pools(times: float, folder: Path) -> Path:
-    """Collect the training flights and return their folder."""
+def pools(times: float, names: tuple[str, ...], windy: int | None, folder: Path) -> Path:
+    """Collect training flights, so many of them in wind, and return their folder."""
     with unsteady(times):
-        collect(folder / "data", ("nominal", "wind"), workers=0)
-    return folder / "data"
+        collect(folder, names, workers=0, episodes=None if windy is None else {"wind": windy})
+    return folder
 
 
 def fitted(times: float, name: str, seed: int, data: Path, folder: Path) -> None:
@@ -82,9 +82,25 @@ def fitted(times: float, name: str, seed: int, data: Path, folder: Path) -> None
 
 
 def completed(folder: Path) -> None:
-    """Add the clearance model, which sees no wind."""
-    for file in shipped_folder().glob("clearance-0.*"):
-        shutil.copy(file, folder)
+    """Add the shipped models that fly beside those that were fitted."""
+    for model in ("clearance-0", "wm-a-wind-0"):
+        for file in shipped_folder().glob(f"{model}.*"):
+            if not (folder / file.name).exists():
+                shutil.copy(file, folder)
+
+
+def poor(windy: int, folder: Path) -> float:
+    """Fit a GRU on so many flights in wind; return its acceleration error under correct inputs.
+
+    In the wind as it is frozen, as in Table VI (a), m/s^2.
+    """
+    data = pools(1.0, ("wind",), windy, folder / f"data-{windy}")
+    models = folder / f"models-{windy}"
+    fitted(1.0, "gru", 0, data, models)
+    completed(models)
+    system = _system(models)
+    with arithmetic(), torch.inference_mode():
+        return _error(system, "gru", (), 0, _windows(_system(None)))
 
 
 def _system(models: Path | None) -> Quadrotor:
@@ -99,12 +115,8 @@ def acceleration_errors(times: float, models: Path | None) -> dict[str, dict[str
     On windows of flights with the GRU of seed 0; means over seeds of medians over windows.
     """
     system = _system(models)
-    scenes = [scene.id for scene in system.library(SELECTION).scenes]
     with unsteady(times), arithmetic(), torch.inference_mode():
-        flights = record_flights(system, "gru", scenes, 0)
-        count = range(len(scenes))
-        rows, episodes = encode_rows(count, flights), encode_episodes(count, flights)
-        windows = cut(FlightData.decode("unsteady", rows, episodes), STRIDE)
+        windows = _windows(system)
         return {
             method: {
                 interface: float(
@@ -114,6 +126,13 @@ def acceleration_errors(times: float, models: Path | None) -> dict[str, dict[str
             }
             for method in NAMES
         }
+
+
+def _windows(system: Quadrotor) -> Windows:
+    scenes = [scene.id for scene in system.library(SELECTION).scenes]
+    flights, count = record_flights(system, "gru", scenes, 0), range(len(scenes))
+    rows, episodes = encode_rows(count, flights), encode_episodes(count, flights)
+    return cut(FlightData.decode("selection", rows, episodes), STRIDE)
 
 
 def _error(
