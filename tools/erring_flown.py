@@ -149,16 +149,21 @@ def _error(
 
 
 def audited(
-    times: float, arms: tuple[str, str], seeds: Sequence[int], models: Path | None, folder: Path
+    condition: tuple[float, Path | None],
+    arms: tuple[str, str],
+    seeds: Sequence[int],
+    library: str,
+    folder: Path,
 ) -> None:
-    """Audit the second arm against the first on the selection library, into a folder."""
+    """Audit the second arm against the first, in a wind and with the models, into a folder."""
+    times, models = condition
     with unsteady(times):
         faultpath.audit(
             _system(models),
             baseline=arms[0],
             repair=arms[1],
             fault=FAULT,
-            library=SELECTION,
+            library=library,
             seeds=seeds,
             folder=folder,
             workers=0,

@@ -10,8 +10,8 @@ and Table IV's first question is asked again beside the platform as it is frozen
   fitted again on such flights;
 - fewer training flights: so few in wind that the GRU errs as the paper's does.
 
-Each design was committed before the repair was flown in it. Everything on the selection library.
-Ships records and trials in `docs/reference/erring-reconstructions`.
+Each design was committed before the repair was flown in it, on the selection library. The reversal
+came with few flights, so that was flown on the held-out scenes too, once, as it was. Ships records and trials in `docs/reference/erring-reconstructions`.
 """
 
 import argparse
@@ -37,6 +37,7 @@ from machine import Machine
 
 from faultpath.store import atomic
 from faultpath.store.folder import OUTCOMES
+from faultpath.studies.cells import HELD_OUT, SELECTION
 from faultpath.work import Executor, local, run_all
 
 SHIPPED = {OUTCOMES: OUTCOMES, "record.json": DECIDED}
@@ -107,20 +108,26 @@ def _fitted(hands: Executor, asked: Sequence[tuple[float, str, int, Path, Path]]
 
 def _fly(hands: Executor, conditions: Conditions, flown: Path) -> None:
     """Audit in each condition what is not there yet, and ship it."""
+    repair, given = (RECONSTRUCTED, SEEDS, SELECTION), (GIVEN, (0,), SELECTION)
     asked = {
-        flown / name / kind: partial(audited, times, arms, seeds, models)
-        for name, (times, models) in conditions.items()
-        for kind, arms, seeds in (("repair", RECONSTRUCTED, SEEDS), ("input", GIVEN, (0,)))
-        if (name, kind) != ("few-flights", "input")  # nothing of it has learned from them
+        "frozen/repair": repair,
+        "frozen/input": given,
+        "unsteady/repair": repair,
+        "unsteady/input": given,
+        "few-flights/repair": repair,  # nothing that is given a wind has learned from those
+        "few-flights/held-out": (RECONSTRUCTED, SEEDS, HELD_OUT),
     }
-    missing = [place for place in asked if not (place / "provenance.json").exists()]
-    for each, _ in run_all(hands, [partial(asked[place], place) for place in missing]):
+    missing = [place for place in asked if not (flown / place / "provenance.json").exists()]
+    audits = [
+        partial(audited, conditions[place.partition("/")[0]], *asked[place], flown / place)
+        for place in missing
+    ]
+    for each, _ in run_all(hands, audits):
         print("Flown:", missing[each], flush=True)
     for place in asked:
-        target = RUNS / place.relative_to(flown)
-        target.mkdir(parents=True, exist_ok=True)
+        (RUNS / place).mkdir(parents=True, exist_ok=True)
         for name, here in SHIPPED.items():
-            atomic.write(target / here, (place / name).read_bytes())
+            atomic.write(RUNS / place / here, (flown / place / name).read_bytes())
 
 
 if __name__ == "__main__":
