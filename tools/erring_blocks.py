@@ -80,8 +80,8 @@ def fill() -> str:
         lines=tuple(_lines(found)),
         notes=(
             f"{asked.n_scenes} scenes of the {asked.library} library unless said otherwise, "
-            f"{wording.seeds(asked.seeds)}; zero and true wind: seed 0. Bold: detected, by the audit of its own column, after "
-            "Holm's correction. No test compares the columns.",
+            f"{wording.seeds(asked.seeds)}; zero and true wind: seed 0. Bold: detected, by the "
+            "audit of its own column, after Holm's correction. No test compares the columns.",
             "Errors: as in Table VI (a), on windows of the selection library. Intervals, 95 %: "
             "for these trained models.",
             f"Tried, turbulence and gusts: {_tried(found.winds, '× {:g}')} (the observer's error, "

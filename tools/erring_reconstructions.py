@@ -11,7 +11,8 @@ and Table IV's first question is asked again beside the platform as it is frozen
 - fewer training flights: so few in wind that the GRU errs as the paper's does.
 
 Each design was committed before the repair was flown in it, on the selection library. The reversal
-came with few flights, so that was flown on the held-out scenes too, once, as it was. Ships records and trials in `docs/reference/erring-reconstructions`.
+came with few flights, so that was flown on the held-out scenes too, once, as it was. Ships records
+and trials in `docs/reference/erring-reconstructions`.
 """
 
 import argparse
