@@ -90,11 +90,11 @@ def fill() -> str:
         ),
     )
     made = "Made by `python tools/erring_reconstructions.py FOLDER`."
-    return f"{block(table)}\n\nFlown {found.words}. {made}"
+    return f"{block(table)}\n\nFinished {found.words}. {made}"
 
 
 def _tried(errors: Mapping[N, float], words: str) -> str:
-    return ", ".join(f"{words.format(n)} {wording.plain(e, 2)}" for n, e in errors.items())
+    return "; ".join(f"{words.format(n)}: {wording.plain(e, 2)}" for n, e in errors.items())
 
 
 def _lines(found: Erring) -> Iterator[Line]:

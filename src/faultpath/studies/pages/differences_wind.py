@@ -78,7 +78,7 @@ PAGE = Page(
             columns=COMPARED,
             rows=tuple(map(_stiff, PATHS)),
             notes=(
-                "The planner variant `running`: its cost counts the distance to the goal all along "
+                "The planner named running: its cost counts the distance to the goal all along "
                 "the horizon, and not only at its end.",
                 "{flown}",
                 WINS,
