@@ -15,7 +15,7 @@ from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.measuring import measure
-from faultpath.quadrotor.evidence.quantities import _acceleration_error
+from faultpath.quadrotor.evidence.quantities import of_windows
 from faultpath.quadrotor.evidence.recording import STRIDE
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.platforms import DEFAULT
@@ -145,7 +145,7 @@ def _error(
         seed=seed,
         faults=faults,
     )
-    return float(_acceleration_error(Subject.load(system, method, seed), asked, windows).median())
+    return float(of_windows(Subject.load(system, method, seed), asked, windows).median())
 
 
 def audited(

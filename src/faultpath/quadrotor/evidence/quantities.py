@@ -44,9 +44,13 @@ def measured(measurement: Measurement, recorded: Recorded) -> Measured:
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
     history code exchanges them.
     """
-    quantity = _QUANTITIES[measurement.quantity]
-    values = quantity(_subject(measurement), measurement, recorded.windows)
+    values = of_windows(_subject(measurement), measurement, recorded.windows)
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
+
+
+def of_windows(subject: Subject, asked: Measurement, windows: Windows) -> Tensor:
+    """Return what is asked of a variant, whichever its models are, on each window, `[W]`."""
+    return _QUANTITIES[asked.quantity](subject, asked, windows)
 
 
 def _subject(asked: Measurement) -> Subject:
