@@ -64,13 +64,17 @@ def parsed(path: Path, model: type[M], again: str) -> M:
 
 
 def copied(files: Iterable[str], folder: Path, target: Path) -> None:
-    """Copy files of a finished run; `Wrong` where it has not got them all."""
-    absent = [file for file in files if not (folder / file).is_file()]
+    """Copy files of a finished run; `Wrong` where it has not got them all.
+
+    A mapping gives each the name that it gets.
+    """
+    names = files if isinstance(files, Mapping) else {file: file for file in files}
+    absent = [file for file in names if not (folder / file).is_file()]
     if absent:
         raise Wrong(f"{folder} holds no finished run: it has no {', '.join(absent)}")
     target.mkdir(parents=True, exist_ok=True)
-    for file in files:
-        shutil.copyfile(folder / file, target / file)
+    for file, name in names.items():
+        shutil.copyfile(folder / file, target / name)
 
 
 @cache

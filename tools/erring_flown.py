@@ -44,7 +44,6 @@ FAULT = "calibration=+0.1"
 def unsteady(times: float) -> Iterator[None]:
     """Have turbulence and gusts so many times stronger beside the same sustained wind."""
     turbulence, gust = wind.TURBULENCE_OVER_MEAN, wind.GUST_OVER_MEAN
-    torch.set_num_threads(1)
     wind.TURBULENCE_OVER_MEAN = times * turbulence
     wind.GUST_OVER_MEAN = (times * gust[0], times * gust[1])
     try:

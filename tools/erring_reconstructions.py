@@ -10,9 +10,10 @@ and Table IV's first question is asked again beside the platform as it is frozen
   fitted again on such flights;
 - fewer training flights: so few in wind that the GRU errs as the paper's does.
 
-Each design was committed before the repair was flown in it, on the selection library. The reversal
-came with few flights, so that was flown on the held-out scenes too, once, as it was. Ships records
-and trials in `docs/reference/erring-reconstructions`.
+Each design was committed before the repair was flown in it, on the selection library; the second was
+made when the first had been flown. The reversal came with few flights, so that was flown on the
+held-out scenes too, once, as it was. Ships records and trials in
+`docs/reference/erring-reconstructions`.
 """
 
 import argparse
@@ -21,6 +22,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
+from blocks import copied
 from erring_blocks import DECIDED, ERRORS, RUNS, Erring, few_flights, less_steady
 from erring_flown import (
     FITTED,
@@ -36,7 +38,6 @@ from erring_flown import (
 from flown_code import ROOT
 from machine import Machine
 
-from faultpath.store import atomic
 from faultpath.store.folder import OUTCOMES
 from faultpath.studies.cells import HELD_OUT, SELECTION
 from faultpath.work import Executor, local, run_all
@@ -126,9 +127,7 @@ def _fly(hands: Executor, conditions: Conditions, flown: Path) -> None:
     for each, _ in run_all(hands, audits):
         print("Flown:", missing[each], flush=True)
     for place in asked:
-        (RUNS / place).mkdir(parents=True, exist_ok=True)
-        for name, here in SHIPPED.items():
-            atomic.write(RUNS / place / here, (flown / place / name).read_bytes())
+        copied(SHIPPED, flown / place, RUNS / place)
 
 
 if __name__ == "__main__":

@@ -6,12 +6,11 @@ The design below was committed before its scenes were made. Ships what it takes 
 `docs/reference/new-scenes`, of which `docs/quadrotor.md` makes a block.
 """
 
-import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from blocks import REFERENCE, TAKE_AGAIN, parsed
+from blocks import REFERENCE, TAKE_AGAIN, copied, parsed
 from command import faultpath, new_folder
 from flown_code import flown_by
 
@@ -45,10 +44,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     faultpath("scenes", "generate", library, *size)
     faultpath("audit", *asked)
     for record in sorted(runs.glob("*/record.json")):
-        target = RUNS / record.parent.name
-        target.mkdir(parents=True, exist_ok=True)
-        for name, here in SHIPPED.items():
-            shutil.copyfile(record.parent / name, target / here)
+        copied(SHIPPED, record.parent, RUNS / record.parent.name)
     return 0
 
 

@@ -170,8 +170,8 @@ def fill() -> str:
 
 def _where(cost: Cost) -> str:
     others = max(each.others for each in cost.timed if each.others is not None)
-    least_quiet = "That was while processes flew, where it was most."
-    return f"Measured {cost.words}, Ray {cost.ray}. {busy(others)} {least_quiet}"
+    told = "That is the most in any run by processes; what Ray starts is not told from other work."
+    return f"Measured {cost.words}, Ray {cost.ray}. {busy(others)} {told}"
 
 
 def _measured(cost: Cost) -> str:
