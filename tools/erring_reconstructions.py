@@ -10,8 +10,8 @@ and Table IV's first question is asked again beside the platform as it is frozen
   fitted again on such flights;
 - fewer training flights: so few in wind that the GRU errs as the paper's does.
 
-Each design was committed before the repair was flown in it, on the selection library; the second was
-made when the first had been flown. The reversal came with few flights, so that was flown on the
+Each design was committed before the repair was flown in it, on the selection library; the second
+was made when the first had been flown. The reversal came with few flights, so that was flown on the
 held-out scenes too, once, as it was. Ships records and trials in
 `docs/reference/erring-reconstructions`.
 """

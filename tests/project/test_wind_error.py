@@ -49,6 +49,7 @@ def test_the_prose_holds() -> None:
     assert gentle[along][1] < 0 < gentle[along][2], "no error along the motion is seen there"
     assert gentle["Speed (m/s)"][0] > braking["Speed (m/s)"][0]
     assert braking[along][1] > 1, "it points along the motion while the vehicle brakes"
+    assert max(map(abs, braking[held])) < 0.2, "held, it errs about as far as the updated one"
     assert max(map(abs, found["GRU", "Step 40"][along])) < 0.5, "the other hardly does"
     steps = [row for (of, _), row in found.items() if of == "Trajectory GRU" and row]
     assert min(row[error][0] for row in steps) == gentle[error][0]
