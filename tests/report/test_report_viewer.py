@@ -1,20 +1,19 @@
 """Which scenes are shown in detail, and where two flights part."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from faultpath.report.inputs import ReportInput, Traces
-from faultpath.report.pairing import Pair, read_pairs
+from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer import viewer_data
-from faultpath.report.viewer_choice import choose, parting_step
+from faultpath.report.viewer_choice import parting_step
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import pack, unpack
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
-from faultpath.trials import FloorPlan, Outcome, Pillar, Prism, Status
+from faultpath.trials import FloorPlan, Pillar, Prism
 
 
 def _unpacked(source: ReportInput, **more: Any) -> tuple[dict[str, Any], list[Any]]:
@@ -22,74 +21,6 @@ def _unpacked(source: ReportInput, **more: Any) -> tuple[dict[str, Any], list[An
     made = viewer_data(source.record, source.traces, source.plans, pairs, **more)
     assert made is not None
     return unpack(made.packed)
-
-
-def test_most_telling_scenes_come_first(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    chosen = choose(one_seed.record, one_seed.traces, pairs)
-    assert len(chosen) == 6
-    assert [s.rank for s in chosen] == sorted(s.rank for s in chosen)
-    first = chosen[0]
-    shared = first.pairs["shared"].sign
-    assert shared != 0
-    assert -shared in first.pattern
-
-
-def test_a_scene_is_told_by_what_happened_under_the_shared_fault(one_seed: ReportInput) -> None:
-    """The repair's shared path may strike no more taps than one of its isolated ones."""
-    record = one_seed.record
-    widest = next(path for path in record.paths if path.name == "predictor")
-    paths = [p.model_copy(update={"consumers": widest.consumers}) for p in record.paths]
-    source = replace(one_seed, record=record.model_copy(update={"paths": tuple(paths)}))
-    pairs = read_pairs(source.outcomes, source.record)
-    data, _ = _unpacked(source)
-    chosen = choose(source.record, source.traces, pairs)
-    for shown, place in zip(chosen, data["picked"], strict=True):
-        told = data["scenes"][place]
-        assert told["scene"] == shown.any_pair.scene
-        shared = shown.pairs["shared"].sign
-        assert ("with the fault shared" in told["why"]) == (shown.rank in (0, 2))
-        assert shown.rank not in (0, 2) or shared != 0
-
-
-def test_choice_is_fixed_and_never_repeats_a_scene(three_seeds: ReportInput) -> None:
-    pairs = read_pairs(three_seeds.outcomes, three_seeds.record)
-    chosen = choose(three_seeds.record, three_seeds.traces, pairs)
-    scenes = [s.any_pair.scene for s in chosen]
-    assert len(set(scenes)) == len(scenes) == 6
-    assert [
-        s.any_pair.scene for s in choose(three_seeds.record, three_seeds.traces, pairs[::-1])
-    ] == scenes
-    assert "doorways-017" not in scenes
-
-
-def test_patterns_differ_where_they_can(one_seed: ReportInput) -> None:
-    pairs = read_pairs(one_seed.outcomes, one_seed.record)
-    patterns = [s.pattern for s in choose(one_seed.record, one_seed.traces, pairs)]
-    assert len(set(patterns)) == len(patterns)
-
-
-def test_without_disagreement_the_distance_decides(one_seed: ReportInput) -> None:
-    pairs = [_concordant(p) for p in read_pairs(one_seed.outcomes, one_seed.record)]
-    chosen = choose(one_seed.record, one_seed.traces, pairs)
-    assert {s.rank for s in chosen} == {4}
-    gaps = [s.gap_m for s in chosen]
-    assert gaps == sorted(gaps, reverse=True)
-
-
-def _concordant(pair: Pair) -> Pair:
-    def failing(trial: Outcome | None) -> Outcome | None:
-        return None if trial is None else replace(trial, status=Status.CRASH)
-
-    if pair.void_reason is not None:
-        return pair
-    return replace(pair, baseline=failing(pair.baseline), repair=failing(pair.repair))
-
-
-def test_fewer_scenes_than_places(make: Callable[..., ReportInput]) -> None:
-    source = make(n_scenes=4, void=False)
-    pairs = read_pairs(source.outcomes, source.record)
-    assert len(choose(source.record, source.traces, pairs)) == 4
 
 
 def test_every_trial_is_there_to_the_centimetre(three_seeds: ReportInput) -> None:

@@ -13,7 +13,8 @@ from faultpath.errors import UserError
 from faultpath.report import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene, read_pairs
-from faultpath.report.viewer_choice import Track, track_of
+from faultpath.report.svg import wrapped
+from faultpath.report.viewer_choice import Track, captions, choose, track_of
 from faultpath.report.viewer_hits import hit
 from faultpath.trials import FloorPlan, Outcome, Status
 
@@ -29,7 +30,9 @@ _INK = {
     "baseline": "#a84c14",
     "struck": "#b3261e",
 }
-_TILE, _HEIGHT, _GAP, _TOP, _LABEL = 210, 122, 14, 62, 22
+_TILE, _HEIGHT, _GAP, _TOP, _LABEL = 210, 122, 14, 58, 22
+_SAID, _LINE = 12, 17
+"""Size and pitch of the caption."""
 _FINE = 2
 """Drawn so much larger and made smaller again, for smooth lines."""
 _MOST_FRAMES = 120
@@ -41,7 +44,8 @@ _ARMS = ("baseline", "repair")
 def film(
     held: ReportInput, scene: str, seed: int | None, paths: Sequence[str], speed: float, out: Path
 ) -> None:
-    """Write a scene as `.gif` or `.mp4`; `seed` by default the first, `paths` all.
+    """Write a scene as `.gif` or `.mp4`; `paths` by default all, `seed` the one with which the
+    report shows the scene, else the first.
 
     Raises `UserError` for another ending, a seed that was not flown, a system without positions,
     and where pillow or, for an mp4, ffmpeg is missing.
@@ -51,9 +55,14 @@ def film(
     if out.suffix == ".mp4" and shutil.which("ffmpeg") is None:
         raise UserError("an .mp4 needs ffmpeg, which is not installed here: write a .gif.")
     asked = held.record.question
-    drawn = asked.seeds[0] if seed is None else seed
-    groups = by_scene(read_pairs(held.outcomes, held.record))
-    pairs = groups.get((scene, drawn))
+    all_pairs = read_pairs(held.outcomes, held.record)
+    first = [
+        s.any_pair.seed
+        for s in choose(held.record, held.traces, all_pairs)
+        if s.any_pair.scene == scene
+    ]
+    drawn = [*first, asked.seeds[0]][0] if seed is None else seed
+    pairs = by_scene(all_pairs).get((scene, drawn))
     if pairs is None:
         raise UserError(f"scene '{scene}' was not flown with seed {drawn}: choose {asked.seeds}.")
     wanted = [p for p in held.record.paths if p.name in pairs and (not paths or p.name in paths)]
@@ -68,7 +77,8 @@ def film(
     stride = -(-last // _MOST_FRAMES)
     pace = held.traces.dt_s * stride / speed
     steps = [*range(0, last, stride), last]
-    _write(out, _Film(held, scene, tiles, len(wanted)).frames(steps), len(steps), pace)
+    said = captions(held.record, all_pairs).get((scene, drawn), "")
+    _write(out, _Film(held, scene, said, tiles, len(wanted)).frames(steps), len(steps), pace)
 
 
 @dataclass(frozen=True)
@@ -102,15 +112,16 @@ class _Tile:
 
     @property
     def corner(self) -> _Pixels:
-        """Upper left corner in the picture."""
-        x = _GAP + self.column * (_TILE + _GAP)
-        return x, _TOP + self.row * (_HEIGHT + _LABEL)
+        """Upper left corner below what stands above all tiles."""
+        return _GAP + self.column * (_TILE + _GAP), self.row * (_HEIGHT + _LABEL)
 
 
 class _Film:
     """Draws the frames; what stands still is drawn once."""
 
-    def __init__(self, held: ReportInput, scene: str, tiles: Sequence[_Tile], columns: int) -> None:
+    def __init__(
+        self, held: ReportInput, scene: str, said: str, tiles: Sequence[_Tile], columns: int
+    ) -> None:
         try:
             from PIL import Image, ImageDraw, ImageFont
         except ModuleNotFoundError:
@@ -128,16 +139,20 @@ class _Film:
         self._scale = float(np.min(room / np.maximum(high - low, 1e-6)[:2]))
         self._middle = (low + high)[:2] / 2
         width = _GAP + columns * (_TILE + _GAP)
-        height = _TOP + 2 * (_HEIGHT + _LABEL) + 6
+        caption = wrapped(said, width, _SAID, 3)
+        self._top = _TOP + _LINE * len(caption)
+        height = self._top + 2 * (_HEIGHT + _LABEL) + 6
         self.size = (width + width % 2, height + height % 2)
         self._still = Image.new("RGB", (self.size[0] * _FINE, self.size[1] * _FINE), _INK["paper"])
         pen = self._draw(self._still)
         asked = held.record.question
         self._text(pen, (_GAP, 8), f"{plan.title if plan else scene}, {asked.fault}", "ink", 15)
+        for number, line in enumerate(caption):
+            self._text(pen, (_GAP, 30 + _LINE * number), line, "soft", _SAID)
         for tile in tiles:
-            x, y = tile.corner
+            x, y = self._corner(tile)
             if not tile.row:
-                self._text(pen, (x, _TOP - 22), tile.title, "ink", 14)
+                self._text(pen, (x, y - 22), tile.title, "ink", 14)
             pen.rectangle([v * _FINE for v in (x, y, x + _TILE, y + _HEIGHT)], fill=_INK["wash"])
             if plan:
                 self._scene(pen, tile, plan)
@@ -170,7 +185,7 @@ class _Film:
             r = 3.5 * _FINE
             pen.ellipse((x - r, y - r, x + r, y + r), fill=colour)
         over = now == len(tile.track) - 1
-        x, y = tile.corner
+        x, y = self._corner(tile)
         words = f"{tile.arm}: {tile.ended}" if over else f"{tile.arm}"
         self._text(pen, (x, y + _HEIGHT + 2), words, tile.arm, 12)
         if over and tile.solid is None and tile.status is Status.CRASH and now >= 0:
@@ -193,8 +208,12 @@ class _Film:
         (x, y), r = self._at(tile, at), radius * self._scale * _FINE
         pen.ellipse((x - r, y - r, x + r, y + r), **look)
 
-    def _at(self, tile: _Tile, point: Any) -> _Pixels:
+    def _corner(self, tile: _Tile) -> _Pixels:
         x, y = tile.corner
+        return x, y + self._top
+
+    def _at(self, tile: _Tile, point: Any) -> _Pixels:
+        x, y = self._corner(tile)
         across, up = (np.asarray(point)[:2] - self._middle) * self._scale
         return (x + _TILE / 2 + across) * _FINE, (y + _HEIGHT / 2 - up) * _FINE
 

@@ -10,15 +10,14 @@ from numpy.typing import NDArray
 from faultpath.record import DecisionRecord, Path, Question
 from faultpath.report import wording
 from faultpath.report.inputs import Traces
-from faultpath.report.pairing import Kind, Pair, by_scene
+from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import (
-    DISTANCE,
     PARTING_M,
     Track,
+    captions,
     choose,
     parting_step,
     tracks_of,
-    why,
 )
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import Whole, pack
@@ -81,7 +80,7 @@ def viewer_data(
     if space == "line":
         kept = _with_positions(kept, traces)
     lines, series = plots(kept), list[Whole]()
-    packing = _Packing(asked, traces, plans, kept, lines, series)
+    packing = _Packing(asked, traces, plans, kept, lines, captions(record, pairs), series)
     scenes = [packing.scene(group) for group in groups.values()]
     places = {at: place for place, at in enumerate(groups)}
     content = {
@@ -108,17 +107,17 @@ class _Packing:
     plans: Mapping[str, FloorPlan]
     signals: Signals
     plots: tuple[Plot, ...]
+    captions: Mapping[tuple[str, int], str]
     series: list[Whole]
 
     def scene(self, group: Mapping[str, Pair]) -> dict[str, Any]:
         pair = next(iter(group.values()))
         plan = self.plans.get(pair.scene)
-        sound = not any(each.kind in (Kind.VOID, Kind.LEFT_OUT) for each in group.values())
         return {
             "scene": pair.scene,
             "seed": pair.seed,
             "title": plan.title if plan else pair.topology,
-            "why": why(group) if sound else "",
+            "why": self.captions.get((pair.scene, pair.seed), ""),
             "pairs": [self._pair(each) for each in group.values()],
         }
 
@@ -144,7 +143,7 @@ class _Packing:
             "status": trial.status.value,
             "ended": wording.ended(self.asked, trial.status),
             "time_s": trial.time_s,
-            "distance_m": trial.metrics.get(DISTANCE),
+            "distance_m": trial.metrics.get("terminal_distance_m"),
             "hit": hit(plan, track[-1]) if crashed and plan else None,
             "track": self._put(_centimetres(track).T) if len(track) else None,
             "attitude": self._frames(named),

@@ -1,16 +1,22 @@
-"""Which scenes the viewer begins with, and why.
+"""Which scenes the viewer and the film begin with, and what goes on in them.
 
-How scenes are chosen. A *showing* is one scene with one seed, and its *pattern* is who alone
-succeeded there, path by path. Scenes with a void pair and flights without a track are left out. The
-rest is ranked: first those where the arm that alone succeeds under the shared fault is not the one
-that alone succeeds on another path; then those where that arm changes between other paths; then
-those where one arm alone succeeds under the shared fault; then those where one does on any path;
-then the others. Within a rank the largest difference in terminal distance comes first, then the
-scene index and the seed. From that list the first showing of every pattern is taken, then the list
-is filled up in order, never with a scene twice. They are examples, not a sample.
+How scenes are chosen. A *showing* is one scene with one seed, and its *pattern* is who succeeded
+there, path by path. Patterns are ranked by how well they agree with what the audit announced; where
+that is equal, or nothing was announced, the one that more showings have comes first, then the one
+with the lowest scene index. Of one pattern come first those whose trials ended as those of most, in
+a crash or out of time, then the lowest index. One scene of each of the first six patterns is shown;
+places left over are filled in this order, never with a scene twice. They are examples, not a
+sample.
+
+What is announced: each decided difference that may lead a headline, and each detected change from
+an isolated fault to the shared one. A pattern shows a difference where only the arm that is ahead
+succeeds, and contradicts it where only the other does. First come patterns that show the most
+reversals, on both their paths; then those that show the most of what was announced, less what they
+contradict; then those in which both arms end alike on the most other paths, and both succeed there.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -18,33 +24,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.record import SHARED, DecisionRecord, Question
+from faultpath.record.words import capital, series, where
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, by_scene
 from faultpath.store import TrialAddress
+from faultpath.trials import Status
 
 Track: TypeAlias = NDArray[np.float32]
 """Positions at control steps, `[T, 3]`, metres."""
 
 PARTING_M = 0.5
-DISTANCE = "terminal_distance_m"
-"""The metric that ranks scenes, where a system has it."""
 _MOST = 6
-_WHY = (
-    "In this scene one arm alone succeeds with the fault shared, the other alone on another path.",
-    "In this scene one arm alone succeeds on one path, and the other alone on another.",
-    "In this scene only one arm succeeds with the fault shared.",
-    "In this scene only one arm succeeds on at least one path.",
-    "In this scene both arms end alike on every path.",
-)
+_ALIKE = (Kind.BOTH, Kind.NEITHER)
 
 
 @dataclass(frozen=True)
 class Showing:
     """One scene with one seed, all its pairs by path."""
 
-    pairs: dict[str, Pair]
-    rank: int
-    gap_m: float
+    pairs: Mapping[str, Pair]
 
     @property
     def any_pair(self) -> Pair:
@@ -52,27 +50,71 @@ class Showing:
         return next(iter(self.pairs.values()))
 
     @property
-    def pattern(self) -> tuple[int, ...]:
-        """Who alone succeeded, path by path: +1 the repair, -1 the baseline, 0 neither alone."""
-        return tuple(pair.sign for pair in self.pairs.values())
+    def pattern(self) -> tuple[tuple[str, Kind], ...]:
+        """Who succeeded, path by path."""
+        return self.on(self.pairs)
+
+    @property
+    def ends(self) -> tuple[tuple[str, Status | None], ...]:
+        """How the trials ended, path by path, the baseline's before the repair's."""
+        return tuple(
+            (path, trial.status if trial else None)
+            for path, pair in self.pairs.items()
+            for trial in (pair.baseline, pair.repair)
+        )
+
+    def on(self, paths: Iterable[str]) -> tuple[tuple[str, Kind], ...]:
+        """Return who succeeded on some paths."""
+        return tuple((path, self.pairs[path].kind) for path in paths if path in self.pairs)
 
 
 def choose(record: DecisionRecord, traces: Traces, pairs: Sequence[Pair]) -> tuple[Showing, ...]:
-    """Return up to six showings by the rule at the top of this file."""
-    ranked = sorted(_showings(record.question, traces, pairs), key=_order)
+    """Return up to six showings by the rule at the top of this file; each has its tracks."""
+    ranked = [
+        showing
+        for showing in _ranked(record, pairs)
+        if not traces.positions
+        or all(
+            len(t) for p in showing.pairs.values() for t in tracks_of(record.question, traces, p)
+        )
+    ]
     chosen: list[Showing] = []
-    patterns: set[tuple[int, ...]] = set()
-    scenes: set[str] = set()
     for only_new_patterns in (True, False):
         for showing in ranked:
             scene = showing.any_pair.scene
-            seen = showing.pattern in patterns and only_new_patterns
-            if len(chosen) == _MOST or scene in scenes or seen:
-                continue
-            chosen.append(showing)
-            patterns.add(showing.pattern)
-            scenes.add(scene)
-    return tuple(sorted(chosen, key=_order))
+            seen = only_new_patterns and showing.pattern in (each.pattern for each in chosen)
+            shown = scene in (each.any_pair.scene for each in chosen)
+            if len(chosen) < _MOST and not shown and not seen:
+                chosen.append(showing)
+    return tuple(showing for showing in ranked if showing in chosen)
+
+
+def captions(record: DecisionRecord, pairs: Sequence[Pair]) -> dict[tuple[str, int], str]:
+    """Say of each scene and seed who succeeded there, and in how many it went so.
+
+    It is told of the paths that were announced and the primary one; of all where none was.
+    """
+    asked, showings = record.question, _showings(pairs)
+    named = _announced(record)
+    named |= {asked.primary or SHARED} if named else {path.name for path in record.paths}
+    told = [path.name for path in record.paths if path.name in named]
+    like = Counter(showing.on(told) for showing in showings)
+    everywhere = Counter(showing.pattern for showing in showings)
+    of = f"{len(showings)} scenes"
+    if len(asked.seeds) > 1:
+        scenes = len({showing.any_pair.scene for showing in showings})
+        of = f"{len(showings)} ({scenes} scenes, {len(asked.seeds)} seeds)"
+
+    def said(showing: Showing) -> str:
+        words = _who(asked, dict(showing.on(told)), every=len(told) == len(showing.pairs))
+        count, whole = like[showing.on(told)], everywhere[showing.pattern]
+        if len(showings) == 1:
+            return words
+        goes = "goes" if count == 1 else "go"
+        more = f" there, {whole} on every path" if whole < count else ""
+        return f"{words} {count} of {of} {goes} like this one{more}."
+
+    return {(s.any_pair.scene, s.any_pair.seed): said(s) for s in showings}
 
 
 def parting_step(a: Track, b: Track) -> int | None:
@@ -93,43 +135,68 @@ def tracks_of(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
     return [track_of(traces, variant, pair) for variant in (asked.baseline, asked.repair)]
 
 
-def why(group: Mapping[str, Pair]) -> str:
-    """Say who succeeded where in a scene without a void pair."""
-    return _WHY[_rank(group)]
-
-
-def _showings(asked: Question, traces: Traces, pairs: Sequence[Pair]) -> Iterator[Showing]:
-    sound = [
-        pair
-        for pair in pairs
-        if pair.kind not in (Kind.VOID, Kind.LEFT_OUT)
-        and (not traces.positions or all(map(len, tracks_of(asked, traces, pair))))
+def _showings(pairs: Sequence[Pair]) -> list[Showing]:
+    """Return the scenes with their seeds that have no void pair."""
+    out = (Kind.VOID, Kind.LEFT_OUT)
+    return [
+        Showing(group)
+        for group in by_scene(pairs).values()
+        if not any(pair.kind in out for pair in group.values())
     ]
-    for group in by_scene(sound).values():
-        yield Showing(group, _rank(group), max(map(_distance_gap, group.values())))
 
 
-def _rank(group: Mapping[str, Pair]) -> int:
-    signs = {path: pair.sign for path, pair in group.items()}
-    shared = signs.get(SHARED, 0)
-    if shared and -shared in signs.values():
-        return 0
-    if {1, -1} <= set(signs.values()):
-        return 1
-    if shared:
-        return 2
-    return 3 if any(signs.values()) else 4
+def _announced(record: DecisionRecord) -> set[str]:
+    """Return the paths of which something was announced."""
+    changes = [change for change in record.changes if change.turn != "none"]
+    leading = {effect.path for effect in record.effects if effect.leads}
+    return leading.union(*({change.isolated, change.shared} for change in changes))
 
 
-def _order(showing: Showing) -> tuple[int, float, int, int]:
-    pair = showing.any_pair
-    return showing.rank, -showing.gap_m, pair.index, pair.seed
+def _ranked(record: DecisionRecord, pairs: Sequence[Pair]) -> list[Showing]:
+    showings = sorted(_showings(pairs), key=lambda s: (s.any_pair.index, s.any_pair.seed))
+    counts = Counter(showing.pattern for showing in showings)
+    alike = Counter(showing.ends for showing in showings)
+    # A stable sort: patterns stand in the order of the first scene that has them.
+    first = {pattern: place for place, pattern in enumerate(counts)}
+
+    def order(showing: Showing) -> tuple[int, ...]:
+        agrees = _agreement(record, dict(showing.pattern))
+        by_pattern = -counts[showing.pattern], first[showing.pattern]
+        return *(-each for each in agrees), *by_pattern, -alike[showing.ends]
+
+    return sorted(showings, key=order)
 
 
-def _distance_gap(pair: Pair) -> float:
-    ends = [
-        distance
-        for trial in (pair.baseline, pair.repair)
-        if trial is not None and (distance := trial.metrics.get(DISTANCE)) is not None
-    ]
-    return abs(ends[0] - ends[1]) if len(ends) == 2 else 0.0
+def _agreement(record: DecisionRecord, kinds: Mapping[str, Kind]) -> tuple[int, ...]:
+    """Return how well a pattern agrees with what was announced; more is better, part by part."""
+    if not _announced(record):
+        return ()
+    signs = {Kind.REPAIR_ONLY: 1, Kind.BASELINE_ONLY: -1}
+    ahead = {path: signs.get(kind, 0) for path, kind in kinds.items()}
+    leading = {effect.path: effect.sign for effect in record.effects if effect.leads}
+    shown = {path: sign * ahead.get(path, 0) for path, sign in leading.items()}
+    reversals, net = 0, sum(shown.values())
+    for change in record.changes:
+        if change.turn != "none":
+            differs = ahead.get(change.shared, 0) - ahead.get(change.isolated, 0)
+            net += int(np.sign(change.sign * differs))
+        if change.turn == "reversal":
+            reversals += shown.get(change.isolated) == shown.get(change.shared) == 1
+    others = [kind for path, kind in kinds.items() if path not in leading]
+    return reversals, net, sum(kind in _ALIKE for kind in others), others.count(Kind.BOTH)
+
+
+def _who(asked: Question, kinds: Mapping[str, Kind], every: bool) -> str:
+    """Say who succeeded on these paths, which may be `every` one that there is."""
+    words = {
+        Kind.REPAIR_ONLY: f"only {asked.repair} succeeds",
+        Kind.BASELINE_ONLY: f"only {asked.baseline} succeeds",
+        Kind.BOTH: "both succeed",
+        Kind.NEITHER: "neither succeeds",
+    }
+    found = {kind: [where(p) for p, k in kinds.items() if k is kind] for kind in words}
+    if every and len(set(kinds.values())) == 1:
+        of = "any" if Kind.NEITHER in kinds.values() else "every"
+        found = {kind: [f"on {of} path"] for kind in kinds.values()}
+    parts = (f"{words[kind]} {series(places)}" for kind, places in found.items() if places)
+    return capital(f"{'; '.join(parts)}.")

@@ -36,7 +36,7 @@ if (document.getElementById("viewer-data")) {
       return made;
     };
     const all = data.scenes.map((_, place) => place);
-    clear(get("scene"), ...(data.picked.length ? [group("Picked by the rule", data.picked)] : []), group("All", all));
+    clear(get("scene"), ...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", all));
 
     // One column a path: a small picture for each arm, the plot of the signal, how both ended.
     const columns = data.paths.map(({ name: path, title }) => {

@@ -1,0 +1,156 @@
+"""The scenes that a viewer and a film begin with: those that go as the audit announced."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from faultpath.record import DecisionRecord
+from faultpath.report import film
+from faultpath.report.inputs import ReportInput
+from faultpath.report.pairing import Pair, read_pairs
+from faultpath.report.viewer_choice import captions, choose
+from faultpath.trials import Status
+
+PATHS = ("correct", "predictor", "reconstruction", "shared")
+LETTERS = {"b": (True, True), "r": (False, True), "l": (True, False), "n": (False, False)}
+"""Who succeeds: both, only the repair, only the baseline, neither."""
+
+
+def scenes(source: ReportInput, *patterns: str, ends: Mapping[int, Status] = {}) -> list[Pair]:
+    """Return the pairs of scenes that went so on the four paths; `ends` is how failures ended."""
+
+    def went(pair: Pair) -> Pair:
+        baseline, repair = LETTERS[patterns[pair.index][PATHS.index(pair.path)]]
+        lost = ends.get(pair.index, Status.CRASH)
+        trials = ((pair.baseline, baseline), (pair.repair, repair))
+        one, two = (
+            None if trial is None else replace(trial, status=Status.SUCCESS if won else lost)
+            for trial, won in trials
+        )
+        return replace(pair, baseline=one, repair=two)
+
+    pairs = read_pairs(source.outcomes, source.record)
+    return [went(pair) for pair in pairs if pair.index < len(patterns)]
+
+
+def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
+    """Return the record as if it announced these signs, and what follows from them."""
+    record = source.record
+    effects = tuple(
+        effect.model_copy(update={"sign": signs.get(effect.path, 0), "extreme": None})
+        for effect in record.effects
+    )
+    changes = tuple(
+        change.model_copy(
+            update={"turn": turn, "sign": -signs.get(change.isolated, 0) if turn != "none" else 0}
+        )
+        for change in record.changes
+        for alone, shared in [(signs.get(change.isolated, 0), signs.get("shared", 0))]
+        for turn in ["reversal" if alone * shared < 0 else "interaction" if alone else "none"]
+    )
+    return record.model_copy(update={"effects": effects, "changes": changes})
+
+
+def begun(source: ReportInput, record: DecisionRecord, pairs: list[Pair]) -> list[int]:
+    """Return the scenes that the viewer begins with, by their index."""
+    return [showing.any_pair.index for showing in choose(record, source.traces, pairs)]
+
+
+def test_an_isolated_win_is_shown_by_a_scene_where_only_that_arm_survives_there(
+    one_seed: ReportInput,
+) -> None:
+    record = announcing(one_seed, reconstruction=1)
+    pairs = scenes(one_seed, "nnrn", "lnnb", "bblb", "bbbb", "bbrb", "rbrl", "bbrb", "brrb")
+    assert begun(one_seed, record, pairs)[0] == 4
+    said = captions(record, pairs)[next(p.scene for p in pairs if p.index == 4), 0]
+    assert "only gru-dcc succeeds with only the reconstruction struck" in said.lower()
+    assert "both succeed under the shared fault" in said
+    assert "3 of 8 scenes go like this one there, 2 on every path." in said
+
+
+def test_a_reversal_is_shown_by_a_scene_that_has_both_sides(one_seed: ReportInput) -> None:
+    record = announcing(one_seed, reconstruction=1, shared=-1, correct=-1)
+    pairs = scenes(one_seed, "lbbl", "lbbl", "bbrb", "bbrl", "nnrl", "lbrr", "bbbl")
+    assert begun(one_seed, record, pairs)[0] == 3
+
+
+def test_the_other_side_of_what_was_announced_comes_last(one_seed: ReportInput) -> None:
+    record = announcing(one_seed, shared=-1)
+    assert begun(one_seed, record, scenes(one_seed, "bbbr", "bbbr", "bbbb", "bbbl")) == [3, 2, 0, 1]
+
+
+@pytest.mark.parametrize("sign", [0, 1])
+def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, sign: int) -> None:
+    """Nothing announced: what most scenes do comes first, and of ties the lowest index."""
+    record = announcing(one_seed, reconstruction=sign)
+    floor = tuple(e.model_copy(update={"extreme": "floor"}) for e in record.effects)
+    quiet = tuple(c.model_copy(update={"turn": "none"}) for c in record.changes)
+    record = record.model_copy(update={"effects": floor, "changes": quiet})
+    pairs = scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb")
+    assert begun(one_seed, record, pairs) == [2, 4, 3, 5, 0, 1]
+    said = captions(record, pairs)[next(p.scene for p in pairs if p.index == 2), 0]
+    assert said == "Neither succeeds on any path. 2 of 6 scenes go like this one."
+
+
+def test_of_one_pattern_the_usual_end_comes_first(one_seed: ReportInput) -> None:
+    pairs = scenes(one_seed, "nnnn", "nnnn", "nnnn", ends={0: Status.TIMEOUT})
+    assert begun(one_seed, announcing(one_seed), pairs) == [1, 2, 0]
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_few_scenes_are_all_shown_with_an_exact_count(one_seed: ReportInput, count: int) -> None:
+    pairs = scenes(one_seed, *("bbbb", "bbrb", "bbbb", "lbbb")[:count])
+    record = announcing(one_seed)
+    assert sorted(begun(one_seed, record, pairs)) == list(range(count))
+    said = captions(record, pairs)
+    counts = {1: [""], 2: ["1 of 2", "1 of 2"], 4: ["2 of 4", "1 of 4", "2 of 4", "1 of 4"]}[count]
+    for pair in pairs:
+        assert counts[pair.index] in said[pair.scene, 0]
+    assert any("of 1" in each for each in said.values()) is False
+
+
+def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> None:
+    pairs = scenes(one_seed, "bbrb", "bbrb", "bbbb", "bbbb")
+    dead = next(p for p in pairs if p.index == 0 and p.path == "shared")
+    assert dead.repair is not None
+    died = replace(dead, repair=replace(dead.repair, status=Status.FAILED, error="no number"))
+    voided = [died if p is dead else replace(p, left_out=p.scene == dead.scene) for p in pairs]
+    record = announcing(one_seed, reconstruction=1)
+    assert begun(one_seed, record, voided) == [1, 2, 3]
+    said = captions(record, voided)
+    assert (dead.scene, 0) not in said
+    assert all("of 3 scenes" in each for each in said.values())
+
+
+def test_the_choice_is_fixed_and_counts_every_seed(three_seeds: ReportInput) -> None:
+    record, traces = three_seeds.record, three_seeds.traces
+    pairs = read_pairs(three_seeds.outcomes, record)
+    chosen = choose(record, traces, pairs)
+    assert chosen == choose(record, traces, pairs)
+    shown = [showing.any_pair.scene for showing in chosen]
+    assert len(set(shown)) == len(shown) == 6
+    assert "doorways-017" not in shown
+    assert all("of 237 (79 scenes, 3 seeds)" in said for said in captions(record, pairs).values())
+
+
+def test_a_film_takes_the_seed_that_the_report_shows(
+    three_seeds: ReportInput, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record = three_seeds.record
+    pairs = read_pairs(three_seeds.outcomes, record)
+    chosen = choose(record, three_seeds.traces, pairs)
+    other = next(showing.any_pair for showing in chosen if showing.any_pair.seed != 0)
+    said: list[str] = []
+    monkeypatch.setattr(film, "_write", lambda out, frames, count, pace: None)
+    monkeypatch.setattr(
+        film, "_Film", lambda held, scene, words, *rest: said.append(words) or _None()
+    )
+    film.film(three_seeds, other.scene, None, (), 1.0, tmp_path / "x.gif")
+    assert said == [captions(record, pairs)[other.scene, other.seed]]
+
+
+class _None:
+    def frames(self, steps: object) -> tuple[()]:
+        return ()
