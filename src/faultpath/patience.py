@@ -1,13 +1,14 @@
-"""How long building a system may take in a command's own process."""
+"""Building a system in a command's own process: how long it may take, what it prints, who hears."""
 
 import signal
 import threading
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from types import FrameType
 from typing import NoReturn
 
 from faultpath.errors import UserError
+from faultpath.prints import prints_of
 
 LONGEST_S = 3600.0
 """Unless the user says how long anything may take."""
@@ -18,6 +19,18 @@ _MOST_S = 1e8
 
 class _TooLate(BaseException):
     """No `Exception`: the code that it interrupts may catch those."""
+
+
+def _ignore(doing: str) -> None:
+    del doing
+
+
+_hear: list[Callable[[str], None]] = [_ignore]
+
+
+def hear(hears: Callable[[str], None]) -> None:
+    """Have somebody hear at what this command is, should its process end there."""
+    _hear[:] = [hears]
 
 
 def building_s(asked_s: float | None) -> float:
@@ -31,7 +44,8 @@ def patience(what: str, asked_s: float | None) -> Generator[None]:
 
     For commands: it takes the process's alarm clock, and puts it back. Python code is interrupted,
     a library that never returns to it is not; Ctrl-C has the same bounds. Off the main thread it
-    does nothing, since signals arrive there alone.
+    does nothing, since signals arrive there alone. What is printed meanwhile comes in lines with
+    the name of the file.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -39,11 +53,15 @@ def patience(what: str, asked_s: float | None) -> Generator[None]:
     seconds = building_s(asked_s)
     before = signal.signal(signal.SIGALRM, _ring)
     signal.setitimer(signal.ITIMER_REAL, seconds)
+    place = what.rpartition(":")[0] or what
+    _hear[0](f"loading {place}")
     try:
-        yield
+        with prints_of(place):
+            yield
     except _TooLate:
         raise too_late(what, seconds, "") from None
     finally:
+        _hear[0](f"running {place}")
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
 

@@ -33,10 +33,10 @@ MAY_LOAD = {
 
 CODE = """
 import json, sys
-from faultpath.cli.main import main
+from faultpath.cli.main import command
 heavy = json.loads(sys.argv.pop(1))
 try:
-    main()
+    command()
 except SystemExit as stop:
     assert stop.code in (0, 2), stop.code
 print()

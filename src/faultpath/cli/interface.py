@@ -28,6 +28,7 @@ def command(
     from faultpath.door.display import SafeConsole
     from faultpath.errors import UserError
     from faultpath.interface import Interface, interface_yaml
+    from faultpath.patience import patience
     from faultpath.report.terminal import interface_table
     from faultpath.store import write_text
     from faultpath.trials import SystemSpec, load_system
@@ -43,7 +44,8 @@ def command(
 
         found = quadrotor_interface()  # its table needs no torch, which takes seconds to load
     else:
-        found = load_system(SystemSpec(name=system, options=options)).interface
+        with patience(system, None):
+            found = load_system(SystemSpec(name=system, options=options)).interface
     console = SafeConsole()
     console.print(interface_table(found))
     if not places:

@@ -3,9 +3,12 @@
 It imports next to nothing itself, so that Ctrl-C while the rest loads ends in a sentence as well.
 """
 
+import faulthandler
+import math
 import os
 import signal
 import sys
+import time
 import warnings
 from collections.abc import Sequence
 from traceback import format_exception
@@ -13,6 +16,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from faultpath.errors import Notice, Stopped
+from faultpath.prints import show_warning
 from faultpath.text import one_line
 
 if TYPE_CHECKING:
@@ -25,18 +29,33 @@ INTERRUPTED = 130
 UNREAD = 141
 """What shells report for a program that nobody reads any more."""
 
+_TWICE_S = 0.3
+"""Two signals closer than this are one key: a terminal sends it to the parent too, which passes it
+on."""
+
 _TRACEBACK = "--traceback"
 _AGAIN = "interrupted; the same command goes on from what is stored."
 
 
 def main() -> None:
-    """Run the command line; a user's mistake ends in one sentence and status 2.
+    """Run the command line, in a process of its own where that is possible: see `cli.apart`."""
+    from faultpath.cli import apart
+
+    if apart.possible():
+        apart.run(command)
+    command()
+
+
+def command() -> NoReturn:
+    """Run the command line in this process; a user's mistake ends in one sentence and status 2.
 
     So does an error in the code of a user's system. An error of faultpath's own code keeps
     its traceback; `faultpath.blame` tells the two apart.
     """
     arguments, told = _arguments(sys.argv[1:])
     ctrl_c = _CtrlC()
+    if told and sys.stderr is sys.__stderr__:
+        faulthandler.enable()
     shown, warnings.showwarning = warnings.showwarning, _show
     try:
         status = _run(arguments)
@@ -59,14 +78,11 @@ def main() -> None:
 
 
 def _show(message: Warning | str, *more: Any, **named: Any) -> None:
-    """Show a notice as a sentence; warnings of libraries as Python does."""
+    """Show a notice as a sentence, and other warnings in a line."""
     if isinstance(message, Notice):
         sys.stderr.write(f"faultpath: {message}\n")
     else:
-        _shown(message, *more, **named)
-
-
-_shown = warnings.showwarning
+        show_warning(message, *more, **named)
 
 
 class _CtrlC:
@@ -75,11 +91,15 @@ class _CtrlC:
 
     def __init__(self) -> None:
         self.pressed = False
+        self._last_s = -math.inf
         self._before = None
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             self._before = signal.signal(signal.SIGINT, self._press)
 
-    def _press(self, number: int, frame: FrameType | None) -> NoReturn:
+    def _press(self, number: int, frame: FrameType | None) -> None:
+        before, self._last_s = self._last_s, time.monotonic()
+        if self._last_s - before < _TWICE_S:
+            return
         self.pressed = True
         raise KeyboardInterrupt
 

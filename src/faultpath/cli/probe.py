@@ -47,11 +47,13 @@ def command(
     """Perturb an input on recorded windows, all else fixed: how far do predictions move?"""
     from faultpath.evidence import Recording
     from faultpath.evidence.probe import ProbePlan, expected_perturbations
+    from faultpath.patience import patience
     from faultpath.trials import SystemSpec, load_measurer, load_system
 
     measure = load_measurer(system)
     options = settings(set_ or [])
-    built = load_system(SystemSpec(name=system, options=options))
+    with patience(system, None):
+        built = load_system(SystemSpec(name=system, options=options))
     plan = ProbePlan(
         recording=Recording(library=library, variant=recorded_with, options=options),
         variants=tuple(name for name in variants.split(",") if name),

@@ -69,10 +69,12 @@ def _flag(option: _Option) -> str:
 
 def _options(system: str, forgiving: bool) -> Sequence[_Option]:
     """Return the options of a system; for the sake of a help text none where it cannot be asked."""
+    from faultpath.patience import patience
     from faultpath.trials import system_options
 
     try:
-        return system_options(system)
+        with patience(system, None):
+            return system_options(system)
     except (Exception, SystemExit):
         if forgiving:
             return ()

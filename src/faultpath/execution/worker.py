@@ -11,6 +11,7 @@ from faultpath.code import Code, CodeState, Reads, Watch, named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Raised, Reply, Wrong, attempt
 from faultpath.execution.limits import hold_to
+from faultpath.prints import prints_of
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
@@ -97,7 +98,8 @@ def building(brief: Brief) -> Generator[Built]:
         _built.clear()
         hold_to(None)
         try:
-            _built.append(_build(brief))
+            with prints_of(brief.system.name.rpartition(":")[0] or brief.system.name):
+                _built.append(_build(brief))
             hold_to(brief.memory_gib)
         except (Exception, SystemExit) as error:
             mistake = explained(error) or error

@@ -4,6 +4,7 @@ import faulthandler
 import os
 import pickle
 import signal
+import sys
 import threading
 import traceback
 import warnings
@@ -13,6 +14,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.errors import Notice
+from faultpath.prints import Lines, show_warning
 from faultpath.work.executor import Failed, Returned, Told, ended, tell
 
 
@@ -26,6 +28,7 @@ def main(channel: int, lifeline: int) -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     faulthandler.enable()
     warnings.showwarning = show
+    sys.stdout = sys.stderr = Lines(sys.stderr)
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     with Connection(channel) as parent, suppress(EOFError, ConnectionError):
         while True:
@@ -33,15 +36,12 @@ def main(channel: int, lifeline: int) -> None:
             parent.send_bytes(served(packed, lambda message: parent.send((message,))))
 
 
-_shown = warnings.showwarning
-
-
 def show(message: Warning | str, *more: Any, **named: Any) -> None:
-    """Hand a notice to the parent, which shows it once; show other warnings as Python does."""
+    """Hand a notice to the parent, which shows it once; show other warnings in a line."""
     if isinstance(message, Notice):
         tell(message)
     else:
-        _shown(message, *more, **named)
+        show_warning(message, *more, **named)
 
 
 def served(packed: bytes, told: Told) -> memoryview:
