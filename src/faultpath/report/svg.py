@@ -13,8 +13,11 @@ Point = tuple[float, float]
 # Advance widths of a common sans serif (thousandths of the size), a little on the wide side: labels
 # are placed by them, and a label that is narrower than foretold overlaps nothing.
 _NARROW = dict.fromkeys("iljI.,:;'|!", 290) | dict.fromkeys('ft()[]/-r "', 350)
-_WIDE = dict.fromkeys("mwMW%@→", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
-_ADVANCE = _NARROW | _WIDE
+_DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide one in some fonts
+_WIDE = dict.fromkeys("mwMW%@→−+=<>", 880) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 720)
+_ADVANCE = _NARROW | _DIGITS | _WIDE
+_SIZES = {"small": 11.0, "tiny": 10.0, "on-tag": 10.0, "head": 13.0, "rate": 17.0}
+"""Of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
 
 
 def text_width(text: str, size: float) -> float:
@@ -109,8 +112,15 @@ class Svg:
     def text(
         self, x: float, y: float, content: str, cls: str = "", anchor: str = "", tip: str = ""
     ) -> None:
-        """Write `content` with its baseline at `y`; `anchor` is start, middle or end."""
-        attributes: dict[str, float | str] = {"x": x, "y": y}
+        """Write `content` with its baseline at `y`; `anchor` is start, middle or end.
+
+        What would stick out of the picture at a side is moved in, as far as the other allows.
+        """
+        size = next((_SIZES[name] for name in cls.split() if name in _SIZES), 12.0)
+        width = text_width(content, size)
+        before = {"middle": width / 2, "end": width}.get(anchor, 0.0)
+        inside = min(max(x, before), max(self.width - width, 0.0) + before)
+        attributes: dict[str, float | str] = {"x": inside, "y": y}
         if anchor:
             attributes["text-anchor"] = anchor
         inner = escape(content) + (f"<title>{escape(tip)}</title>" if tip else "")

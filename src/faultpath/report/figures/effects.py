@@ -99,7 +99,7 @@ def _narrow(rows: Sequence[EffectRow], axis: Axis, title: str, told: str) -> Svg
     top, pitch = 24.0, 84.0
     bottom = top + pitch * len(rows)
     svg = Svg(350, bottom + 46, title, told)
-    plot = axis.at(8, 342)
+    plot = axis.at(14, 336)
     draw_uprights(svg, plot, top - 4, bottom, 6)
     directions(svg, plot, 12)
     for i, row in enumerate(rows):
@@ -133,7 +133,7 @@ def secondary_panel(
     svg = Svg(_PANEL, bottom + 24, f"{title}: repair minus baseline, {unit}", told)
     svg.text(0, 14, f"{title}, {unit}", "head")
     svg.text(0, 31, f"secondary; {good} is better", "small soft")
-    plot = covering(ends, least=10.0**-digits).at(6, _PANEL - 6)
+    plot = covering(ends, least=10.0**-digits).at(15, _PANEL - 15)
     draw_uprights(svg, plot, top, bottom, 4)
     for i, (label, estimate) in enumerate(rows):
         y = top + pitch * i

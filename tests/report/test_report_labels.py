@@ -1,0 +1,55 @@
+"""Every label of every picture lies inside its picture, at all widths."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from faultpath import compare, open_run
+
+pytestmark = pytest.mark.browser
+REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
+STICKING_OUT = """() => {
+  document.querySelectorAll("details").forEach((each) => (each.open = true));
+  const out = [];
+  let seen = 0;
+  for (const text of document.querySelectorAll("svg text")) {
+    const whole = text.ownerSVGElement.getBoundingClientRect(), box = text.getBoundingClientRect();
+    if (!whole.width || !box.width) continue;
+    const most = Math.max(whole.left - box.left, box.right - whole.right, whole.top - box.top, box.bottom - whole.bottom);
+    const title = text.ownerSVGElement.querySelector("title")?.textContent;
+    seen += 1;
+    if (most > 0.5) out.push(`${text.firstChild.textContent} of '${title}' by ${most.toFixed(1)}`);
+  }
+  return [seen, out];
+}"""  # noqa: E501 - as it is easiest to read
+
+
+def _report(run: str) -> Callable[[Path], Path]:
+    return lambda folder: open_run(REFERENCE / run).report(folder)[0]
+
+
+def _comparison(folder: Path) -> Path:
+    runs = [REFERENCE / run for run in ("toy", "pendulum", "quadrotor-L3")]
+    return compare(runs).report(folder / "page.html")
+
+
+PAGES = {run: _report(run) for run in ("toy", "quadrotor-L3", "map-toy")} | {"side": _comparison}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_labels_lie_inside_their_pictures(page: str, browser: Browser, tmp_path: Path) -> None:
+    made = PAGES[page](tmp_path)
+    context = browser.new_context(offline=True)
+    opened = context.new_page()
+    opened.goto(made.as_uri())
+    if opened.query_selector("#viewer"):
+        opened.wait_for_selector("#viewer[data-ready]")
+    for width in (390, 800, 1400):
+        opened.set_viewport_size({"width": width, "height": 900})
+        opened.evaluate("() => new Promise((done) => requestAnimationFrame(() => done()))")
+        seen, out = opened.evaluate(STICKING_OUT)
+        assert seen > 30
+        assert not out, f"at {width} pixels: {'; '.join(out)}"
+    context.close()
