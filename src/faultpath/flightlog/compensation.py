@@ -1,5 +1,6 @@
 """Which acceleration error a shared calibration error leaves on a flight (paper, Eq. 2)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal, TypeAlias
@@ -8,16 +9,14 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.errors import UserError
+from faultpath.flightlog.blocks import LEAST, Medians
 from faultpath.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath.flightlog.reading import Floats
-from faultpath.statistics import Contrast, Estimate, WindowQuantiles
+from faultpath.statistics import Estimate
 
 LOW_PASS = 0.5  # paper, appendix
 WARM_UP_S = 1.0
 """After the beginning of a stretch, where the observer starts at zero."""
-BLOCK_S = 2.0
-"""Intervals nearer than this are not taken for independent: blocks of it are resampled."""
-MIN_BLOCKS = 15
 
 Decided: TypeAlias = Literal["more", "less", "not decided"]
 
@@ -53,12 +52,25 @@ class Compensation(_Frozen):
     flown_s: float
     intervals: int
     blocks: int
+    """Of `block_s` each, which spans several correlation times of the errors."""
+    block_s: float
     gaps: int
     mass_kg: float
     newton_per_unit: float
     drag_kgps: tuple[float, float, float] | None
     combinations: tuple[Combination, ...]
     shared: tuple[SharedAgainstIsolated, ...]
+
+    @property
+    def too_short(self) -> str:
+        """Why nothing is decided, as a sentence; empty where the flight is long enough."""
+        if self.blocks >= LEAST:
+            return ""
+        flown_s = self.intervals * INTERVAL_S
+        return (
+            "Too little data to decide anything: errors on this flight stay alike for so long that "
+            f"it takes at least {LEAST * self.block_s:.0f} s of flight, and {flown_s:.0f} s count."
+        )
 
 
 @dataclass(frozen=True)
@@ -82,71 +94,64 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
 
     A disturbance observer reconstructs the wind w (without drag: the force) from each interval's
     residual, low-pass filtered; the predictor reuses it one interval later. Intervals resample
-    blocks of the flight.
+    blocks of the flight, several correlation times long (`Medians`); with too few of them there is
+    none, and nothing is decided.
 
     Args:
         flight: What was recorded.
         sizes: Calibration errors e: mass (1 + e), thrust (1 - e).
 
     Raises:
-        UserError: A size leaves no positive mass or thrust, or the flight is too short to decide
-            anything.
+        UserError: A size leaves no positive mass or thrust, or nothing of the flight counts.
     """
     for size in sizes:
         if not -1 < size < 1 or size == 0:
             raise UserError(f"the calibration error {size:g} is not between -1 and 1, or is 0")
     settled = _settled(flight)
-    blocks = _blocks(flight)[settled]
-    count = len(np.unique(blocks))
-    if count < MIN_BLOCKS:
-        raise UserError(
-            f"the log has {count} blocks of {BLOCK_S:g} s to count, and {MIN_BLOCKS} are the least "
-            "that decide anything: give a longer flight"
-        )
     errors = _Errors(flight, settled)
-    windows = WindowQuantiles([str(block) for block in blocks])
-    correct = errors.of(0.0, 0.0)
     pairs = [(0.0, 0.0)]
     for size in sizes:
         pairs += [(r, p) for r, p in product((0.0, size), repeat=2) if (r, p) != (0.0, 0.0)]
+    of = {pair: errors.of(*pair) for pair in pairs}
+    medians = Medians(flight.stretch[settled], list(of.values()))
     return Compensation(
         flown_s=len(settled) * INTERVAL_S,
         intervals=int(settled.sum()),
-        blocks=count,
+        blocks=medians.blocks,
+        block_s=medians.block_s,
         gaps=flight.gaps,
         mass_kg=flight.mass_kg,
         newton_per_unit=flight.newton_per_unit,
         drag_kgps=flight.drag_kgps,
-        combinations=tuple(
-            _combination(windows, pair, errors.of(*pair), correct) for pair in pairs
-        ),
-        shared=tuple(_shared(windows, errors, size) for size in sizes),
+        combinations=tuple(_combination(medians, pair, of) for pair in pairs),
+        shared=tuple(_shared(medians, size, of) for size in sizes),
     )
 
 
 def _combination(
-    windows: WindowQuantiles, pair: tuple[float, float], own: Floats, correct: Floats
+    medians: Medians, pair: tuple[float, float], of: Mapping[tuple[float, float], Floats]
 ) -> Combination:
-    found = windows.value(own, 0.5, "m/s^2").estimate()
-    if pair == (0.0, 0.0):
-        return Combination(observer=0.0, predictor=0.0, error_mps2=found)
-    ratio = windows.log_ratio(own, correct, 0.5)
+    correct = (0.0, 0.0)
+    ratio = None if pair == correct else medians.log_ratio(of[pair], of[correct])
     return Combination(
         observer=pair[0],
         predictor=pair[1],
-        error_mps2=found,
-        log_ratio=ratio.estimate(),
-        decided=_decided(ratio),
+        error_mps2=medians.value(of[pair], "m/s^2"),
+        log_ratio=ratio,
+        decided=None if ratio is None else _decided(ratio),
     )
 
 
-def _shared(windows: WindowQuantiles, errors: _Errors, size: float) -> SharedAgainstIsolated:
-    ratio = windows.log_ratio(errors.of(size, size), errors.of(size, 0.0), 0.5)
-    return SharedAgainstIsolated(error=size, log_ratio=ratio.estimate(), decided=_decided(ratio))
+def _shared(
+    medians: Medians, size: float, of: Mapping[tuple[float, float], Floats]
+) -> SharedAgainstIsolated:
+    ratio = medians.log_ratio(of[size, size], of[size, 0.0])
+    return SharedAgainstIsolated(error=size, log_ratio=ratio, decided=_decided(ratio))
 
 
-def _decided(ratio: Contrast) -> Decided:
-    return "more" if ratio.side > 0 else "less" if ratio.side < 0 else "not decided"
+def _decided(ratio: Estimate) -> Decided:
+    low, high = ratio.interval or (0.0, 0.0)
+    return "more" if low > 0.0 else "less" if high < 0.0 else "not decided"
 
 
 def _disturbance(flight: Flight, error: float) -> Floats:
@@ -168,9 +173,3 @@ def _settled(flight: Flight) -> np.ndarray:
     first = {number: flight.time_s[flight.stretch == number][0] for number in set(flight.stretch)}
     begun = np.array([first[number] for number in flight.stretch])
     return flight.time_s - begun >= WARM_UP_S - 1e-9
-
-
-def _blocks(flight: Flight) -> np.ndarray:
-    """Return the number of each interval's block, `[N]`; blocks end with their stretch."""
-    since = np.floor((flight.time_s - flight.time_s[0]) / BLOCK_S).astype(np.int64)
-    return since * (1 + int(flight.stretch.max())) + flight.stretch.astype(np.int64)

@@ -22,6 +22,8 @@ CAVEAT = (
 
 def sentences(found: Compensation) -> tuple[str, ...]:
     """Return what is decided, a sentence for each size of the error, and what is not."""
+    if found.too_short:
+        return (found.too_short,)
     return tuple(_sentence(found, each.error) for each in found.shared)
 
 
@@ -98,8 +100,9 @@ def table(found: Compensation) -> Table:
         ),
         notes=(
             f"{found.flown_s:.0f} s of flight, {counted(found.intervals, 'control interval')} in "
-            f"{counted(found.blocks, 'block')}, {counted(found.gaps, 'gap')}; mass "
-            f"{found.mass_kg:g} kg, {drag}. Intervals resample blocks.",
+            f"{counted(found.blocks, 'block')} of {plain(found.block_s, 1)} s, "
+            f"{counted(found.gaps, 'gap')}; mass {found.mass_kg:g} kg, {drag}. "
+            "Intervals resample blocks.",
         ),
     )
 
@@ -107,7 +110,8 @@ def table(found: Compensation) -> Table:
 def picture(found: Compensation) -> str:
     """Return the medians and their intervals, one row a combination."""
     rows = found.combinations
-    ends = [end for row in rows for end in (row.error_mps2.low, row.error_mps2.high) if end]
+    shown = [row.error_mps2 for row in rows]
+    ends = [end for each in shown for end in (each.low, each.value, each.high) if end is not None]
     pitch, top = 34.0, 14.0
     bottom = top + pitch * len(rows)
     svg = Svg(460, bottom + 42, "Error of the combined acceleration, median over the flight")

@@ -84,6 +84,13 @@ def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
     return min(1.0, 2.0 * float(special.stdtr(len(values) - 1.0, -abs(mean) / error)))
 
 
+def t_quantile(probability: float, freedom: float) -> float:
+    """Return the quantile of Student's t distribution."""
+    from scipy import special
+
+    return float(special.stdtrit(freedom, probability))
+
+
 def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> float:
     """Return the upper end of the two-sided Clopper-Pearson interval."""
     from scipy import special
