@@ -268,8 +268,10 @@ def test_newly_trained_models_need_no_qualification_but_a_caution_with_few():
     assert "these trained models" not in made.verdict.headline
     assert "Caution: 3 trainings say little about new ones" in " ".join(made.verdict.sentences)
     assert all("t test" in effect.test for effect in made.effects)
-    five = seeded(dict.fromkeys(cells, by_seed + by_seed[:2]), trained=True, generalise="models")
-    assert "Caution" not in " ".join(five.verdict.sentences)
+    by_number = {n: [(40 - i, 30 + i, 2) for i in range(n)] for n in (9, 10)}
+    for number, drawn in by_number.items():
+        several = seeded(dict.fromkeys(cells, drawn), trained=True, generalise="models")
+        assert ("Caution" in " ".join(several.verdict.sentences)) == (number < 10)
 
 
 def test_every_record_says_what_it_does_not_speak_of():

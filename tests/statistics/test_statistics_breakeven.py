@@ -187,14 +187,14 @@ def models(wins, losses):
     """An effect for newly trained models: three trainings, a scene is won or lost by all."""
     scene = np.repeat(np.arange(N)[:, np.newaxis], 3, axis=1)
     arms = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return success_effect(*arms, RESAMPLES, resample_seeds=True)
+    return success_effect(*arms, RESAMPLES, models=True)
 
 
 def test_six_single_wins_decide_no_frequency_for_newly_trained_models():
-    """The crossed bootstrap alone put the repair ahead at every frequency."""
+    """Resampled trainings alone put the repair ahead at every frequency."""
     wins = np.zeros((N, 3))
     wins[np.arange(6), np.arange(6) % 3] = 1
-    effect = success_effect(wins, 0 * wins, RESAMPLES, resample_seeds=True)
+    effect = success_effect(wins, 0 * wins, RESAMPLES, models=True)
     result = break_even(effect, effect)
     assert (result.kind, result.regions) == ("whole", ())
 

@@ -151,12 +151,12 @@ def test_few_scenes_detect_nothing_however_one_sided(n):
 def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
-    effect = success_effect(first, second, RESAMPLES, resample_seeds=True)
+    effect = success_effect(first, second, RESAMPLES, models=True)
     found = with_test(effect)
     assert found.test.name == "t test of the seeds' effects"
     assert found.test.p_value == pytest.approx(ttest_1samp(effect.per_seed, 0).pvalue)
     assert found.test.leans == 1
-    assert "percentile bootstrap of scenes and seeds" in found.method
+    assert "Student's t over seeds" in found.method
     assert found.estimand.startswith("new scenes like these and models newly trained")
 
 
@@ -164,9 +164,9 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     """Two trainings with the same rate: a share of 40 scenes is known to a fortieth only."""
     difference = np.zeros((N, 2))
     difference[:10] = 1
-    effect = success_effect(difference, 0 * difference, RESAMPLES, resample_seeds=True)
+    effect = success_effect(difference, 0 * difference, RESAMPLES, models=True)
     assert 0.005 < with_test(effect).test.p_value < 0.05
-    none = success_effect(0 * difference, 0 * difference, RESAMPLES, resample_seeds=True)
+    none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
     assert with_test(none).test.p_value == 1.0
 
 
@@ -175,9 +175,9 @@ def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
     wins = np.zeros((100, 3))
     wins[np.arange(6), np.arange(6) % 3] = 1
     resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = with_test(success_effect(wins, 0 * wins, resamples, resample_seeds=True))
+    found = with_test(success_effect(wins, 0 * wins, resamples, models=True))
     assert found.test.rejects()
     assert found.test.leans == 1
     assert found.detected == 0
     wins[:12] = 1
-    assert with_test(success_effect(wins, 0 * wins, resamples, resample_seeds=True)).detected == 1
+    assert with_test(success_effect(wins, 0 * wins, resamples, models=True)).detected == 1

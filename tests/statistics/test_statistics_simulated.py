@@ -14,7 +14,6 @@ from faultpath.statistics import (
     break_even,
     change,
     decide_family,
-    mean_effect,
     median_effect,
     success_effect,
     turn,
@@ -115,24 +114,3 @@ def test_coverage_of_the_median_interval():
         low, high = effect.interval
         covered += low <= np.log(2) <= high
     assert 0.93 - noise(0.95, runs) <= covered / runs <= 0.97 + noise(0.95, runs)
-
-
-@pytest.mark.parametrize(("n_seeds", "least"), [(3, 0.80), (10, 0.90)])
-def test_coverage_over_new_seeds_needs_the_crossed_bootstrap(n_seeds, least):
-    """Seeds that matter: scenes alone miss, scenes and seeds come near, few seeds fall short.
-
-    Resampling three seeds understates their variance by a third; hence 80 % and not 95 %.
-    """
-    rng = np.random.default_rng(90)
-    covered, runs = {True: 0, False: 0}, 500
-    for _ in range(runs):
-        scene, seed = rng.normal(size=(N, 1)), rng.normal(0, 0.4, size=n_seeds)
-        first = 0.5 + scene + seed + rng.normal(0, 0.5, size=(N, n_seeds))
-        for crossed in covered:
-            effect = mean_effect(
-                first, np.zeros_like(first), RESAMPLES, "m", resample_seeds=crossed
-            )
-            low, high = effect.interval
-            covered[crossed] += low <= 0.5 <= high
-    assert least - noise(least, runs) <= covered[True] / runs <= 0.97
-    assert covered[False] / runs < covered[True] / runs - 0.05

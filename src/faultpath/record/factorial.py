@@ -110,7 +110,7 @@ def _contrasts(
     def against(of: FactorialOf, path: str) -> Contrast:
         first, second = arms[path]
         pair = {"baseline": (second, baseline), "repair": (first, repair)}.get(of, (first, second))
-        return success_effect(*pair, resamples, resample_seeds=models)
+        return success_effect(*pair, resamples, models=models)
 
     return {of: [against(of, path) for path in arms] for of in OUTCOMES}
 

@@ -70,15 +70,14 @@ def decide_paths(
     it stopped, each contrast at its own share.
     """
     n_scenes = len(next(iter(success.values()))[0])
-    # Only what speaks of newly trained models resamples.
-    drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=10_000 if models else 1)
+    drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=1)  # nothing rests on them
     effects = {
         path: with_test(
             success_effect(
                 repair,
                 baseline,
                 drawn,
-                resample_seeds=models,
+                models=models,
                 sequential=shares is not None,
             )
         )

@@ -8,8 +8,9 @@ from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import Cell, Change, Effect, Path, Question, StopRule
 from faultpath.statistics import Estimate
 
-FEW_TRAININGS = 5
-"""With fewer, an interval for newly trained models is too narrow: see docs/design/statistics.md."""
+FEW_TRAININGS = 10
+"""With fewer, an interval for newly trained models rests on how trainings are distributed: see
+docs/design/statistics.md."""
 ANOTHER = (
     "Another size or sign of the fault, another library or another wiring of the system: the "
     "record speaks of the one that was run."
@@ -83,7 +84,8 @@ def opening(about: About, seeds: tuple[int, int]) -> tuple[str, ...]:
     if asked.generalise == "models" and run < FEW_TRAININGS:
         said.append(
             f"Caution: {run} trainings say little about new ones. With fewer than "
-            f"{FEW_TRAININGS} the intervals for newly trained models are too narrow."
+            f"{FEW_TRAININGS} their intervals hold only as far as trainings spread evenly around "
+            "their mean."
         )
     elif asked.trained and asked.generalise == "scenes":
         said[0] = said[0].removesuffix(".") + "; models trained anew may differ."

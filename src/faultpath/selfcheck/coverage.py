@@ -105,7 +105,7 @@ class ModelsCoverage:
     def measure(self) -> Measured:
         """Return the coverage of the mean over all trainings that might have been."""
         stream = generator("selfcheck", repr(self), 0)
-        resamples = Resamples.draw("selfcheck", self.scenes, n_resamples=1000)
+        resamples = Resamples.draw("selfcheck", self.scenes, n_resamples=1)
         covered, truth = 0, 100.0 * self.rate
         for _ in range(self.runs):
             rates = self.rate * (stream.uniform(0.0, 2.0, size=self.seeds) if self.own else 1.0)
@@ -113,7 +113,7 @@ class ModelsCoverage:
             apart = stream.random((self.scenes, self.seeds))
             wins = np.where(alike < 0.5, together, apart) < rates
             none = np.zeros_like(wins)
-            found = success_effect(wins, none, resamples, resample_seeds=True).interval
+            found = success_effect(wins, none, resamples, models=True).interval
             covered += found is not None and found[0] - _SLACK <= truth <= found[1] + _SLACK
         setting = {
             "scenes": self.scenes,

@@ -39,6 +39,12 @@ PROMISES = (
         concerns=lambda cell: not cell["own rates"],
     ),
     Promise(
+        MODELS,
+        "the 95 % interval for newly trained models, each with its own rate, covers the truth",
+        least=0.9,
+        concerns=lambda cell: bool(cell["own rates"]),
+    ),
+    Promise(
         DETECTION,
         "a true difference of the reported size is detected",
         0.75,

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from faultpath.statistics import betting
 from faultpath.statistics.contrast import Contrast, check_joint, percentile_interval
-from faultpath.statistics.estimate import BreakEven, Region
+from faultpath.statistics.distributions import t_interval
+from faultpath.statistics.estimate import SCENES_AND_SEEDS, BreakEven, Region
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.score import interval, quantile, rejects
 
@@ -85,6 +86,7 @@ class _Mixture:
         self.ends = correct, faulty
         self.level = level
         self.resampled = correct.resampled or faulty.resampled
+        self.models = correct.estimand == SCENES_AND_SEEDS
         self.scenes, self.sequential = None, False
         first, second = correct.scenes, faulty.scenes
         if first is not None and second is not None:
@@ -99,7 +101,7 @@ class _Mixture:
 
     def undecided(self, p: Floats) -> Bools:
         """Return [frequencies]: whether the difference at each is not told from 0."""
-        if not self.resampled:
+        if not (self.resampled or self.models):
             values, counts, far = self._mixed(p)
             if self.sequential:
                 return ~betting.rejects(values, counts, 0.0, far, self.level)
@@ -117,10 +119,15 @@ class _Mixture:
                 if self.sequential
                 else interval(*values, quantile(self.level))
             )
+        if self.models:
+            seeds = [np.asarray(end.per_seed) for end in self.ends]
+            share = p[:, np.newaxis]
+            mixed = (1.0 - share) * seeds[0] + share * seeds[1]
+            ends.append(t_interval(mixed, self.level, self.ends[0].rounding))
         if self.resampled:
             first, second = (end.draws for end in self.ends)
-            mixed = ((1.0 - each) * first + each * second for each in p.tolist())
-            low, high = np.array([percentile_interval(draws, self.level) for draws in mixed]).T
+            drawn = ((1.0 - each) * first + each * second for each in p.tolist())
+            low, high = np.array([percentile_interval(draws, self.level) for draws in drawn]).T
             ends.append((low, high))
         lows, highs = zip(*ends, strict=True)
         return np.minimum.reduce(lows), np.maximum.reduce(highs)

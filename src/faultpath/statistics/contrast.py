@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from faultpath.statistics.detectable import detectable
-from faultpath.statistics.distributions import normal_quantile
+from faultpath.statistics.distributions import normal_quantile, t_interval
 from faultpath.statistics.estimate import (
     SCENES,
     SCENES_AND_SEEDS,
@@ -40,9 +40,10 @@ class Contrast:
     """A difference over scenes, first minus second, or what else scenes show, as one arm's value.
 
     ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
-    alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval: in
-    place of the bootstrap's for given seeds, and beside it for new ones. What has neither has no
-    interval. ``arms`` are both arms' outcomes [scenes, seeds] where these are yes or no.
+    alone, in seed order. Bounded outcomes have their ``scenes`` as well, and a score interval in
+    place of the bootstrap's; for new seeds that of Student's t over ``per_seed`` stands beside it.
+    What has none of these has no interval. ``arms`` are both arms' outcomes [scenes, seeds] where
+    these are yes or no.
     """
 
     value: float
@@ -72,18 +73,31 @@ class Contrast:
 
     @property
     def resampled(self) -> bool:
-        """Return whether the interval rests on ``draws``, alone or beside the score."""
-        return self.scenes is None or self.estimand == SCENES_AND_SEEDS
+        """Return whether the interval rests on ``draws``."""
+        return self.scenes is None
+
+    @property
+    def rounding(self) -> float:
+        """Return the least variance of a seed's effect, of n scenes.
+
+        A share of n scenes is known to 1 / n only, which keeps equal seeds from looking like
+        certainty.
+        """
+        return (100.0 / self.n_scenes) ** 2 / 12.0 if self.unit == "pp" else 0.0
 
     def ends(self, level: float) -> tuple[float, float] | None:
         """Return the score interval, or where outcomes have no bound the percentile interval.
 
-        For newly trained models it is the hull of both, which holds what either does.
+        For newly trained models it is the hull of the score interval and of that of the seeds'
+        effects: the one speaks for what no scene showed, the other for how trainings differ.
         """
-        ends = [] if self.scenes is None else [self.scenes.interval(level)]
-        if self.resampled and self.draws.size:
-            ends.append(percentile_interval(self.draws, level))
-        return (min(low for low, _ in ends), max(high for _, high in ends)) if ends else None
+        if self.scenes is None:
+            return percentile_interval(self.draws, level) if self.draws.size else None
+        low, high = self.scenes.interval(level)
+        if self.estimand == SCENES_AND_SEEDS:
+            ends = t_interval(np.asarray(self.per_seed), level, self.rounding)
+            low, high = min(low, float(ends[0])), max(high, float(ends[1]))
+        return low, high
 
     @cached_property
     def interval(self) -> tuple[float, float] | None:
@@ -196,7 +210,7 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
 
 
 def _combined_method(first: Contrast, scenes: SceneValues | None) -> str:
-    if scenes is None or first.resampled:
+    if scenes is None or first.estimand == SCENES_AND_SEEDS:
         return f"combined effects, {first.method}"
     if scenes.sequential:
         return "confidence sequence by betting on scene differences"
@@ -242,6 +256,6 @@ def check_joint(one: Contrast, two: Contrast) -> None:
     if one.unit != two.unit:
         raise ValueError(f"effects in {one.unit!r} and {two.unit!r} cannot be combined")
     if one.estimand != two.estimand:
-        raise ValueError("one effect resamples seeds and the other does not")
+        raise ValueError("one effect speaks of new seeds and the other does not")
     if one.estimand == SCENES_AND_SEEDS and one.n_seeds != two.n_seeds:
-        raise ValueError("effects that resample seeds need the same seeds")
+        raise ValueError("effects that speak of new seeds need the same seeds")

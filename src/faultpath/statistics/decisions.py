@@ -40,10 +40,7 @@ def with_test(contrast: Contrast) -> Contrast:
 
 
 def _seed_test(contrast: Contrast) -> PairedTest:
-    # A share of n scenes is known to 1 / n only: rounding's own variance keeps equal seeds from
-    # looking like certainty. Seeds that are copies of each other say nothing of new ones.
-    rounding = (100.0 / contrast.n_scenes) ** 2 / 12.0 if contrast.unit == "pp" else 0.0
-    p_value = t_p_value(np.asarray(contrast.per_seed), rounding)
+    p_value = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
     return PairedTest("t test of the seeds' effects", p_value, _sign(contrast.value))
 
 

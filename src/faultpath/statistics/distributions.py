@@ -84,6 +84,18 @@ def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
     return min(1.0, 2.0 * float(special.stdtr(len(values) - 1.0, -abs(mean) / error)))
 
 
+def t_interval(values: Floats, level: float, least_variance: float = 0.0) -> tuple[Floats, Floats]:
+    """Return both ends [...] of Student's interval of the mean of ``values`` [..., n].
+
+    It leaves out 0 where `t_p_value` is below ``1 - level``.
+    """
+    n = values.shape[-1]
+    error = np.sqrt(np.maximum(values.var(axis=-1, ddof=1), least_variance) / n)
+    half = t_quantile((1.0 + level) / 2.0, n - 1.0) * error
+    mean = values.mean(axis=-1)
+    return np.asarray(mean - half), np.asarray(mean + half)
+
+
 def t_quantile(probability: float, freedom: float) -> float:
     """Return the quantile of Student's t distribution."""
     from scipy import special

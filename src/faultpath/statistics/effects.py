@@ -26,18 +26,19 @@ def success_effect(
     second: Numbers,
     resamples: Resamples,
     *,
-    resample_seeds: bool = False,
+    models: bool = False,
     sequential: bool = False,
 ) -> Contrast:
     """Return the difference in success in percentage points, from binary [scenes, seeds].
 
-    ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
-    hold at whatever scene one stops.
+    ``models`` speaks of newly trained ones as well, of which each seed is one. ``sequential`` says
+    that the number of scenes was not fixed beforehand: its interval and test hold at whatever scene
+    one stops.
     """
     one, two = paired_binary(first, second)
     # Summed first, so that wins and losses of a scene cancel exactly.
     scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0, sequential)
-    found = _mean(one - two, resamples, "pp", scenes, resample_seeds)
+    found = _mean(one - two, resamples, "pp", scenes, models)
     return replace(found, arms=(one, two))
 
 
@@ -46,12 +47,10 @@ def mean_effect(
     second: Numbers,
     resamples: Resamples,
     unit: str,
-    *,
-    resample_seeds: bool = False,
 ) -> Contrast:
     """Return the mean difference of [scenes, seeds] in ``unit`` (distances, clearances)."""
     difference = np.subtract(*paired(first, second))
-    return _mean(difference, resamples, unit, resample_seeds=resample_seeds)
+    return _mean(difference, resamples, unit)
 
 
 def success_rate(outcomes: Numbers, resamples: Resamples) -> Contrast:
@@ -70,7 +69,7 @@ def _mean(
     resamples: Resamples,
     unit: str,
     scenes: SceneValues | None = None,
-    resample_seeds: bool = False,
+    models: bool = False,
 ) -> Contrast:
     """Return the mean of ``values`` [scenes, seeds], in the scale of ``scenes``."""
     n_scenes, n_seeds = values.shape
@@ -78,19 +77,15 @@ def _mean(
     scale = scenes.scale if scenes else 1.0
     # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
     # of 0 exactly 0, on which "the interval excludes 0" depends.
-    if resample_seeds:
-        if n_seeds < 2:
-            raise ValueError("one seed says nothing about new seeds; resample scenes alone")
-        weights = resamples.seed_counts(n_seeds)
-        sums = ((resamples.counts @ values) * weights).sum(axis=1)
-    else:
-        sums = resamples.counts @ values.sum(axis=1)
+    sums = resamples.counts @ values.sum(axis=1)
+    if models and n_seeds < 2:
+        raise ValueError("one seed says nothing about new seeds")
     return Contrast(
         value=float(scale * values.sum() / (n_scenes * n_seeds)),
         unit=unit,
         n_scenes=n_scenes,
-        method=_method(scenes, n_seeds, resample_seeds),
-        estimand=SCENES_AND_SEEDS if resample_seeds else SCENES,
+        method=_method(scenes, n_seeds, models),
+        estimand=SCENES_AND_SEEDS if models else SCENES,
         n_seeds=n_seeds,
         per_seed=tuple(float(scale * total / n_scenes) for total in values.sum(axis=0)),
         draws=scale * sums / (n_scenes * n_seeds),
@@ -99,16 +94,15 @@ def _mean(
     )
 
 
-def _method(scenes: SceneValues | None, n_seeds: int, resample_seeds: bool) -> str:
-    drawn = f"percentile bootstrap of {'scenes and seeds' if resample_seeds else 'scenes'}"
+def _method(scenes: SceneValues | None, n_seeds: int, models: bool) -> str:
     if scenes is None:
-        return drawn
+        return "percentile bootstrap of scenes"
     if scenes.sequential:
         return BETTING
     name = "Wilson" if scenes.centre else "Tango"
     seeds = f"score on scene means ({name}'s, cluster-robust)"
     score = f"score ({name})" if n_seeds == 1 else seeds
-    return f"hull of {score} and {drawn}" if resample_seeds else score
+    return f"hull of {score} and Student's t over seeds" if models else score
 
 
 def median_effect(

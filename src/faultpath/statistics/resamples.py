@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from functools import lru_cache
 from typing import Self
 
 import numpy as np
@@ -46,10 +45,6 @@ class Resamples:
         """Return the number of scenes in the library and in each resample."""
         return self.counts.shape[1]
 
-    def seed_counts(self, n_seeds: int) -> Floats:
-        """Return [resamples, seeds]: how often each seed occurs; the same array at every call."""
-        return _seed_counts(self.label, self.seed, self.n_resamples, n_seeds)
-
     def blocks(self) -> Iterator[Floats]:
         """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
         for rows in _blocks(self.n_resamples, self.n_scenes):
@@ -58,13 +53,6 @@ class Resamples:
     def same_as(self, other: "Resamples") -> bool:
         """Return whether both hold the same draws, so that effects on them are joint."""
         return self is other or np.array_equal(self.counts, other.counts)
-
-
-@lru_cache(maxsize=16)
-def _seed_counts(label: str, seed: int, n_resamples: int, n_seeds: int) -> Floats:
-    drawn = _counts(generator("bootstrap-seeds", label, seed), n_resamples, n_seeds)
-    drawn.setflags(write=False)  # shared by many effects
-    return drawn
 
 
 def _counts(stream: np.random.Generator, rows: int, items: int) -> Floats:
