@@ -8,6 +8,7 @@ from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
 from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide
+from faultpath.record.headline import MOST_WORDS
 from faultpath.record.model import Change, Effect
 from faultpath.record.plain import about, decided_words, plain_words
 from faultpath.streams import generator
@@ -204,14 +205,18 @@ def check(made: DecisionRecord) -> None:
     else:
         assert advised == bool(turned - extreme and SHARED not in extreme)
         follows = plain["What follows"]
-        favoured = follows.partition("in favour of ")[2].partition(" A fault at ")[0]
         told = {sign for path, sign in effects.items() if sign and path not in extreme}
-        assert favoured in ("", *(f"{who}." for who, s in SIDES if told == {s}))
+        assert not claimed(follows, REPAIR) or 1 in told
+        assert not claimed(follows, BASELINE) or -1 in told
         alone = any(each.turn == "interaction" for each in made.changes)
         assert ("does not stand for the shared one" in follows) == alone
     known = about(made)
     for effect in made.effects:
         short = decided_words(known, effect)
+        low, high = effect.success.low or 0.0, effect.success.high or 0.0
+        if (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
+            assert "interval alone decides nothing" in effect.words
+            assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
         for who, side in SIDES:
             assert claimed(short, who) == (effects.get(effect.path, 0) == side)
     for item in made.break_even:
@@ -226,6 +231,7 @@ def check(made: DecisionRecord) -> None:
 
 
 def reads_well(made: DecisionRecord) -> None:
+    assert len(made.verdict.headline.split()) <= MOST_WORDS
     for sentence in sentences(made):
         assert sentence[0].isupper() or sentence.startswith((REPAIR, BASELINE))
         assert sentence.endswith(".")

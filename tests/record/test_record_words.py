@@ -26,14 +26,14 @@ def test_a_reversal_is_the_headline_and_says_who_wins_where():
     assert "under the shared fault, old does" in change.words
     assert change.words in made.verdict.sentences
     assert made.verdict.headline == (
-        "Do not choose by the isolated fault: with only the observer struck, new is ahead; with "
-        "the fault shared, old is."
+        "Do not choose by the isolated fault: new is ahead with only the observer struck, old with "
+        "the fault shared."
     )
 
 
 def test_a_reversal_the_other_way_round_names_the_other_side():
     made = three((50, 0, 0), LOSS, GAIN)
-    assert "with only the observer struck, old is ahead; with the fault shared, new is." in (
+    assert "old is ahead with only the observer struck, new with the fault shared." in (
         made.verdict.headline
     )
 
@@ -44,10 +44,8 @@ def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
     (change,) = made.changes
     assert change.turn == "interaction"
     assert change.words.startswith("Interaction detected")
-    assert made.verdict.headline == (
-        "old is ahead of new under the shared fault; the difference is not the same with only the "
-        "observer struck as under the shared fault (interaction detected)."
-    )
+    assert change.words in made.verdict.sentences
+    assert made.verdict.headline == "old is ahead of new under the shared fault."
 
 
 @pytest.mark.parametrize(
@@ -75,8 +73,8 @@ HEADLINES = {
     ),
     "depends": (
         (LOSS, GAIN, GAIN),
-        "new is ahead of old under the shared fault and with only the observer struck; old is "
-        "ahead under correct inputs.",
+        "new is ahead under the shared fault and with only the observer struck; old is ahead under "
+        "correct inputs.",
     ),
     "elsewhere only": (
         (LOSS, (50, 8, 8), (50, 8, 8)),
@@ -89,8 +87,8 @@ HEADLINES = {
     ),
     "floor": (
         (GAIN, GAIN, (0, 9, 0)),
-        "Under the shared fault, old and new both nearly always fail: no choice can rest on it; "
-        "new is ahead under correct inputs and with only the observer struck.",
+        "Under the shared fault, both nearly always fail; new is ahead under correct inputs and "
+        "with only the observer struck.",
     ),
     "ceiling elsewhere": (
         (LEVEL, (95, 1, 1), LEVEL),
@@ -141,7 +139,7 @@ def test_a_primary_contrast_of_ones_own_leads():
     ]
     asked = question().model_copy(update={"primary": CORRECT})
     headline = decide(asked, paths(*cells), OutcomeTable(tuple(out))).verdict.headline
-    assert headline.startswith("old is ahead of new under correct inputs. Do not choose by the")
+    assert headline.startswith("old is ahead under correct inputs. Do not choose by the")
 
 
 def _words(made: DecisionRecord, path: str) -> str:
@@ -255,7 +253,7 @@ def test_results_of_trained_models_are_said_to_be_theirs():
     plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
     assert "model" not in " ".join((plain.verdict.headline, *plain.verdict.sentences))
     assert "model" not in plain.effects[0].success.estimand
-    assert trained.verdict.headline.endswith("old is (for these trained models).")
+    assert trained.verdict.headline == plain.verdict.headline
     assert trained.estimand == "new scenes like these, for these trained models"
     assert "models trained anew may differ" in trained.verdict.sentences[0]
 

@@ -1,9 +1,18 @@
-"""The headline: one sentence that rests on decided things, led by the primary contrast."""
+"""The headline: at most twenty words that rest on decided things, led by the primary contrast.
 
-from collections.abc import Sequence
+What qualifies it stands in the sentences below: numbers, trained models, a change that is detected.
+"""
 
+from collections.abc import Iterator, Sequence
+
+from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import Change, Effect
 from faultpath.record.words import About, capital, margin, no_pair, series, where
+
+MOST_WORDS = 20
+"""Of a headline, with the names of modules and variants as one word each."""
+
+_UNSEEN = "; under the shared fault, no difference is detected"
 
 
 def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change]) -> str:
@@ -20,15 +29,24 @@ def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change])
     if not main.acted:
         return _never_acted(main, effects)
     tested = [effect for effect in effects if effect.acted]
-    return (
-        _saturated(tested)
-        or _reversal(about, tested, changes)
-        or _led(about, main, effects) + _interaction(main, changes) + "."
-    )
+    if said := _saturated(tested):
+        return said
+    if turned := reversed_at(tested, changes):
+        return _fitting(_reversal(about, main, tested, turned))
+    return _fitting((_ahead if main.leads else _undecided)(about, main, effects))
+
+
+def _fitting(candidates: Iterator[str]) -> str:
+    """Return the first that is short enough, else the last: they come from long to short."""
+    said = ""
+    for said in candidates:
+        if len(said.split()) <= MOST_WORDS:
+            break
+    return said
 
 
 def _never_acted(main: Effect, effects: Sequence[Effect]) -> str:
-    if any(effect.acted for effect in effects if effect.path != "correct"):
+    if any(effect.acted for effect in effects if effect.path != CORRECT):
         return f"{capital(where(main.path))}, the fault never acted: nothing was tested there."
     return "The fault never acted: nothing was tested."
 
@@ -44,25 +62,6 @@ def _saturated(tested: Sequence[Effect]) -> str:
     return f"No difference could show: on every path both arms {what}."
 
 
-def _reversal(about: About, tested: Sequence[Effect], changes: Sequence[Change]) -> str:
-    turned = reversed_at(tested, changes)
-    if not turned:
-        return ""
-    of = {effect.path: effect for effect in tested}
-    shared = of[changes[0].shared]
-    primary = about.question.primary
-    lead = ""
-    if primary not in (shared.path, *(effect.path for effect in turned)):
-        main = of[primary]
-        lead = f"{_led(about, main, ())}. "
-    places = " or the ".join(effect.path for effect in turned)
-    return (
-        f"{lead}Do not choose by the isolated fault: with only the {places} struck, "
-        f"{about.winner(turned[0].sign)} is ahead; with the fault shared, "
-        f"{about.winner(shared.sign)} is{_models(about)}."
-    )
-
-
 def reversed_at(tested: Sequence[Effect], changes: Sequence[Change]) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
     of = {effect.path: effect for effect in tested}
@@ -73,60 +72,109 @@ def reversed_at(tested: Sequence[Effect], changes: Sequence[Change]) -> list[Eff
     ]
 
 
-def _led(about: About, main: Effect, effects: Sequence[Effect]) -> str:
-    """Return what is decided of `effects`, the primary contrast first."""
+def _reversal(
+    about: About, main: Effect, tested: Sequence[Effect], turned: Sequence[Effect]
+) -> Iterator[str]:
+    advice, sign = "Do not choose by the isolated fault", turned[0].sign
+    if main.path != SHARED and main not in turned:
+        decided = f"{about.winner(main.sign)} is ahead {where(main.path)}"
+        lead = decided if main.leads else f"{capital(where(main.path))}, {_briefly(about, main)}"
+        yield f"{lead}. {advice}: sharing reverses the ranking."
+        yield f"{advice}: sharing reverses the ranking."
+        return
+    isolated = [effect for effect in tested if effect.path not in (CORRECT, SHARED)]
+    some = f"at {len(turned)} of {len(isolated)} modules"
+    every = "with only one module struck"
+    for at in (places(turned), every if len(turned) == len(isolated) else some):
+        yield (
+            f"{advice}: {about.winner(sign)} is ahead {at}, {about.winner(-sign)} with the "
+            "fault shared."
+        )
+
+
+def _ahead(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[str]:
+    """Yield what may stand where the primary contrast is decided."""
+    winner, loser = about.winner(main.sign), about.winner(-main.sign)
     others = [effect for effect in effects if effect.leads and effect is not main]
-    sides = {sign: [effect for effect in others if effect.sign == sign] for sign in (1, -1)}
-    if main.leads:
-        ahead = f"{about.winner(main.sign)} is ahead of {about.winner(-main.sign)}"
-        if len(effects) > 1 and len(sides[main.sign]) == len(effects) - 1:
-            return f"{ahead} on every path{_models(about)}"
-        text = f"{ahead} {_places([main, *sides[main.sign]])}"
-        if sides[-main.sign]:
-            text += f"; {about.winner(-main.sign)} is ahead {_places(sides[-main.sign])}"
-        return text + _models(about)
-    if not others and not main.extreme and len(effects) > 1 and main.path not in about.small:
-        extreme = any(effect.extreme for effect in effects if effect.acted)
-        place = "away from the floor and the ceiling" if extreme else "on any path"
-        tested = "" if all(effect.acted for effect in effects) else " that was tested"
-        return f"No difference between {about.both} is detected {place}{tested}"
-    text = f"{capital(where(main.path))}, {_undecided(about, main)}"
-    for sign, ahead in sides.items():
-        if ahead:
-            text += f"; {about.winner(sign)} is ahead {_places(ahead)}"
-    return text + (_models(about) if others else "")
-
-
-def _undecided(about: About, main: Effect) -> str:
-    if main.extreme:
-        ends = "fail" if main.extreme == "floor" else "succeed"
-        return f"{about.both} both nearly always {ends}: no choice can rest on it"
-    if main.path in about.small and about.question.stop:
-        return f"{about.both} differ by less than {margin(about.question.stop)}"
-    return f"no difference between {about.both} is detected"
-
-
-def _interaction(main: Effect, changes: Sequence[Change]) -> str:
-    """Return that the primary contrast is part of a change which is detected."""
-    found = [
-        change
-        for change in changes
-        if change.turn == "interaction" and main.path in (change.isolated, change.shared)
-    ]
-    if not found or main.extreme:
-        return ""
-    places = " or the ".join(change.isolated for change in found)
-    return (
-        f"; the difference is not the same with only the {places} struck as under the shared "
-        "fault (interaction detected)"
+    same = [effect for effect in others if effect.sign == main.sign]
+    against = [effect for effect in others if effect.sign != main.sign]
+    if same and len(same) == len(effects) - 1:
+        yield f"{winner} is ahead of {loser} on every path."
+    ahead, at = places([main, *same]), places(against)
+    more = f" and on {_paths(same, ' other')}" if same else ""
+    # A gain in isolation reads as advice unless what came of it when shared stands beside it.
+    for open_ in (_UNSEEN, "")[not _open(effects) :]:
+        yield f"{winner} is ahead of {loser} {ahead}{f'; {loser} is ahead {at}' * bool(at)}{open_}."
+        yield f"{winner} is ahead {ahead}{f'; {loser} is ahead {at}' * bool(at)}{open_}."
+        yield f"{winner} is ahead {ahead}{f'; {loser} {at}' * bool(at)}{open_}."
+        if open_ and not against:
+            yield f"{winner} is ahead {where(main.path)}{open_}."
+    yield (
+        f"{winner} is ahead {where(main.path)}{more}{f'; {loser} on {_paths(against)}' * bool(at)}."
     )
 
 
-def _models(about: About) -> str:
-    asked = about.question
-    here = asked.trained and asked.generalise == "scenes"
-    return " (for these trained models)" if here else ""
+def _open(effects: Sequence[Effect]) -> bool:
+    """Return whether the shared fault was tested, could show a difference, and none is detected."""
+    return any(e.path == SHARED and e.acted and not (e.sign or e.extreme) for e in effects)
 
 
-def _places(effects: Sequence[Effect]) -> str:
-    return series([where(effect.path) for effect in effects])
+def _undecided(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[str]:
+    """Yield what may stand where it is not."""
+    place, briefly = capital(where(main.path)), _briefly(about, main)
+    others = [effect for effect in effects if effect.leads]
+    sides = {
+        about.winner(sign): [effect for effect in others if effect.sign == sign]
+        for sign in (1, -1)
+        if any(effect.sign == sign for effect in others)
+    }
+    said = f"no difference between {about.both} is detected"
+    if main.extreme:
+        said = f"{about.both} {briefly}"
+    elif main.path in about.small:
+        said = briefly
+    if not others:
+        if main.extreme:
+            said += ": no choice can rest on it"
+        elif len(effects) > 1 and main.path not in about.small:
+            extreme = any(effect.extreme for effect in effects if effect.acted)
+            place = "away from the floor and the ceiling" if extreme else "on any path"
+            tested = "" if all(effect.acted for effect in effects) else " that was tested"
+            yield f"{capital(said)} {place}{tested}."
+        yield f"{place}, {said}."
+        return
+    ahead = "; ".join(f"{who} is ahead {places(at)}" for who, at in sides.items())
+    (first, at), *rest = sides.items()
+    more = (f"{who} on {len(at)}" for who, at in rest)
+    counted = ", ".join([f"{first} is ahead on {_paths(at)}", *more])
+    if main.path != SHARED and _open(effects):
+        if main.extreme or main.path in about.small:
+            yield f"{place}, {briefly}{_UNSEEN}."
+            return
+        place = capital(places([main, *(e for e in effects if e.path == SHARED)]))
+    else:
+        yield f"{place}, {said}; {ahead}."
+    yield f"{place}, {briefly}; {ahead}."
+    yield f"{place}, {briefly}; {counted}."
+    yield f"{place}, {briefly}."
+
+
+def _briefly(about: About, main: Effect) -> str:
+    """Say in at most six words that the primary contrast is open."""
+    if main.extreme:
+        return f"both nearly always {'fail' if main.extreme == 'floor' else 'succeed'}"
+    if main.path in about.small and about.question.stop:
+        return f"the difference is below {margin(about.question.stop)}"
+    return "no difference is detected"
+
+
+def _paths(effects: Sequence[Effect], other: str = "") -> str:
+    return f"{len(effects)}{other} path{'' if len(effects) == 1 else 's'}"
+
+
+def places(effects: Sequence[Effect]) -> str:
+    """Return where effects are, the first one's kind first, modules struck alone together."""
+    alone = [effect.path for effect in effects if effect.path not in (CORRECT, SHARED)]
+    joined = where(" or the ".join(alone))
+    places = (joined if effect.path in alone else where(effect.path) for effect in effects)
+    return series(list(dict.fromkeys(places))) if effects else ""

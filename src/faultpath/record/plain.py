@@ -8,13 +8,16 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
-from faultpath.record.headline import reversed_at
+from faultpath.record.family import CORRECT, SHARED
+from faultpath.record.headline import places, reversed_at
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.words import (
     About,
+    adjusted,
     barely_acted,
     capital,
     margin,
+    only_alone,
     series,
     where,
 )
@@ -40,7 +43,7 @@ def plain_words(record: DecisionRecord) -> dict[str, str]:
         )
         return {"Not decided": few, "How sure": " ".join(_qualified(record))}
     return {
-        "What follows": " ".join([_follows(known, record), *_changed(record)]),
+        "What follows": " ".join([*_follows(known, record), *_changed(record)]),
         "How sure": " ".join(_sure(record)),
         "Not decided": " ".join(_left_open(known, record)),
     }
@@ -57,52 +60,102 @@ def decided_words(known: About, effect: Effect | None) -> str:
         return f"{known.winner(effect.sign)} succeeds more often{at}"
     if known.few:
         return "too few scenes to decide"
+    p = f" ({adjusted(known.question, effect)})" if only_alone(effect) else ""
     if effect.path in known.small and known.question.stop:
-        return f"differ by less than {margin(known.question.stop)}"
-    return "no difference detected"
+        return f"differ by less than {margin(known.question.stop)}{p}"
+    return f"no difference detected{p}"
 
 
-def _follows(known: About, record: DecisionRecord) -> str:
+def not_standing(record: DecisionRecord) -> Iterator[str]:
+    """Say of each interval that leaves out 0 where nothing is detected why it does not count."""
+    for effect in record.effects:
+        if only_alone(effect):
+            yield (
+                f"{capital(where(effect.path))} the interval by itself leaves out 0, but "
+                f"{adjusted(record.question, effect)} ({record.hypotheses} contrasts): no "
+                "difference is detected."
+            )
+
+
+def _follows(known: About, record: DecisionRecord) -> Iterator[str]:
+    """Say what the decisions add up to: of the fault, and of correct inputs beside it."""
     tested = [effect for effect in record.effects if effect.acted]
+    leading = [effect for effect in tested if effect.leads]
+    if not leading:
+        if any(effect.detected for effect in tested):
+            yield "What is decided lies at the floor or ceiling, where no choice can rest on it."
+        else:
+            yield "Nothing that was tested gives a reason to prefer either."
+        return
     turned = reversed_at(tested, record.changes)
     if turned:
-        places = " or the ".join(effect.path for effect in turned)
         sign = turned[0].sign
-        return (
-            f"Ask which fault your system will meet: with only the {places} struck, "
+        yield (
+            f"Ask which fault your system will meet: {places(turned)}, "
             f"{known.winner(sign)} succeeds more often; where the modules share it, "
             f"{known.winner(-sign)} succeeds more often."
         )
-    leading = {effect.sign for effect in tested if effect.leads}
-    if len(leading) == 2:
-        return _depends(record)
-    if leading:
-        sides = {effect.sign for effect in tested if effect.detected}
-        apart = "away from floor and ceiling, " if sides != leading else ""
-        winner = known.winner(leading.pop())
-        return capital(f"{apart}every difference that is decided is in favour of {winner}.")
-    if any(effect.detected for effect in tested):
-        return "What is decided lies at the floor or the ceiling, where no choice can rest on it."
-    return "Nothing that was tested gives a reason to prefer either."
+    else:
+        yield from _faulty(known, tested)
+    correct = next((effect for effect in leading if effect.path == CORRECT), None)
+    if correct and sum(effect.detected for effect in tested) == 1 < len(tested):
+        winner = known.winner(correct.sign)
+        yield f"Only under correct inputs is a difference detected: {winner} succeeds more often."
+    elif correct:
+        yield f"Under correct inputs, {known.winner(correct.sign)} succeeds more often."
+    if len({effect.sign for effect in leading}) == 2:
+        yield from _depends(record, reversal=bool(turned))
+
+
+def _faulty(known: About, tested: Sequence[Effect]) -> Iterator[str]:
+    """Say what is decided with the fault, where sharing it reverses nothing.
+
+    That one fault shows a difference and the other does not is no difference between the two.
+    """
+    alone = [effect for effect in tested if effect.path not in (CORRECT, SHARED)]
+    isolated, shared = ([e for e in some if e.leads] for some in (alone, _shared(tested)))
+    decided = [*isolated, *shared]
+    signs = sorted({effect.sign for effect in decided}, reverse=True)
+    seen, missed = ("in isolation", "when the fault is shared")
+    if shared:
+        seen, missed = missed, seen
+    unseen = alone if shared else _shared(tested)
+    open_ = bool(decided and unseen) and not any(e.detected or e.extreme for e in unseen)
+    if open_ and len(signs) == 1:
+        yield f"The {'gain' if signs == [1] else 'loss'} seen {seen} is not seen {missed}."
+    else:
+        for sign in signs:
+            at = [effect for effect in decided if effect.sign == sign]
+            yield f"{capital(places(at))}, {known.winner(sign)} succeeds more often."
+        if open_:
+            yield f"{capital(missed)}, no difference is seen."
+    small = [effect for effect in unseen if effect.path in known.small]
+    if open_ and small and known.question.stop:
+        less = margin(known.question.stop)
+        yield f"{capital(places(small))}, the difference is smaller than {less}."
+
+
+def _shared(tested: Sequence[Effect]) -> list[Effect]:
+    return [effect for effect in tested if effect.path == SHARED]
 
 
 def _changed(record: DecisionRecord) -> Iterator[str]:
     """Say where a test at one module is decided not to stand for the shared fault."""
-    places = " or the ".join(each.isolated for each in record.changes if each.turn == "interaction")
-    if places:
+    modules = " or the ".join(c.isolated for c in record.changes if c.turn == "interaction")
+    if modules:
         yield (
-            f"A fault at the {places} alone does not stand for the shared one: the difference "
+            f"A fault at the {modules} alone does not stand for the shared one: the difference "
             "between the two arms changes."
         )
 
 
-def _depends(record: DecisionRecord) -> str:
+def _depends(record: DecisionRecord, reversal: bool) -> Iterator[str]:
     """Say that the paths disagree, and what is decided of the primary fault's frequency."""
-    words = "Which is better depends on which fault occurs, and how often: the paths disagree."
+    if not reversal:
+        yield "Which is better depends on which fault occurs, and how often: the paths disagree."
     told = [each for each in record.break_even if each.path == record.question.primary]
     if told and told[0].words:
-        words += f" By the share of trials with the fault, {where(told[0].path)}: {told[0].words}."
-    return words
+        yield f"By the share of trials with the fault, {where(told[0].path)}: {told[0].words}."
 
 
 def _qualified(record: DecisionRecord) -> Iterator[str]:
@@ -130,6 +183,7 @@ def _left_open(known: About, record: DecisionRecord) -> Iterator[str]:
     ]
     if undecided:
         yield f"No difference is detected {series(_missed(undecided))}."
+    yield from not_standing(record)
     same = [change.isolated for change in record.changes if change.turn == "none"]
     if same:
         places = " or the ".join(same)

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import Cell, Change, Effect, Path, Question, StopRule
-from faultpath.statistics import Estimate
 
 FEW_TRAININGS = 10
 """With fewer, an interval for newly trained models rests on how trainings are distributed: see
@@ -103,18 +102,37 @@ def points(value: float) -> str:
     return "0.0" if float(text) == 0 else text
 
 
-def numbers(about: About, estimate: Estimate, adjusted_p: float | None) -> str:
-    """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`."""
+def numbers(about: About, of: Effect | Change) -> str:
+    """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`, and where the two disagree, which
+    decides."""
+    estimate = of.success if isinstance(of, Effect) else of.change
     text = f"{points(estimate.value)} pp"
     if estimate.low is not None and estimate.high is not None:
         text += f" [{_plain(estimate.low)}, {_plain(estimate.high)}]"
-    return text if adjusted_p is None else f"{text}, p {_p(adjusted_p)} {about.question.family}"
+    if of.adjusted_p_value is None:
+        return text
+    text += f", {adjusted(about.question, of)}"
+    return f"{text}: the interval alone decides nothing" if only_alone(of) else text
+
+
+def adjusted(question: Question, of: Effect | Change) -> str:
+    """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
+    p = of.adjusted_p_value
+    return "" if p is None else f"p {_p(p)} {question.family}"
+
+
+def only_alone(of: Effect | Change) -> bool:
+    """Return whether the interval by itself leaves out 0 and yet nothing is detected."""
+    estimate = of.success if isinstance(of, Effect) else of.change
+    if of.sign or of.adjusted_p_value is None or estimate.low is None or estimate.high is None:
+        return False
+    return estimate.low > 0 or estimate.high < 0
 
 
 def effect_words(about: About, effect: Effect) -> str:
     """Say what one effect shows: who is decided to be ahead, or what could have been found."""
     place = capital(where(effect.path))
-    shown = numbers(about, effect.success, effect.adjusted_p_value)
+    shown = numbers(about, effect)
     if not effect.acted:
         place = "Shared" if effect.path == SHARED else place
         return f"{place}, the fault never acted on this path: nothing was tested."
@@ -152,7 +170,7 @@ def _extreme(effect: Effect) -> str:
 def change_words(about: About, isolated: Effect, shared: Effect, change: Change) -> str:
     """Say whether sharing the fault reverses the verdict, changes the difference, or neither."""
     from_to = f"{points(isolated.success.value)} pp to {points(shared.success.value)} pp"
-    shown = f"{from_to}; change {numbers(about, change.change, change.adjusted_p_value)}"
+    shown = f"{from_to}; change {numbers(about, change)}"
     alone = where(isolated.path)
     if change.turn == "reversal":
         words = (

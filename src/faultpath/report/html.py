@@ -6,7 +6,7 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.record.model import Cell, DecisionRecord, Effect
-from faultpath.record.plain import plain_words
+from faultpath.record.plain import about, decided_words, plain_words
 from faultpath.report import story, wording
 from faultpath.report.factorial import by_factors
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
@@ -21,7 +21,7 @@ from faultpath.report.interface_parts import ChannelRows, concerned, tap_rows
 from faultpath.report.interface_wiring import Wiring, struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
 from faultpath.report.svg import template
-from faultpath.report.tables import SHOWN, by_path, latex_table, markdown_table
+from faultpath.report.tables import BEHIND, SHOWN, by_path, latex_table, markdown_table
 from faultpath.report.thresholds import by_threshold
 from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
 from faultpath.report.viewer import Viewer, viewer_data
@@ -53,7 +53,7 @@ def report_page(source: ReportInput) -> str:
         n_void=sum(pair.kind is Kind.VOID for pair in pairs),
         n_pairs=len(pairs),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
-        effects=Markup(html(by_path(source.record, SHOWN, "Effects on success, path by path"))),
+        effects=Markup(html(by_path(source.record, BEHIND, "What stands behind each effect"))),
         viewer=viewer,
         w=wording,
     )
@@ -111,13 +111,12 @@ def _cells(record: DecisionRecord, path: str) -> list[Cell]:
     return sorted(cells, key=lambda cell: wanted.index(cell.variant))
 
 
-def _tiles(record: DecisionRecord) -> list[tuple[str, Effect, Cell, Cell]]:
-    """Return title, effect and both cells of every path, for the strip under the verdict."""
-    titles = _path_titles(record)
+def _tiles(record: DecisionRecord) -> list[tuple[str, str, Effect | None, str]]:
+    """Return name, title, effect and what is decided of each path: the first screen's numbers."""
+    known, effects = about(record), {effect.path: effect for effect in record.effects}
     return [
-        (titles.get(effect.path, effect.path), effect, cells[0], cells[1])
-        for effect in record.effects
-        if len(cells := _cells(record, effect.path)) == 2
+        (name, title, effects.get(name), decided_words(known, effects.get(name)))
+        for name, title in _path_titles(record).items()
     ]
 
 

@@ -1,4 +1,4 @@
-"""What the first screen tells: what the fault does, to whom, and what came of it on each path.
+"""What the first screen tells beside the numbers: what the fault does, and to whom on each path.
 
 Which taps were struck comes from receipts, who reads from the wiring of the variants, and what may
 be said from the record.
@@ -11,10 +11,8 @@ from faultpath.interface import module_of
 from faultpath.record import CORRECT, SHARED
 from faultpath.record.fault_words import fault_words, spelled_out
 from faultpath.record.model import Path, StruckTap
-from faultpath.record.plain import about, decided_words
 from faultpath.record.words import capital, series
 from faultpath.report import wording
-from faultpath.report.figures.effects import EffectRow, effect_rows
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_layout import Tap
 from faultpath.trials import VariantShown
@@ -51,33 +49,26 @@ class Arm:
     role: str
     """`baseline` or `repair`."""
     name: str
-    success_percent: float
     readers: tuple[Reader, ...]
 
 
 @dataclass(frozen=True)
 class Fork:
-    """One path of the fault: a source, the modules that it splits to, and what came of it."""
+    """One path of the fault: a source, and the modules that it splits to."""
 
     title: str
     channels: tuple[str, ...]
     everywhere: bool
     """Whether the fault was at every tap at which either variant reads, as from a faulty source."""
     arms: tuple[Arm, ...]
-    effect: EffectRow | None
-    """`None` where no pair of trials is left."""
-    decided: str
 
     @property
     def told(self) -> str:
         """Say all that the picture shows."""
-        said = [
-            f"{arm.role.capitalize()} {arm.name}: {series([_told(r) for r in arm.readers])}; "
-            f"{wording.plain(arm.success_percent)} % success."
+        return " ".join(
+            f"{arm.role.capitalize()} {arm.name}: {series([_told(r) for r in arm.readers])}."
             for arm in self.arms
-        ]
-        shown = f"{wording.with_interval(self.effect.effect)} pp, " if self.effect else ""
-        return " ".join((*said, f"Repair minus baseline: {shown}{self.decided}."))
+        )
 
 
 def channels(source: ReportInput) -> tuple[str, ...]:
@@ -93,9 +84,6 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     record, names = source.record, channels(source)
     reads = {variant.name: _reads(source, variant, names) for variant in source.variants}
     every = frozenset[Tap]().union(*reads.values())
-    rows = dict(zip((e.path for e in record.effects), effect_rows(record), strict=True))
-    effects = {effect.path: effect for effect in record.effects}
-    known = about(record)
 
     def fork(path: Path) -> Fork:
         hit = {(tap.channel, tap.consumer) for tap in (*path.struck, *path.baseline_struck)}
@@ -104,8 +92,6 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
             channels=names,
             everywhere=every <= hit,
             arms=_arms(source, path, reads, every),
-            effect=rows.get(path.name),
-            decided=decided_words(known, effects.get(path.name)),
         )
 
     faulty = [path for path in record.paths if path.name != CORRECT]
@@ -181,12 +167,10 @@ def _arms(
 ) -> tuple[Arm, ...]:
     asked = source.record.question
     modules = dict.fromkeys(sorted(module_of(consumer) for _, consumer in every))
-    rates = {(c.variant, c.path): c.success_percent for c in source.record.cells}
     return tuple(
         Arm(
             role,
             name,
-            rates[name, path.name],
             tuple(_reader(module, reads[name], struck) for module in modules),
         )
         for role, name, struck in (

@@ -64,7 +64,9 @@ def decided_for(asked: Question, effect: Effect) -> Entry:
 
 DIFFERENCE = ("difference", "interval", "won")
 _ARMS = ("baseline", "repair")
-SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
+BEHIND = ("holm", "power", "scenes", "void", "break-even")
+"""Beside a forest plot, which has the rest."""
+SHOWN = (*_ARMS, *DIFFERENCE, *BEHIND)
 ALL = (
     *(*_ARMS, *DIFFERENCE, "p", "holm", "decided"),
     *("power", "scenes", "void", "break-even"),

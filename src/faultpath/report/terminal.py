@@ -6,6 +6,7 @@ from rich.text import Text
 
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
+from faultpath.record.plain import not_standing
 from faultpath.report.factorial import by_factors
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
 from faultpath.report.thresholds import by_threshold
@@ -29,6 +30,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
+    for said in not_standing(record):
+        parts += [Text(""), Text(said)]
     told = by_threshold(record)
     factors = by_factors(record)
     for table in filter(None, (told, factors)):

@@ -2,9 +2,6 @@
 
 from collections.abc import Sequence
 
-from faultpath.report import wording
-from faultpath.report.figures.effects import directions, extent, mark
-from faultpath.report.scale import Axis, covering
 from faultpath.report.story import Arm, Fork, Reader
 from faultpath.report.svg import Svg, shortened
 
@@ -14,30 +11,16 @@ _TRUNK, _TAP, _BOX = 12.0, 27.0, 38.0
 
 
 def fork_panels(forks: Sequence[Fork]) -> list[str]:
-    """Return a picture of each path, all on one axis for the differences."""
-    axis = covering(extent([fork.effect for fork in forks if fork.effect]), least=10.0)
-    return [_panel(fork, axis.at(4, _WIDTH - 4)) for fork in forks]
+    """Return a picture of each path."""
+    return [_panel(fork) for fork in forks]
 
 
-def _panel(fork: Fork, axis: Axis) -> str:
+def _panel(fork: Fork) -> str:
     bottom = _MODULES + _PITCH * len(fork.arms[0].readers)
-    svg = Svg(_WIDTH, bottom + 118, f"{fork.title}: who gets the fault", fork.told)
+    svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", fork.told)
     svg.text(0, 14, shortened(fork.title, _WIDTH, 13), "head", tip=fork.title)
     for x, arm in zip((_EDGE, _WIDTH - _ARM - _EDGE), fork.arms, strict=True):
         _arm(svg, x, arm, fork)
-        svg.text(x, bottom + 18, f"{wording.plain(arm.success_percent)} %", "rate")
-        svg.text(x + _ARM - 8, bottom + 18, "success", "small soft", "end")
-    y = bottom + 62
-    directions(svg, axis, y - 22)
-    svg.line((axis(0), y - 14), (axis(0), y + 12), "zero")
-    if fork.effect is not None:
-        mark(svg, axis, fork.effect.effect, y, fork.effect.sign, None)
-        shown = f"{wording.with_interval(fork.effect.effect)} pp"
-        svg.text(_WIDTH / 2, y + 30, shown, "bold", "middle")
-    side = fork.effect.sign if fork.effect else 0
-    cls = {1: "repair", -1: "baseline", 0: "soft"}[side]
-    decided = shortened(fork.decided, _WIDTH, 12)
-    svg.text(_WIDTH / 2, y + 47, decided, cls, "middle", tip=fork.decided)
     return svg.render()
 
 
