@@ -6,12 +6,15 @@ decides.
 """
 
 import os
+import sys
 import sysconfig
 import traceback
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any, cast
 
 from faultpath.errors import SystemMistake, UserError
+from faultpath.misfits import misfit_of
 from faultpath.text import one_line
 
 _OURS = str(Path(__file__).resolve().parent) + os.sep
@@ -45,6 +48,9 @@ def place(error: BaseException) -> str:
 def described(error: BaseException) -> str:
     """Return kind and message of an error, in one line. It is stored with outcomes, so it names no
     path: those differ from machine to machine."""
+    pydantic, refused = sys.modules.get("pydantic"), cast(Any, error)
+    if pydantic is not None and isinstance(error, pydantic.ValidationError):
+        return one_line(f"{refused.title} cannot be made: {misfit_of(refused)}")
     said = error.msg if isinstance(error, SyntaxError) else str(error)
     return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
 

@@ -156,12 +156,11 @@ def test_time_and_consumers_of_a_preset() -> None:
         ("wind:delay=x", "'delay' needs a number, not 'x'"),
         (
             "wind:delay=5.5",
-            "'delay': steps should be a valid integer, got a number with a fractional part; "
-            "correct the value",
+            "'delay': steps is 5.5, and must be a whole number; correct the value",
         ),
         (
             "wind:delay=-1",
-            "'delay': steps should be greater than or equal to 0; correct the value",
+            "'delay': steps is -1, and must be a number of at least 0; correct the value",
         ),
         ("wind:noise=-1", "'noise': noise std must not be negative; correct the value"),
         ("wind:freeze=3", "'freeze' takes no value; write wind:freeze"),

@@ -140,7 +140,7 @@ def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None
         ({}, MAP.replace("mass_kg: 1.5", "mass_kg: 15"), "times the weight: correct mass_kg"),
         ({}, MAP.replace("mass_kg: 1.5", ""), "the mass of the vehicle is not given"),
         ({}, MAP.replace("qw,", "qv,"), "column 'qv'"),
-        ({}, MAP.replace("frame: ENU", "frame: UP"), "frame: input should be 'NED' or 'ENU'"),
+        ({}, MAP.replace("frame: ENU", "frame: UP"), "frame: is 'UP', and must be 'NED' or 'ENU'"),
         ({}, MAP.replace("time: {column: t, unit: s}", ""), "the map names no time column"),
         ({}, "{", "is not plain YAML"),
         ({"qw": lambda c: 2 * c["qw"]}, MAP, "a unit quaternion has 1"),

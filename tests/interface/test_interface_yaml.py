@@ -101,7 +101,7 @@ def test_control_characters_are_refused_and_line_breaks_come_back(character: str
     with pytest.raises(ValidationError, match=rf"control character U\+{ord(character):04X}"):
         Interface.model_validate(described)
     escaped = GOOD.replace("unit: kg", f'unit: "\\u{ord(character):04x}"')
-    with pytest.raises(UserError, match=r"line 4: sources\.0\.unit: holds the control character"):
+    with pytest.raises(UserError, match=r"line 4: sources\[0\]\.unit: holds the control character"):
         read_interface(escaped)
 
 
@@ -152,18 +152,22 @@ def test_file_round_trip(tmp_path: Path) -> None:
         ("unit: kg", "unit: \x07", "is not plain YAML (unacceptable character"),
         ("unit: kg", "unit: kg\n  unit: g", "line 5: key 'unit' appears twice; drop one"),
         ("[mass_estimate]", "&a [mass_estimate]\n  extra: *a", "line 9: aliases are not read"),
-        ("  unit: kg\n", "", "line 3: sources.0.unit: field required; add it"),
+        ("  unit: kg\n", "", "line 3: sources[0].unit: is missing: add it"),
         (
             "provenance: estimated",
             "provenance: guessed",
-            "line 5: sources.0.provenance: input should be 'measured', 'estimated'",
+            "line 5: sources[0].provenance: is 'guessed', and must be 'measured', 'estimated'",
         ),
         ("unit: kg", "unti: kg", "(1 more to correct after it)"),
-        ("consumers:", "cnosumers:", "line 7: channels.0.consumers: field required; add it"),
+        (
+            "consumers:",
+            "cnosumers:",
+            "line 9: channels[0].cnosumers: is no field; did you",
+        ),
         (
             "- planner.hover",
             "- planner.hover\n  gapp: none",
-            "line 12: channels.0.gapp: extra inputs are not permitted; drop it or correct its",
+            "line 12: channels[0].gapp: is no field; did you mean 'gap'?",
         ),
         (
             "[mass_estimate]",
@@ -176,7 +180,11 @@ def test_file_round_trip(tmp_path: Path) -> None:
             "line 11: channel 'mass': consumer 'predictor.dynamics' is declared twice; drop one",
         ),
         ("name: toy\n", "name: toy\nreconstructs: {gru: mass_estimate}\n", "line 2: reconstructs:"),
-        ("- planner.hover", "- planner", "line 11: channels.0.consumers.1: string should match"),
+        (
+            "- planner.hover",
+            "- planner",
+            "line 11: channels[0].consumers[1]: is 'planner'",
+        ),
     ],
 )
 def test_a_mistake_is_told_with_its_line(old: str, new: str, sentence: str, tmp_path: Path) -> None:

@@ -89,7 +89,7 @@ def test_text_becomes_what_the_factory_takes():
         (
             typed,
             {"carts": "three"},
-            r"^it cannot have the carts 'three': input should be .*[^.]\.$",
+            r"^it cannot have the carts 'three': it is 'three', and must be .*[^.]\.$",
         ),
         (typed, {"fast": "perhaps"}, "unknown fast 'perhaps'; choose one of true, false"),
         (

@@ -10,6 +10,7 @@ import pyarrow as pa
 from pydantic import BaseModel, ValidationError
 
 from faultpath.errors import UserError
+from faultpath.misfits import misfit_of
 from faultpath.planning import struck_taps
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.inputs import ReportInput, Traces
@@ -76,10 +77,8 @@ def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
     try:
         return model.model_validate_json(data)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
         raise UserError(
-            f"{path} is damaged or from another version of faultpath ({where!r}): {AGAIN}."
+            f"{path} is damaged or from another version of faultpath ({misfit_of(error)}): {AGAIN}."
         ) from None
 
 

@@ -24,6 +24,7 @@ from faultpath.faults.fault import Coupled, Fault
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.interface import Interface, groups
+from faultpath.misfits import misfit_of
 from faultpath.text import listed, unknown
 
 FaultPreset: TypeAlias = Callable[[float], Coupled]
@@ -260,10 +261,9 @@ def _build(said: str, kind: str, value: str | None, options: dict[str, str]) -> 
     try:
         built: Any = cls.model_validate(given)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = next(iter(first["loc"]), kind)
-        message = first["msg"].removeprefix("Value error, ").removeprefix("Input ")
-        raise UserError(f"'{kind}': {place} {message}; correct the value") from None
+        found = misfit_of(error)
+        where = found.where or kind
+        raise UserError(f"'{kind}': {where} {found.says}; correct the value") from None
     return built
 
 

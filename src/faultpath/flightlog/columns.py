@@ -8,6 +8,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from faultpath.errors import UserError
+from faultpath.misfits import misfit_of
 
 Positive: TypeAlias = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
@@ -91,9 +92,6 @@ def read_columns(where: str) -> ColumnMap:
     except yaml.YAMLError as error:
         raise UserError(f"{where}: is not plain YAML ({' '.join(str(error).split())})") from None
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        place = ".".join(map(str, first["loc"])) or "the map"
         raise UserError(
-            f"{where}: {place}: {first['msg'][0].lower()}{first['msg'][1:]}; correct it, or see "
-            "the example in docs/recorded-flights.md"
+            f"{where}: {misfit_of(error, ColumnMap)}; see the example in docs/recorded-flights.md"
         ) from None

@@ -11,6 +11,7 @@ from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from faultpath.errors import UserError
 from faultpath.interface.checks import Interface
+from faultpath.misfits import misfit_of
 
 _DEEPEST = 12
 _LONGEST = 1_000_000
@@ -169,22 +170,6 @@ def _line(root: Node, path: Sequence[str | int]) -> int:
 
 
 def _refused(error: ValidationError, root: Node, where: str) -> UserError:
-    first = error.errors(include_url=False)[0]
-    path = cast("tuple[str | int, ...]", first.get("ctx", {}).get("where", first["loc"]))
-    said = first["msg"].removeprefix("Value error, ")
-    if "where" not in first.get("ctx", {}):
-        named = ".".join(str(part) for part in path)
-        said = f"{named}: {said[0].lower()}{said[1:]}" + _remedy(first["type"])
-    more = error.error_count() - 1
-    tail = f" ({more} more to correct after it)" if more else ""
-    return UserError(f"{where}, line {_line(root, path)}: {said}{tail}")
-
-
-def _remedy(kind: str) -> str:
-    match kind:
-        case "missing":
-            return "; add it"
-        case "extra_forbidden":
-            return "; drop it or correct its spelling"
-        case _:
-            return "; correct the value"
+    found = misfit_of(error, Interface)
+    tail = f" ({found.more} more to correct after it)" if found.more else ""
+    return UserError(f"{where}, line {_line(root, found.place)}: {found}{tail}")

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.arrays import Array, is_array, to_numpy
+from faultpath.blame import described
 from faultpath.errors import Notice
 from faultpath.execution.attempt import taps_of
 from faultpath.faults import AnyFault
@@ -93,7 +94,7 @@ class _Beside:
             except Exception as error:  # what modules raise that were not made for such an input
                 del self._others[key], self._moved[key]
                 told = f"{' '.join(map(str, key))}, {self._variant}: no probe response, since its "
-                told += f"modules stop at such an input ({type(error).__name__}: {error})."
+                told += f"modules stop at such an input ({described(error)})."
                 warnings.warn(Notice(told), stacklevel=1)
 
     def _begin(self, faults: Sequence[AnyFault]) -> Any:

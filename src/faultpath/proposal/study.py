@@ -8,6 +8,7 @@ from pydantic import Field, StringConstraints, ValidationError
 
 from faultpath.errors import UserError
 from faultpath.frozen import Frozen
+from faultpath.misfits import misfit_of
 from faultpath.planning import Audit
 from faultpath.record import CORRECT, SHARED
 from faultpath.record.factorial import JOINED
@@ -78,11 +79,8 @@ def read_study(path: Path) -> StudyFile:
             raise ValueError("it is too long")
         study = StudyFile.model_validate(yaml.safe_load(text))
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"])) or "the whole"
         raise UserError(
-            f"{path}: {where}: {first['msg'][0].lower()}{first['msg'][1:]}: correct it, or let "
-            "`faultpath plan` write the file anew."
+            f"{path}: {misfit_of(error, StudyFile)}, or let `faultpath plan` write the file anew."
         ) from None
     except (yaml.YAMLError, ArithmeticError, AttributeError, LookupError, RecursionError) as error:
         raise _not_yaml(path, error) from None

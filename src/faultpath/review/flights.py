@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
+from faultpath.blame import described
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.execution.worker import Brief, building
@@ -109,7 +110,7 @@ def unflown(reply: Died | Wrong) -> Flown:
     if isinstance(reply, Wrong):
         if isinstance(reply.error, UserError):
             raise reply.error
-        return Flown(error=f"{type(reply.error).__name__}: {reply.error}", blames="trials")
+        return Flown(error=described(reply.error), blames="trials")
     return Flown(error=reply.how, blames="trials")
 
 

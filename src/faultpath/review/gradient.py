@@ -18,6 +18,7 @@ from typing import Any, cast
 
 from typing_extensions import override
 
+from faultpath.blame import described
 from faultpath.execution.attempt import taps_of
 from faultpath.frozen import Frozen
 from faultpath.loop import Batch, Graph, Module
@@ -67,7 +68,7 @@ def gradient(
                 if instant.step >= steps:
                     break
     except Exception as error:  # whatever a system does that was not made for gradients
-        failed = f"{type(error).__name__}: {error}"
+        failed = described(error)
     finally:
         watch.undo()
     if not (watch.torches or failed):

@@ -12,6 +12,7 @@ from typing_extensions import override
 from faultpath.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Part, graph
+from faultpath.misfits import misfit_of
 from faultpath.systems.episodes import SCENE, EpisodePlant, scene
 from faultpath.taps import Reading
 from faultpath.text import unknown
@@ -199,9 +200,7 @@ class _Facts:
         try:
             return Interface.model_validate(content)
         except ValidationError as error:
-            first = error.errors(include_url=False)[0]
-            where = ".".join(map(str, first["loc"]))
-            raise SystemMistake(f"system '{self.name}': {where} {first['msg']}") from None
+            raise SystemMistake(f"system '{self.name}': {misfit_of(error, Interface)}") from None
 
     def _readers(self) -> dict[str, dict[str, None]]:
         """Return who reads each channel, in the order of the parts."""

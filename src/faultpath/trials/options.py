@@ -21,6 +21,7 @@ from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, Vali
 from pydantic.fields import FieldInfo
 
 from faultpath.errors import UserError
+from faultpath.misfits import misfit_of
 
 Factory = Callable[..., object]
 _Built = TypeVar("_Built")
@@ -76,10 +77,8 @@ class _Slot:
         except PydanticSchemaGenerationError:
             return text  # a type of the system's own: it may make of the text what it likes
         except ValidationError as error:
-            said = error.errors(include_url=False)[0]["msg"]
             raise UserError(
-                f"{system} cannot have the {self.option.name} '{text}': "
-                f"{said[0].lower()}{said[1:].rstrip('.')}."
+                f"{system} cannot have the {self.option.name} '{text}': it {misfit_of(error).says}."
             ) from None
 
 
@@ -113,8 +112,7 @@ def build(model: type[_Model], values: Mapping[str, Any], system: str) -> _Model
     try:
         return model.model_validate(values)
     except ValidationError as error:
-        said = error.errors(include_url=False)[0]["msg"].removeprefix("Value error, ")
-        raise UserError(f"the options of {system} do not fit: {said.rstrip('.')}.") from None
+        raise UserError(f"the options of {system} do not fit: {misfit_of(error)}.") from None
 
 
 def as_text(options: Mapping[str, object]) -> dict[str, str]:

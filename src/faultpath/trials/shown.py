@@ -9,6 +9,7 @@ from pydantic import Field, ValidationError, model_validator
 from faultpath.errors import UserError
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface
+from faultpath.misfits import misfit_of
 from faultpath.trials.declared import FloorPlan, Variant
 from faultpath.trials.system import System
 
@@ -74,12 +75,8 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
             }
         )
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        said = first["msg"].removeprefix("Value error, ")
         raise UserError(
-            f"the system cannot be shown in a report ({f'{where}: ' if where else ''}{said}): "
-            "correct what it returns"
+            f"the system cannot be shown in a report ({misfit_of(error)}): correct what it returns"
         ) from error
 
 

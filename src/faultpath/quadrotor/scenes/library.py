@@ -14,6 +14,7 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
+from faultpath.misfits import misfit_of
 from faultpath.quadrotor.scenes.scene import Scene, digest
 from faultpath.quadrotor.scenes.soundness import misnamed, unfit_name, unsound
 
@@ -110,9 +111,8 @@ def _scene(place: int, entry: object) -> Scene:
     try:
         return Scene.model_validate(entry)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        field = ".".join(map(str, first["loc"])) or "all"
-        raise ValueError(f"scene {place}, field {field}: {first['msg']}") from None
+        found = misfit_of(error, Scene)
+        raise ValueError(f"scene {place}, {f'field {found}' if found.where else found}") from None
 
 
 def _refusal(library: Library) -> str:
