@@ -41,7 +41,7 @@ class Law:
         return (
             None
             if made is None
-            else detectable(*self.found.trials[path].arms, alpha=made.critical_p)
+            else detectable(*self.found.trials[path].arms, rule="exact", alpha=made.critical_p)
         )
 
 
@@ -61,7 +61,8 @@ def _decided(table: OutcomeTable, law: str) -> Law:
     if found.void:
         raise Wrong(f"no pair is left at {', '.join(found.void)}: fly the study again")
     found = Compared({rows[name]: each for name, each in found.trials.items()}, (), ())
-    return Law(found, decide_paths({name: each.arms for name, each in found.trials.items()}))
+    arms = {name: each.arms for name, each in found.trials.items()}
+    return Law(found, decide_paths(arms, rule="exact"))  # by which its design was frozen
 
 
 def constant() -> Run:

@@ -21,6 +21,7 @@ from faultpath.record import (
     stops,
 )
 from faultpath.record.factorial import JOINED, factorial
+from faultpath.statistics import IN_FORCE, RuleName
 from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
@@ -106,6 +107,7 @@ def plan_audit(
     stop_when: StopWhen | None = None,
     margin_pp: float | None = None,
     full: bool = False,
+    rule: RuleName = IN_FORCE,
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
@@ -115,7 +117,8 @@ def plan_audit(
     trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
     `stop_when` makes the audit sequential: scenes come in a random order, and `scenes` is the most
     that it takes; `margin_pp` is what counts as no difference then. `full` strikes every subset of
-    the modules, for a factorial.
+    the modules, for a factorial. `rule` decides; another than that in force is for scenes that were
+    seen under it.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
     of scenes that the library does not have, no seed, a fault that reaches neither variant, a
@@ -177,6 +180,7 @@ def plan_audit(
         metric=_metric(system, metric, thresholds),
         thresholds=tuple(sorted(set(thresholds))),
         stop=_stop_rule(stop_when, margin_pp, study),
+        rule=rule,
     )
     isolated = (path.name for path in paths if path.name not in (CORRECT, SHARED))
     return Audit(question, tuple(paths), study, factors=tuple(isolated) if full else ())

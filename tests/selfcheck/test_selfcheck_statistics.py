@@ -121,7 +121,7 @@ def test_a_break_even_frequency_near_zero_cost_is_covered(rate):
 
 def test_no_reversal_is_announced_where_the_isolated_effect_is_nothing():
     """Isolated 0, shared -20 pp, 100 scenes: 44 % by point estimates."""
-    assert NoReversal(100, 1, 0.0, 150).measure().rate <= 0.025
+    assert NoReversal(100, 1, 0.0, 150).measure().rate <= 0.03
     assert NoReversal(100, 1, 0.2, 20).measure().rate > 0.5
 
 
@@ -180,7 +180,7 @@ def test_what_is_announced_at_a_look_is_what_an_audit_of_its_scenes_announces():
     assert 0 < at_once.sum() < 40
     for scenes in range(1, 41, 3):
         so_far = {path: (one[:scenes], two[:scenes]) for path, (one, two) in arms.items()}
-        assert decide_paths(so_far, shares=shares).announces == at_once[scenes - 1]
+        assert decide_paths(so_far, shares=shares, rule="exact").announces == at_once[scenes - 1]
 
 
 def test_shares_of_the_error_rate_sum_to_all_of_it():

@@ -22,7 +22,7 @@ from faultpath.streams import generator
 
 def effect(first, second):
     resamples = Resamples.draw("betting", len(first), n_resamples=1)
-    return with_test(success_effect(first, second, resamples, sequential=True))
+    return with_test(success_effect(first, second, resamples, sequential=True), "exact")
 
 
 def arms(wins: int, losses: int, n: int):
@@ -138,7 +138,7 @@ def test_the_band_of_a_mixture_touches_0_exactly_where_it_is_undecided():
 
 def test_each_contrast_stands_at_its_own_share():
     one, two = effect(*arms(9, 0, 40)), effect(*arms(0, 9, 40))
-    family = {"one": one, "two": two, "change": with_test(change(one, two))}
+    family = {"one": one, "two": two, "change": with_test(change(one, two), "exact")}
     shares = {"one": 0.5, "two": 0.1, "change": 0.1}
     decided = decide_family(family, 0.05, shares)
     for name, each in decided.items():

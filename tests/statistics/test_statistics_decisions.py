@@ -1,5 +1,6 @@
 """Detected, families and reversals: interval, test and direction together."""
 
+from itertools import combinations
 from unittest.mock import patch
 
 import numpy as np
@@ -37,7 +38,7 @@ def contrast(p_value, low=1.0, high=2.0, leans=1):
 @pytest.mark.parametrize("n_seeds", [1, 3])
 def test_an_effect_is_tested_as_the_paper_tests_it(n_seeds):
     first, second = np.random.default_rng(0).random((2, N, n_seeds)) < [[[0.7]], [[0.5]]]
-    found = with_test(success_effect(first, second, RESAMPLES)).test
+    found = with_test(success_effect(first, second, RESAMPLES), "exact").test
     scenes = (first.astype(int) - second).sum(axis=1)
     wins, losses = int((scenes > 0).sum()), int((scenes < 0).sum())
     assert found.name == ("exact McNemar" if n_seeds == 1 else "sign test on scene means")
@@ -48,7 +49,7 @@ def test_a_change_is_tested_by_the_signs_of_scene_differences():
     rng = np.random.default_rng(1)
     arms = rng.random((4, N, 3)) < 0.5
     one, two = (success_effect(*pair, RESAMPLES) for pair in (arms[:2], arms[2:]))
-    found = with_test(change(one, two)).test
+    found = with_test(change(one, two), "exact").test
     means = (arms[2].astype(int) - arms[3] - arms[0] + arms[1]).sum(axis=1)
     wins, losses = int((means > 0).sum()), int((means < 0).sum())
     assert found.leans == np.sign(wins - losses)
@@ -64,7 +65,7 @@ def test_interval_and_test_have_to_point_the_same_way():
     difference = np.zeros((N, 5), int)
     difference[:30, 0] = 1
     difference[30:] = -1
-    found = with_test(success_effect(difference > 0, difference < 0, RESAMPLES))
+    found = with_test(success_effect(difference > 0, difference < 0, RESAMPLES), "exact")
     assert found.test.rejects()
     assert found.test.leans == 1
     assert found.value < 0
@@ -77,9 +78,9 @@ def test_interval_and_test_have_to_point_the_same_way():
 
 def test_what_has_no_test_is_refused():
     with pytest.raises(ValueError, match="has no test"):
-        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"))
+        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"), "exact")
     with pytest.raises(ValueError, match="has no test"):
-        with_test(success_rate(np.ones(N), RESAMPLES))
+        with_test(success_rate(np.ones(N), RESAMPLES), "exact")
 
 
 @settings(deadline=None)
@@ -111,6 +112,33 @@ def test_the_critical_p_is_where_the_decision_turns(p_values, data):
     assert decide(critical * (1 + 1e-9)).sign == 0
 
 
+@settings(deadline=None)
+@given(st.lists(st.floats(0, 0.2), min_size=2, max_size=6), st.data())
+def test_weighted_holm_is_the_closed_test_of_weighted_bonferroni(p_values, data):
+    """One is rejected where every intersection that it is in has some p within its own part."""
+    number = len(p_values)
+    weights = data.draw(
+        st.lists(st.sampled_from([0.5, 1.0, 3.0]), min_size=number, max_size=number)
+    )
+    names = [str(i) for i in range(number)]
+    family = {name: contrast(p) for name, p in zip(names, p_values, strict=True)}
+    decided = decide_family(family, weights=dict(zip(names, weights, strict=True)))
+    for i, name in enumerate(names):
+        rejected = all(
+            any(p_values[j] <= 0.05 * weights[j] / sum(weights[k] for k in inside) for j in inside)
+            for size in range(number)
+            for others in combinations([j for j in range(number) if j != i], size)
+            for inside in [(i, *others)]
+        )
+        near = abs(decided[name].decision.adjusted_p - 0.05) < 1e-12
+        assert near or (decided[name].sign == 1) == rejected
+        again = family | {name: contrast(decided[name].decision.critical_p * (1 - 1e-9))}
+        weighed = dict(zip(names, weights, strict=True))
+        assert decide_family(again, weights=weighed)[name].sign == 1
+        again[name] = contrast(decided[name].decision.critical_p * (1 + 1e-9))
+        assert decide_family(again, weights=weighed)[name].sign == 0
+
+
 def decided(sign):
     return Contrast(0.0, "pp", 9, decision=Decision(sign, adjusted_p=0.5, critical_p=0.05))
 
@@ -134,16 +162,16 @@ def test_a_reversal_is_two_detected_effects_of_opposite_sign(isolated, shared, c
 
 @pytest.mark.parametrize("hypotheses", [1, 2, 3, 5, 7, 16])
 def test_fewest_scenes_is_where_a_unanimous_test_first_suffices(hypotheses):
-    n = fewest_scenes(hypotheses)
+    n = fewest_scenes(0.05 / hypotheses)
     assert 2 * 0.5**n <= 0.05 / hypotheses < 2 * 0.5 ** (n - 1)
-    assert fewest_scenes(1) == 6
+    assert fewest_scenes() == 6
 
 
 @pytest.mark.parametrize("n", [1, 3, 5])
 def test_few_scenes_detect_nothing_however_one_sided(n):
     resamples = Resamples.draw("few", n, n_resamples=100)
     ones = np.ones(n)
-    found = with_test(success_effect(ones, 0 * ones, resamples))
+    found = with_test(success_effect(ones, 0 * ones, resamples), "exact")
     assert found.detected == 0
     assert decide_family({"only": found})["only"].sign == 0
 
@@ -152,7 +180,7 @@ def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
     effect = success_effect(first, second, RESAMPLES, models=True)
-    found = with_test(effect)
+    found = with_test(effect, "exact")
     assert found.test.name == "t test of the seeds' effects"
     assert found.test.p_value == pytest.approx(ttest_1samp(effect.per_seed, 0).pvalue)
     assert found.test.leans == 1
@@ -165,9 +193,9 @@ def test_trainings_that_agree_to_the_digit_are_not_certain():
     difference = np.zeros((N, 2))
     difference[:10] = 1
     effect = success_effect(difference, 0 * difference, RESAMPLES, models=True)
-    assert 0.005 < with_test(effect).test.p_value < 0.05
+    assert 0.005 < with_test(effect, "exact").test.p_value < 0.05
     none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
-    assert with_test(none).test.p_value == 1.0
+    assert with_test(none, "exact").test.p_value == 1.0
 
 
 def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
@@ -175,9 +203,9 @@ def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
     wins = np.zeros((100, 3))
     wins[np.arange(6), np.arange(6) % 3] = 1
     resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = with_test(success_effect(wins, 0 * wins, resamples, models=True))
+    found = with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact")
     assert found.test.rejects()
     assert found.test.leans == 1
     assert found.detected == 0
     wins[:12] = 1
-    assert with_test(success_effect(wins, 0 * wins, resamples, models=True)).detected == 1
+    assert with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact").detected == 1

@@ -100,14 +100,14 @@ def test_mcnemar_p_values_of_table_6(row):
     first_only, second_only = split(row["counts"])
     assert round(sign_p_value(first_only, second_only), 3) == row["p"]
     assert first_only - second_only == row["success"][0] - row["success"][1]
-    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES))
+    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES), "exact")
     assert str(found.counts) == row["counts"]
     assert found.test.p_value == sign_p_value(first_only, second_only)
 
 
 def test_state_noise_cost_is_detected():
     row = PUBLISHED["state_noise"]
-    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES))
+    found = with_test(success_effect(*arms([row["counts"]], overlap=True), RESAMPLES), "exact")
     assert found.test.rejects() is row["detected"]
     assert found.value == pytest.approx(row["success"][0] - row["success"][1])
 

@@ -58,7 +58,9 @@ def test_type_one_error_of_the_exact_tests(population, n_seeds):
     """Exact tests keep below 5 %; discreteness may take them to 1 %, a broken test to 0 or 10."""
     rng = np.random.default_rng(10 + n_seeds)
     drawn = (sample(rng, population, n_seeds) for _ in range(RUNS))
-    rejected = [with_test(success_effect(*arms, RESAMPLES)).test.rejects() for arms in drawn]
+    rejected = [
+        with_test(success_effect(*arms, RESAMPLES), "exact").test.rejects() for arms in drawn
+    ]
     assert 0.01 - noise(0.01) < np.mean(rejected) <= 0.05 + noise(0.05)
 
 
@@ -100,7 +102,9 @@ def test_reversal_is_rarely_claimed_where_there_is_none():
 
 def turned(isolated, shared):
     found = {"isolated": isolated, "shared": shared, "change": change(isolated, shared)}
-    return turn(**decide_family({name: with_test(effect) for name, effect in found.items()}))
+    return turn(
+        **decide_family({name: with_test(effect, "exact") for name, effect in found.items()})
+    )
 
 
 def test_coverage_of_the_median_interval():

@@ -71,7 +71,9 @@ def test_mid_p_known_value():
 def found(first, second):
     """Return the tested contrast of two binary arms."""
     return with_test(
-        success_effect(first, second, Resamples.draw("t", max(1, len(first)), n_resamples=1))
+        success_effect(first, second, Resamples.draw("t", max(1, len(first)), n_resamples=1)),
+        "exact",
+        "exact",
     )
 
 

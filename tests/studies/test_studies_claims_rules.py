@@ -213,7 +213,7 @@ def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
     arms = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*arms, Resamples.draw("turn", n, n_resamples=10)))
+    return with_test(success_effect(*arms, Resamples.draw("turn", n, n_resamples=10)), "exact")
 
 
 N = 40

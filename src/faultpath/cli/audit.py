@@ -87,6 +87,13 @@ def command(
             "points ends it too."
         ),
     ] = None,
+    rule: Annotated[
+        Literal["exact", "unconditional"],
+        typer.Option(
+            help="By which an audit without --stop-when is decided: that in force since "
+            "2026-11-23, or the exact one for scenes that were seen under it."
+        ),
+    ] = "unconditional",
     details: Annotated[
         bool,
         typer.Option(
@@ -143,6 +150,7 @@ def command(
         thresholds=() if thresholds is None else sizes(thresholds, "--thresholds"),
         stop_when=stop_when,
         margin_pp=margin,
+        rule=rule,
         options=options,
         folder=out,
         share=share,

@@ -17,6 +17,7 @@ from faultpath.faults import parse_fault
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.record import Generalise, StopRule, StopWhen
+from faultpath.statistics import IN_FORCE, RULES, RuleName
 from faultpath.trials import System, library_of
 from faultpath.trials.state import system_code
 
@@ -43,6 +44,7 @@ def audit(
     generalise: Generalise = "scenes",
     stop_when: StopWhen | None = None,
     margin_pp: float | None = None,
+    rule: RuleName = IN_FORCE,
     options: Mapping[str, object] | None = None,
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
@@ -79,6 +81,8 @@ def audit(
             intervals and tests are such that hold wherever one stops. Default: fly all.
         margin_pp: A difference that is shown to be smaller than this, in percentage points, ends
             a sequential audit too.
+        rule: By which an audit with a fixed number of scenes is decided. `exact` was in force
+            before and is for scenes seen under it: no verdict is redone by a rule chosen later.
         options: The system's own options, such as `{"wind": "L3"}`.
         folder: Run folder. The default is `runs/<question>-<code>` in the working directory, so
             that the same call resumes, and finds what is finished.
@@ -127,9 +131,10 @@ def audit(
         generalise=generalise,
         metric=metric,
         thresholds=thresholds,
-        stop_when=_checked_rule(stop_when),
+        stop_when=_checked_stop(stop_when),
         margin_pp=_checked_margin(margin_pp),
         full=factorial,
+        rule=_checked_rule(rule),
     )
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
     told = display(progress, "audit", given | said)
@@ -141,6 +146,7 @@ def audit(
 
     named = [asked.study.name, fault, Path(library).stem]
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
+    named += [] if rule == IN_FORCE else [f"rule-{rule}"]
     named += _until(asked.question.stop) + ["factorial"] * factorial
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
@@ -230,7 +236,15 @@ def _until(rule: StopRule | None) -> list[str]:
     return [f"until-{rule.when}{small}"]
 
 
-def _checked_rule(rule: object) -> StopWhen | None:
+def _checked_rule(rule: object) -> RuleName:
+    """Return a rule to decide by; `UserError` for what is none."""
+    for known in RULES:
+        if rule == known:
+            return known
+    raise UserError(f"rule is {rule!r:.80}: choose {' or '.join(RULES)}.")
+
+
+def _checked_stop(rule: object) -> StopWhen | None:
     """Return when to stop; `UserError` for what is no rule."""
     rules: tuple[StopWhen, ...] = get_args(StopWhen)
     for known in rules:

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from faultpath.door.display import Display, Now
-from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM, as_text
-from faultpath.errors import Stopped
+from faultpath.door.saved import MADE_FROM, RECORD, SYSTEM, as_text, parsed
+from faultpath.errors import Stopped, UserError
 from faultpath.execution import (
     Failure,
     Interrupted,
@@ -15,8 +15,10 @@ from faultpath.execution import (
     run_study,
 )
 from faultpath.planning import Audit
+from faultpath.record import DecisionRecord, Question
+from faultpath.statistics import RULES
 from faultpath.store import write_text
-from faultpath.store.sealed import seal
+from faultpath.store.sealed import read_regular, seal
 from faultpath.trials import System, system_shown
 from faultpath.work import Executor
 
@@ -47,6 +49,7 @@ def carry_out(
     if system.backend:
         told.say(f"Computing with {system.backend}.")
     asked = audit.question
+    _check_rule(folder, asked)
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
     result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after, share)
     tell_failures(told, result, folder)
@@ -56,6 +59,19 @@ def carry_out(
     files = seal(folder, MADE_FROM)
     provenance = run_provenance(result, stopwatch, told.command, hands, system.backend, files)
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
+
+
+def _check_rule(folder: Path, asked: Question) -> None:
+    """Raise `UserError` where a run was decided by another rule: its verdict is not redone."""
+    try:
+        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord).question
+    except UserError:  # nothing was decided there, or it is damaged and made anew
+        return
+    if not (before.stop or asked.stop) and before.rule != asked.rule:
+        raise UserError(
+            f"{folder} was decided by the rule '{before.rule}' ({RULES[before.rule].words}), and a "
+            f"verdict is not redone by another: give --rule {before.rule}, or another folder."
+        )
 
 
 def _run(

@@ -1,10 +1,10 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Collection, Sequence
-from statistics import median
+from collections.abc import Callable, Collection, Sequence
 
 from faultpath.errors import UserError
 from faultpath.record import breakeven_words, sequential, words
+from faultpath.record.cells import arms_shown, untested_paths
 from faultpath.record.compared import Compared, PathTrials, compared
 from faultpath.record.family import (
     CORRECT,
@@ -13,11 +13,11 @@ from faultpath.record.family import (
     Family,
     alpha_shares,
     decide_paths,
+    led,
     percent,
 )
 from faultpath.record.headline import headline
 from faultpath.record.model import (
-    Cell,
     Change,
     DecisionRecord,
     Effect,
@@ -35,9 +35,9 @@ from faultpath.statistics import (
     detectable,
     mixture_curve,
 )
-from faultpath.statistics.distributions import sign_mid_p_value
+from faultpath.statistics.distributions import sign_mid_p_value, sign_p_value
 from faultpath.statistics.estimate import Discordant
-from faultpath.trials.outcome import Status
+from faultpath.statistics.rules import EM
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
 
@@ -67,8 +67,8 @@ def decide(
             "models: leave --generalise models out."
         )
     n_scenes = found.scenes
-    cells = _cells(asked, paths, table)
-    untested = _untested(paths, cells)
+    cells = arms_shown(asked, paths, table)
+    untested = untested_paths(paths, cells)
     resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
     family = _family(asked, paths, found, untested, resamples)
     stopped = sequential.stopped(asked, family, _scenes(table))
@@ -127,7 +127,7 @@ def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> boo
         found = _compared(question, paths, table)
     except UserError:  # no pair is sound so far
         return False
-    untested = _untested(paths, _cells(question, paths, table))
+    untested = untested_paths(paths, arms_shown(question, paths, table))
     family = _family(question, paths, found, untested, None)
     held = sequential.stopped(question, family, _scenes(table))
     return held is not None and held.reached
@@ -149,18 +149,12 @@ def _family(
     shares = alpha_shares([path.name for path in paths], question.primary)
     return decide_paths(
         {name: each.arms for name, each in found.trials.items()},
+        rule=question.rule,
+        primary=question.primary,
         resamples=resamples,
         models=question.generalise == "models",
         untested=untested,
         shares=None if question.stop is None else shares,
-    )
-
-
-def _cells(question: Question, paths: Sequence[Path], table: OutcomeTable) -> tuple[Cell, ...]:
-    return tuple(
-        _cell(table, variant, path.name)
-        for path in paths
-        for variant in (question.baseline, question.repair)
     )
 
 
@@ -179,14 +173,7 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
             f"the audit has no path '{named}' to be its primary contrast: it has "
             f"{', '.join(names)}."
         )
-    isolated = [name for name in names if name not in (CORRECT, SHARED)]
-    return named or (SHARED if SHARED in names else (isolated or names)[0])
-
-
-def _untested(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
-    """Return the paths on which the fault changed nothing in any trial."""
-    acted = {cell.path for cell in cells if cell.altered_trials}
-    return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
+    return led(named, names)
 
 
 def _effect(
@@ -210,7 +197,10 @@ def _effect(
         test=found.test.name,
         p_value=found.test.p_value,
         adjusted_p_value=found.decision.adjusted_p if found.decision else None,
-        mid_p_value=_mid_p(*counts) if len(counts) == 1 and not about.sequential else None,
+        mcnemar_p_value=_exact(sign_p_value, counts) if found.test.name == EM else None,
+        mid_p_value=_exact(sign_mid_p_value, counts)
+        if len(counts) == 1 and not about.sequential
+        else None,
         scenes=len(trials.pairs.scenes),
         void_pairs=trials.pairs.void,
         wins=tuple(count.first_only for count in counts),
@@ -238,11 +228,11 @@ def _detectable(about: words.About, found: Contrast, arms: Arms) -> float | None
     """
     if found.decision is None or about.question.generalise == "models" or about.sequential:
         return None
-    return detectable(*arms, alpha=found.decision.critical_p)
+    return detectable(*arms, rule=about.question.rule, alpha=found.decision.critical_p)
 
 
-def _mid_p(counts: Discordant) -> float:
-    return sign_mid_p_value(counts.first_only, counts.second_only)
+def _exact(test: Callable[[int, int], float], counts: Sequence[Discordant]) -> float:
+    return test(counts[0].first_only, counts[0].second_only)
 
 
 def _scoped(about: words.About, contrast: Contrast) -> Estimate:
@@ -277,24 +267,3 @@ def _break_even(
     of = {effect.path: effect for effect in effects}
     said = breakeven_words.clause(about.question, result.regions, of[CORRECT], of[path])
     return PathBreakEven(path=path, result=result, curve=mixture_curve(*ends), words=said)
-
-
-def _cell(table: OutcomeTable, variant: str, path: str) -> Cell:
-    rows = [row for seed in table.seeds(variant, path) for row in table.arm(variant, path, seed)]
-    outcomes = [row.outcome for row in rows]
-    count = {status: sum(o.status is status for o in outcomes) for status in Status}
-    ran = len(outcomes) - count[Status.FAILED]
-    times = [o.time_s for o in outcomes if o.status is Status.SUCCESS]
-    return Cell(
-        variant=variant,
-        path=path,
-        trials=len(outcomes),
-        success=count[Status.SUCCESS],
-        crash=count[Status.CRASH],
-        timeout=count[Status.TIMEOUT],
-        failed=count[Status.FAILED],
-        success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
-        median_time_s=median(times) if times else None,
-        struck_trials=sum(o.struck_steps > 0 for o in outcomes),
-        altered_trials=sum(o.altered_steps > 0 for o in outcomes),
-    )

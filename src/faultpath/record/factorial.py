@@ -14,7 +14,7 @@ from faultpath.errors import UserError
 from faultpath.record import words
 from faultpath.record.compared import compared
 from faultpath.record.factors import OUTCOMES, Factorial, FactorialEffect, FactorialOf
-from faultpath.record.family import CORRECT, SHARED, Arms
+from faultpath.record.family import ALPHA, CORRECT, SHARED, Arms
 from faultpath.record.model import Question
 from faultpath.statistics import (
     Contrast,
@@ -72,7 +72,7 @@ def factorial(
     arms = {path: each.arms for path, each in found.trials.items()}
     resamples = Resamples.draw(asked.library_hash, found.scenes, seed=resamples_seed)
     family: dict[tuple[FactorialOf, tuple[str, ...]], Contrast] = {
-        (of, each): with_test(weighted_sum(_weights(each, paths.values()), contrasts))
+        (of, each): with_test(weighted_sum(_weights(each, paths.values()), contrasts), asked.rule)
         for of, contrasts in _contrasts(arms, resamples, asked.generalise == "models").items()
         for each in subsets(factors)
         if each
@@ -138,7 +138,7 @@ def _effect(
 
 def _sentences(asked: Question, effects: Sequence[FactorialEffect], scenes: int) -> Iterator[str]:
     """Say what was decided, what an effect is, and what it was corrected for."""
-    needed = fewest_scenes(len(effects))
+    needed = fewest_scenes(ALPHA / len(effects))
     about = {"difference": f"{asked.repair} minus {asked.baseline}", "baseline": asked.baseline}
     for each in effects:
         if each.sign:

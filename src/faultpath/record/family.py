@@ -8,8 +8,10 @@ from numpy.typing import NDArray
 
 from faultpath.record.model import Extreme
 from faultpath.statistics import (
+    RULES,
     Contrast,
     Resamples,
+    RuleName,
     Turn,
     betting,
     change,
@@ -53,6 +55,8 @@ class Family:
 def decide_paths(
     success: Mapping[str, Arms],
     *,
+    rule: RuleName,
+    primary: str = "",
     resamples: Resamples | None = None,
     models: bool = False,
     untested: Collection[str] = (),
@@ -63,7 +67,8 @@ def decide_paths(
 
     This is the rule of `faultpath audit`, without words and without secondary outcomes, and what
     simulations of its error rates call. The family holds the effect on every path and every change
-    from an isolated path to `SHARED`; Holm's procedure runs over all of them at `alpha`. Paths in
+    from an isolated path to `SHARED`; Holm's procedure runs over all of them at `alpha`, by a
+    `rule` that is weighted with the parts of `alpha_shares` for the `primary` path. Paths in
     `untested` (the fault never acted there) take no part. `models` speaks of newly trained models
     as well. `resamples` are drawn where they are not given. `shares` of `alpha`, by the names of
     `alpha_shares`, say that the audit was sequential: what is decided then holds at whatever scene
@@ -79,18 +84,22 @@ def decide_paths(
                 drawn,
                 models=models,
                 sequential=shares is not None,
-            )
+            ),
+            rule,
         )
         for path, (repair, baseline) in success.items()
     }
     isolated = _isolated([path for path in effects if path not in untested])
-    changes = {path: with_test(change(effects[path], effects[SHARED])) for path in isolated}
+    changes = {path: with_test(change(effects[path], effects[SHARED]), rule) for path in isolated}
     family = {_effect(path): e for path, e in effects.items() if path not in untested}
     family |= {_change(path): c for path, c in changes.items()}
-    made = decide_family(family, alpha, shares)
+    parts = alpha_shares([path for path in effects if path not in untested], led(primary, effects))
+    weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
+    made = decide_family(family, alpha, shares, weights)
     effects = {path: made.get(_effect(path), effect) for path, effect in effects.items()}
     changes = {path: made[_change(path)] for path in changes}
-    needed = fewest_scenes(len(family), alpha)
+    largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
+    needed = fewest_scenes(alpha * largest)
     if shares is not None:
         needed = betting.fewest_scenes(alpha * max(shares.values()))
     return Family(
@@ -103,10 +112,17 @@ def decide_paths(
     )
 
 
-def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
-    """Return each contrast's share of the error rate of a sequential audit, by its name.
+def led(primary: str, paths: Collection[str]) -> str:
+    """Return the primary path: as named, else the shared one, else the isolated."""
+    isolated = [name for name in paths if name not in (CORRECT, SHARED)]
+    return primary or (SHARED if SHARED in paths else (isolated or list(paths))[0])
 
-    The effect on the primary path, for which it stops, has a half; all others share the rest.
+
+def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
+    """Return each contrast's share of the error rate, by its name, where they are not equal.
+
+    The effect on the primary path, for which sequential audits stop, has a half; all others share
+    the rest. Where that path has none, the others' shares are equal.
     """
     named = [*map(_effect, paths), *map(_change, _isolated(paths))]
     others = [name for name in named if name != _effect(primary)]

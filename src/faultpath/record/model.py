@@ -2,11 +2,12 @@
 
 from typing import Any, Literal, cast
 
-from pydantic import BaseModel, ConfigDict, model_validator
+from pydantic import Field, model_validator
 
 from faultpath.faults import Fault
+from faultpath.frozen import Frozen
 from faultpath.record.factors import Factorial
-from faultpath.statistics import BreakEven, Estimate, Sign, Turn
+from faultpath.statistics import RULES, BreakEven, Estimate, RuleName, Sign, Turn
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 
 Extreme = Literal["floor", "ceiling"]
@@ -15,11 +16,7 @@ Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class StopRule(_Frozen):
+class StopRule(Frozen):
     """When a sequential audit stops."""
 
     when: StopWhen
@@ -36,7 +33,7 @@ class StopRule(_Frozen):
     """That a scene takes: distinct arms."""
 
 
-class Question(_Frozen):
+class Question(Frozen):
     """What the audit asked."""
 
     system: str
@@ -58,7 +55,7 @@ class Question(_Frozen):
     """What the intervals and tests speak of: new scenes, or newly trained models too."""
     trained: bool = False
     """Whether the variants hold trained models."""
-    ends: dict[str, str] = {}
+    ends: dict[str, str] = Field(default_factory=dict)
     """What the system calls its ends, where it is not the status itself."""
     metrics: dict[MetricName, Metric] = VEHICLE
     """What its trials measure. Records that do not say speak of a vehicle."""
@@ -68,14 +65,22 @@ class Question(_Frozen):
     """Of that metric: at which success is told anew."""
     stop: StopRule | None = None
     """Of a sequential audit, of which `n_scenes` is the most that it takes."""
+    rule: RuleName = "exact"
+    """By which it is decided, then and ever after; records that do not say were by the first. A
+    sequential audit is decided by bets, whatever the rule."""
 
     @property
     def family(self) -> str:
         """How p-values were adjusted, as part of a sentence."""
         return "after Holm" if self.stop is None else "within the family"
 
+    @property
+    def ruled(self) -> str:
+        """The rule in words, with the time it is of; empty for a sequential audit."""
+        return "" if self.stop else RULES[self.rule].words
 
-class StruckTap(_Frozen):
+
+class StruckTap(Frozen):
     """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
 
     channel: str
@@ -86,7 +91,7 @@ class StruckTap(_Frozen):
     """Those in which what the consumer got differed from the reading."""
 
 
-class Path(_Frozen):
+class Path(Frozen):
     """One way in which the fault reaches the system."""
 
     name: str
@@ -103,7 +108,7 @@ class Path(_Frozen):
     """What was struck in the baseline."""
 
 
-class Cell(_Frozen):
+class Cell(Frozen):
     """The trials of one variant on one path, all seeds together."""
 
     variant: str
@@ -120,7 +125,7 @@ class Cell(_Frozen):
     altered_trials: int
 
 
-class AtThreshold(_Frozen):
+class AtThreshold(Frozen):
     """Success under another rule: the trial did not crash, and its metric is good enough."""
 
     threshold: float
@@ -130,7 +135,7 @@ class AtThreshold(_Frozen):
     """Percentage points; secondary, with an interval that stands by itself."""
 
 
-class Effect(_Frozen):
+class Effect(Frozen):
     """The repair minus the baseline on one path, over scenes in which every arm ran."""
 
     path: str
@@ -143,6 +148,8 @@ class Effect(_Frozen):
     adjusted_p_value: float | None
     """Over the family, after Holm or by the shares of a sequential audit; `None` for a path that is
     not in it."""
+    mcnemar_p_value: float | None = None
+    """Exact McNemar's, to stand beside that of another test of one seed; it decides nothing."""
     mid_p_value: float | None
     scenes: int
     """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
@@ -192,7 +199,7 @@ class Effect(_Frozen):
         return self.sign != 0 and self.extreme is None
 
 
-class PathBreakEven(_Frozen):
+class PathBreakEven(Frozen):
     """The fault frequencies at which neither arm is decided to be ahead, on one path."""
 
     path: str
@@ -204,7 +211,7 @@ class PathBreakEven(_Frozen):
     """What may be said of it, without the path; empty where no end has an effect that leads."""
 
 
-class Change(_Frozen):
+class Change(Frozen):
     """How the effect changes from a fault at one module to the shared one."""
 
     isolated: str
@@ -221,7 +228,7 @@ class Change(_Frozen):
     words: str
 
 
-class Stopped(_Frozen):
+class Stopped(Frozen):
     """How far a sequential audit went."""
 
     scenes: int
@@ -232,7 +239,7 @@ class Stopped(_Frozen):
     """Paths on which the difference was shown to be smaller than the margin."""
 
 
-class Verdict(_Frozen):
+class Verdict(Frozen):
     """The answer in words."""
 
     headline: str
@@ -241,7 +248,7 @@ class Verdict(_Frozen):
     """What would change the verdict."""
 
 
-class DecisionRecord(_Frozen):
+class DecisionRecord(Frozen):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 
     format: Literal[2] = 2

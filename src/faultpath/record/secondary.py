@@ -14,7 +14,7 @@ from faultpath.statistics import (
 )
 from faultpath.trials.pairing import Bools, Floats, Pairs, Trials
 
-MIN_SCENES = fewest_scenes(1)
+MIN_SCENES = fewest_scenes()
 """Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
 
 

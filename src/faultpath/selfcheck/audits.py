@@ -9,7 +9,7 @@ import numpy as np
 from faultpath.record.family import CORRECT, SHARED, Arms, decide_paths
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import Population
-from faultpath.statistics import Resamples
+from faultpath.statistics import IN_FORCE, Resamples
 from faultpath.statistics.inputs import Floats
 from faultpath.streams import generator
 
@@ -34,7 +34,7 @@ class EqualArms:
         stream = generator("selfcheck", repr(self), 0)
         paths: dict[str, Population] = dict.fromkeys(PATHS, self.population)
         announced = sum(
-            decide_paths(_audit(stream, self.scenes, paths, self.together)).announces
+            decide_paths(_audit(stream, self.scenes, paths, self.together), rule=IN_FORCE).announces
             for _ in range(self.runs)
         )
         setting = {
@@ -68,7 +68,7 @@ class NoReversal:
         }
         announced = 0
         for _ in range(self.runs):
-            turns = decide_paths(_audit(stream, self.scenes, paths, 0.3)).turns
+            turns = decide_paths(_audit(stream, self.scenes, paths, 0.3), rule=IN_FORCE).turns
             announced += "reversal" in turns.values()
         setting = {
             "scenes": self.scenes,
@@ -98,7 +98,9 @@ class Trainings:
             easy = stream.random((self.scenes, 1))
             noise = stream.normal(0.0, 0.15, size=(2, self.scenes, self.seeds))
             arms = (easy + noise[0] < 0.5 + shift, easy + noise[1] < 0.5)
-            family = decide_paths({CORRECT: arms}, resamples=resamples, models=models)
+            family = decide_paths(
+                {CORRECT: arms}, rule=IN_FORCE, resamples=resamples, models=models
+            )
             detected += family.announces
         setting = {"scenes": self.scenes, "seeds": self.seeds, "generalise": self.generalise}
         return Measured(TRAININGS, setting, detected / self.runs, self.runs)

@@ -9,7 +9,7 @@ import numpy as np
 from faultpath.selfcheck.coverage import tables
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import Population
-from faultpath.statistics import detectable
+from faultpath.statistics import IN_FORCE, detectable
 from faultpath.statistics.distributions import binomial_pmf, multinomial_pmf, multinomial_ways
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import detected
@@ -52,7 +52,9 @@ class DetectionAtTheReported:
     def _exactly(self) -> float:
         """Return the mean over every number of discordant scenes, each with its chance."""
         every, numbers = tables(self.scenes), np.arange(self.scenes + 1)
-        every = every[detected(self.population.sizes, every, np.ones(len(every)), self.alpha)]
+        every = every[
+            detected(self.population.sizes, every, np.ones(len(every)), self.alpha, IN_FORCE)
+        ]
         ways = multinomial_ways(every)
         chances = binomial_pmf(numbers, self.scenes, self.population.rate)
         total = weights = 0.0
@@ -76,14 +78,14 @@ class DetectionAtTheReported:
                 drawn = stream.multinomial(self.scenes, true.chances(), size=_AGAIN)
                 counts = drawn.astype(np.float64)
                 far = reach(true.sizes, counts, 1.0)
-                shares.append(float(detected(true.sizes, counts, far, self.alpha).mean()))
+                shares.append(float(detected(true.sizes, counts, far, self.alpha, IN_FORCE).mean()))
         mean = float(np.mean(shares))
         variance = float(np.var(shares)) / len(shares)
         return mean, round(mean * (1.0 - mean) / variance) if variance else len(shares)
 
     def _reported(self, difference: Floats) -> float | None:
         """Return the least detectable difference, a fraction, of outcomes [scenes, seeds]."""
-        least = detectable(difference > 0.0, difference < 0.0, alpha=self.alpha)
+        least = detectable(difference > 0.0, difference < 0.0, rule=IN_FORCE, alpha=self.alpha)
         return None if least is None else least / 100.0
 
     def _at(self, difference: float) -> Population:

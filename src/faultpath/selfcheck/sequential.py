@@ -12,6 +12,7 @@ from faultpath.record.family import ALPHA, SHARED, alpha_shares
 from faultpath.selfcheck.audits import PATHS
 from faultpath.selfcheck.model import Measured, Setting
 from faultpath.selfcheck.populations import Population
+from faultpath.statistics import IN_FORCE
 from faultpath.statistics.betting import log_capitals
 from faultpath.statistics.inputs import Floats
 from faultpath.statistics.power import rule_power
@@ -150,12 +151,16 @@ class Taken:
 
 @cache
 def fixed_scenes(rate: float, difference: float) -> int:
-    """Return how many scenes detect a difference with `POWER`, as the first of Holm's six."""
-    alpha = ALPHA / len(alpha_shares(PATHS, SHARED))
-    n = 10
-    while rule_power(n, rate, difference, alpha) < POWER:
-        n += 1
-    return n
+    """Return how many scenes detect a primary difference with `POWER`, were their number fixed."""
+    alpha = ALPHA * alpha_shares(PATHS, SHARED)[f"effect/{SHARED}"]
+    few, many = 0, 10
+    while rule_power(many, rate, difference, alpha, rule=IN_FORCE) < POWER:
+        few, many = many, 2 * many
+    while many - few > 1:
+        middle = (few + many) // 2
+        reached = rule_power(middle, rate, difference, alpha, rule=IN_FORCE) >= POWER
+        few, many = (few, middle) if reached else (middle, many)
+    return many
 
 
 def _drawn(stream: np.random.Generator, truth: Population, scenes: int) -> Floats:

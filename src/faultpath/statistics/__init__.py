@@ -9,13 +9,17 @@ from faultpath.statistics.effects import mean_effect, median_effect, success_eff
 from faultpath.statistics.estimate import BreakEven, Estimate, Region, SeedCounts, Sign
 from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.rules import IN_FORCE, RULES, RuleName
 
 __all__ = [
+    "IN_FORCE",
+    "RULES",
     "BreakEven",
     "Contrast",
     "Estimate",
     "Region",
     "Resamples",
+    "RuleName",
     "SeedCounts",
     "Sign",
     "Turn",

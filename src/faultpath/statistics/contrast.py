@@ -27,7 +27,7 @@ from faultpath.statistics.power import fewest_scenes
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import SceneValues, combined
 
-MIN_SCENES = fewest_scenes(1)
+MIN_SCENES = fewest_scenes()
 """With fewer, nothing is called a detection: even if all agree no test rejects at 0.05."""
 ROUNDING = 1e-12
 """Draws that spread no more than this are all the same."""
@@ -154,10 +154,12 @@ class Contrast:
     def least(self) -> float | None:
         """The least difference from 0 that would have been detected with 80 % power, in ``unit``.
 
+        That of one contrast by itself, by the paper's test.
+
         None where no difference would, or where 0 is not what it is set against.
         """
         if self.arms is not None:
-            return detectable(*self.arms)
+            return detectable(*self.arms, rule="exact")
         if not (self.against_zero and self.enough and self.interval):
             return None
         half_width = normal_quantile(0.975)  # of a 95 % interval, in standard errors

@@ -6,21 +6,22 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from faultpath.statistics import betting
+from faultpath.statistics import betting, unconditional
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import ALPHA, SCENES_AND_SEEDS, Decision, PairedTest, Sign
+from faultpath.statistics.rules import EM, RuleName
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 
 
-def with_test(contrast: Contrast) -> Contrast:
-    """Return a contrast with its test, the paper's for given models.
+def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
+    """Return a contrast with its test: the one place where that is chosen.
 
-    For given models: exact McNemar (one seed), else the sign test on what scenes differ by. For
-    newly trained ones: the t test of the seeds' effects. For a sequential audit: bets on the mean
-    (`betting`). ``ValueError`` for contrasts that have no test, as means and medians of unbounded
-    outcomes.
+    For given models and one seed: exact McNemar, or by the ``unconditional`` rule the E+M test.
+    Else the sign test on what scenes differ by. For newly trained ones: the t test of the seeds'
+    effects. For a sequential audit: bets on the mean (`betting`). ``ValueError`` for contrasts
+    that have no test, as means and medians of unbounded outcomes.
     """
     if contrast.estimand == SCENES_AND_SEEDS:
         return replace(contrast, test=_seed_test(contrast))
@@ -31,6 +32,9 @@ def with_test(contrast: Contrast) -> Contrast:
         return replace(contrast, test=PairedTest("bets on the mean", p_value, _sign(leans)))
     values = contrast.scenes.values
     first, second = int((values > 0).sum()), int((values < 0).sum())
+    if rule == "unconditional" and contrast.arms is not None and contrast.n_seeds == 1:
+        p_value = unconditional.p_value(first, second, contrast.n_scenes)
+        return replace(contrast, test=PairedTest(EM, p_value, _sign(first - second)))
     name = "exact McNemar" if contrast.n_seeds == 1 else "sign test on scene means"
     if contrast.arms is None:
         name = "sign test on scene differences"
@@ -48,8 +52,12 @@ def decide_family(
     contrasts: Mapping[str, Contrast],
     alpha: float = ALPHA,
     shares: Mapping[str, float] | None = None,
+    weights: Mapping[str, float] | None = None,
 ) -> dict[str, Contrast]:
     """Decide tested contrasts together: Holm's adjustment of all p-values given.
+
+    With ``weights`` (any positive numbers) it is his weighted one: each has that part of ``alpha``,
+    and what is detected hands its part on to the others.
 
     One is detected when its adjusted p-value is at most ``alpha``, its interval excludes 0 and both
     point the same way. So one or more false detections among all of them come in at most a share
@@ -58,25 +66,26 @@ def decide_family(
     """
     tests = {name: each.test for name, each in contrasts.items() if each.test is not None}
     p_values = {name: tests[name].p_value for name in contrasts}
-    adjusted = _holm(p_values)
+    weighs = {name: 1.0 if weights is None else weights[name] for name in contrasts}
+    adjusted = _holm(p_values, weighs)
     if shares is not None:
         adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
     decided: dict[str, Contrast] = {}
     for name, each in contrasts.items():
         leans = tests[name].leans if adjusted[name] <= alpha else 0
         sign = leans if leans and leans == each.side else 0
-        others = [p for other, p in p_values.items() if other != name]
-        critical = _critical(others, alpha) if shares is None else alpha * shares[name]
+        critical = alpha * shares[name] if shares else _critical(name, p_values, weighs, alpha)
         decided[name] = replace(each, decision=Decision(sign, adjusted[name], critical))
     return decided
 
 
-def _holm(p_values: Mapping[str, float]) -> dict[str, float]:
-    ordered = sorted(p_values, key=lambda name: p_values[name])
+def _holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[str, float]:
+    ordered = sorted(p_values, key=lambda name: p_values[name] / weights[name])
     adjusted: dict[str, float] = {}
     largest = 0.0
     for place, name in enumerate(ordered):
-        largest = max(largest, min(1.0, (len(ordered) - place) * p_values[name]))
+        left = sum(weights[other] for other in ordered[place:])
+        largest = max(largest, min(1.0, left / weights[name] * p_values[name]))
         adjusted[name] = largest
     return adjusted
 
@@ -92,14 +101,17 @@ def turn(isolated: Contrast, shared: Contrast, change: Contrast) -> Turn:
     return "interaction" if change.sign else "none"
 
 
-def _critical(others: list[float], alpha: float) -> float:
-    """Return the largest p-value that would be rejected beside these others."""
-    rejected = 0
-    for p in sorted(others):
-        if p > alpha / (len(others) + 1 - rejected):
+def _critical(
+    name: str, p_values: Mapping[str, float], weights: Mapping[str, float], alpha: float
+) -> float:
+    """Return the largest p-value with which one would be rejected beside the others."""
+    left = dict(weights)
+    others = (other for other in p_values if other != name)
+    for other in sorted(others, key=lambda other: p_values[other] / weights[other]):
+        if p_values[other] > alpha * weights[other] / sum(left.values()):
             break
-        rejected += 1
-    return alpha / (len(others) + 1 - rejected)
+        del left[other]
+    return alpha * weights[name] / sum(left.values())
 
 
 def _sign(value: float) -> Sign:

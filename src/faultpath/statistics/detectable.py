@@ -13,6 +13,7 @@ from faultpath.statistics.distributions import clopper_pearson_upper
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.power import rule_power, seed_mixture, simulated_power
+from faultpath.statistics.rules import RuleName
 
 _PRECISION = 1e-3
 _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
@@ -20,7 +21,7 @@ _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
 
 
 def detectable(
-    first: Numbers, second: Numbers, *, alpha: float = ALPHA, power: float = 0.8
+    first: Numbers, second: Numbers, *, rule: RuleName, alpha: float = ALPHA, power: float = 0.8
 ) -> float | None:
     """Return the detectable difference in success (pp) of binary arms [scenes, seeds].
 
@@ -41,9 +42,9 @@ def detectable(
     def reached(difference: float) -> float:
         share = min(1.0, max(rate, difference))
         if alike == 1.0:
-            return rule_power(n_scenes, share, difference, alpha)
+            return rule_power(n_scenes, share, difference, alpha, rule=rule)
         values, chances = seed_mixture(seeds.shape[1], share, difference / share, alike)
-        return simulated_power(n_scenes, values, chances, alpha)
+        return simulated_power(n_scenes, values, chances, alpha, rule)
 
     least = _least(lambda size: reached(size) >= power)
     return None if least is None else 100.0 * least

@@ -26,14 +26,15 @@ def binomial_cdf(successes: ArrayLike, trials: ArrayLike, probability: ArrayLike
     return result
 
 
-def binomial_pmf(successes: ArrayLike, trials: int, probability: float) -> Floats:
-    """Return P(X = successes)."""
+def binomial_pmf(successes: ArrayLike, trials: int, probability: ArrayLike) -> Floats:
+    """Return P(X = successes), broadcast."""
     from scipy import special
 
     k = np.asarray(successes, dtype=np.float64)
     choose = special.gammaln(trials + 1.0) - special.gammaln(k + 1.0)
     choose = choose - special.gammaln(trials - k + 1.0)
-    chance = special.xlogy(k, probability) + special.xlog1py(trials - k, -probability)
+    share = np.asarray(probability, dtype=np.float64)
+    chance = special.xlogy(k, share) + special.xlog1py(trials - k, -share)
     return np.asarray(np.exp(choose + chance), dtype=np.float64)
 
 

@@ -1,31 +1,43 @@
-"""Power of the rule that decides: exact or sign test and score interval, on the same side of 0."""
+"""Power of the rule that decides: its test and the score interval, on the same side of 0."""
 
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.statistics import unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
+from faultpath.statistics.rules import RuleName
 from faultpath.statistics.score import quantile, reach, rejects
 from faultpath.streams import generator
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""
+_ONE_SEED = 3
+"""Values that a scene can have with one seed."""
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 
 
-def fewest_scenes(hypotheses: int, alpha: float = ALPHA) -> int:
-    """Return how many scenes a family needs at least for its tests to detect anything at all."""
-    return int(np.ceil(1.0 + np.log2(hypotheses / alpha) - 1e-12))
+def fewest_scenes(alpha: float = ALPHA) -> int:
+    """Return how many scenes a test at ``alpha`` needs at least to detect anything at all.
+
+    If all favour one arm, sign test and E+M test have the same p, ``2 ** (1 - scenes)``.
+    """
+    return int(np.ceil(1.0 + np.log2(1.0 / alpha) - 1e-12))
 
 
 def rule_power(
-    n_scenes: int, discordant_rate: float, difference: float, alpha: float = ALPHA
+    n_scenes: int,
+    discordant_rate: float,
+    difference: float,
+    alpha: float = ALPHA,
+    *,
+    rule: RuleName,
 ) -> float:
-    """Return the exact power of exact McNemar at ``alpha`` together with Tango's 95 % interval.
+    """Return the exact power of one seed's test at ``alpha`` together with Tango's 95 % interval.
 
     Each of ``n_scenes`` pairs is discordant with probability ``discordant_rate`` and the success
     probabilities differ by ``difference`` (fractions, |difference| <= discordant_rate). The number
@@ -39,7 +51,7 @@ def rule_power(
     if discordant_rate == 0.0:
         return 0.0
     discordants = np.arange(n_scenes + 1)
-    critical = _critical(n_scenes, alpha)
+    critical = _critical(n_scenes, alpha, rule)
     favour = 0.5 * (1.0 + abs(difference) / discordant_rate)
     detects = binomial_cdf(critical, discordants, favour)
     detects = detects + binomial_cdf(critical, discordants, 1.0 - favour)
@@ -47,16 +59,17 @@ def rule_power(
 
 
 @lru_cache(maxsize=64)
-def _critical(n_scenes: int, alpha: float) -> NDArray[np.int64]:
+def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
     """Return per number of discordants the largest smaller count that detects; -1: none does.
 
     Bisected: what detects also does so with fewer.
     """
     total = np.arange(n_scenes + 1)
+    known = unconditional.critical(n_scenes, alpha) if rule == "unconditional" else None
     low, high = np.full_like(total, -1), total.copy()  # the one detects, the other does not
     while (apart := high - low > 1).any():
         fewer = (low + high) // 2
-        tested = binomial_cdf(fewer, total, 0.5) <= alpha / 2.0
+        tested = binomial_cdf(fewer, total, 0.5) <= alpha / 2.0 if known is None else fewer <= known
         # Tango's statistic of no difference is (first - second)^2 / discordants.
         further = total - 2 * fewer
         excluded = (further > 0) & (further**2 > quantile(LEVEL) ** 2 * total)
@@ -65,7 +78,9 @@ def _critical(n_scenes: int, alpha: float) -> NDArray[np.int64]:
     return low
 
 
-def simulated_power(n_scenes: int, values: Floats, chances: Floats, alpha: float) -> float:
+def simulated_power(
+    n_scenes: int, values: Floats, chances: Floats, alpha: float, rule: RuleName
+) -> float:
     """Return the power of sign test and score interval, from `AUDITS` simulated audits.
 
     A scene has one of ``values`` [kinds], fractions of the largest possible one, with ``chances``
@@ -74,7 +89,7 @@ def simulated_power(n_scenes: int, values: Floats, chances: Floats, alpha: float
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
     far = reach(values, counts, 1.0)
-    return float(detected(values, counts, far, alpha).mean())
+    return float(detected(values, counts, far, alpha, rule).mean())
 
 
 def seed_mixture(seeds: int, rate: float, lean: float, alike: float) -> tuple[Floats, Floats]:
@@ -93,10 +108,16 @@ def seed_mixture(seeds: int, rate: float, lean: float, alike: float) -> tuple[Fl
     return np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
 
 
-def detected(values: Floats, counts: Floats, far: Floats, alpha: float) -> NDArray[np.bool_]:
-    """Return [audits]: whether sign test and interval agree, for ``counts`` [audits, values]."""
+def detected(
+    values: Floats, counts: Floats, far: Floats, alpha: float, rule: RuleName
+) -> NDArray[np.bool_]:
+    """Return [audits]: whether test and interval agree, for ``counts`` [audits, values]."""
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)
-    p_value = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5)
+    fewer = np.minimum(first, second)
+    tested = 2.0 * binomial_cdf(fewer, first + second, 0.5) <= alpha
+    if rule == "unconditional" and len(values) == _ONE_SEED:
+        known = unconditional.critical(int(counts[0].sum()), alpha)
+        tested = fewer <= known[(first + second).astype(np.int64)]
     same = np.sign(counts @ values) == np.sign(first - second)
-    return (p_value <= alpha) & same & rejects(values, counts, 0.0, far, quantile(LEVEL))
+    return tested & same & rejects(values, counts, 0.0, far, quantile(LEVEL))

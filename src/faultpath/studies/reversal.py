@@ -56,6 +56,7 @@ def decision(outcomes: OutcomeTable, leg: Leg, deliveries: Deliveries) -> Decisi
         n_scenes=len(study.scenes),
         seeds=outcomes.seeds(BASELINE, CORRECT),
         trained=leg.system.trained,
+        rule="exact",  # the paper's tests
     )
     paths = [
         Path(

@@ -34,7 +34,7 @@ class Turned(NamedTuple):
         if moved.detected > 0 or before.detected < 0 or after.detected > 0:
             return REFUTED
         one, two, both = decide_family(
-            {"before": before, "after": after, "change": with_test(moved)}
+            {"before": before, "after": after, "change": with_test(moved, "exact")}
         ).values()
         if turn(one, two, both) == "reversal":
             return CONFIRMED

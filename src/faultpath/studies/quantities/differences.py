@@ -34,7 +34,7 @@ def ended(ends: Callable[[Trials], Bools]) -> Effect:
     """Return the difference in how many trials end in a way, with the paper's test."""
 
     def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
-        return with_test(success_effect(ends(pairs.first), ends(pairs.second), resamples))
+        return with_test(success_effect(ends(pairs.first), ends(pairs.second), resamples), "exact")
 
     return effect
 

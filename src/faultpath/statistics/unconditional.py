@@ -1,0 +1,167 @@
+"""Lloyd's E+M test of no difference between paired binary outcomes (Biometrics 64:716, 2008).
+
+Exact McNemar holds the number of discordant pairs fixed, and among few of them no split is rare.
+This test leaves it free. *E*: the chance of a ``|first - second| / sqrt(discordant)`` at least as
+large, where pairs are discordant as often as was seen. *M*: that chance only orders the tables;
+the p-value is the largest chance, over all shares of discordant pairs, of a table that is ordered
+as far out. So the level holds whatever the share.
+
+Tables are told by their discordant pairs and the smaller of both counts, the *fewer*.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.statistics.distributions import binomial_pmf, normal_quantile
+from faultpath.statistics.inputs import Floats
+
+Counts = NDArray[np.int64]
+
+_TIE = 1e-9
+"""Relative: what differs by less is as far out, but for rounding."""
+_SPREAD = 9.0
+"""Standard deviations of a number of discordant pairs beyond which none is expected."""
+_LEAST = 1e-300
+"""Chance below which all are alike to what guesses."""
+_PEAKS, _FINER = 3, 25
+"""Of the chance over the shares: how many are looked at closely, and at how many points."""
+
+
+@lru_cache(maxsize=4096)
+def p_value(first: int, second: int, n_pairs: int) -> float:
+    """Return the two-sided p of ``first`` against ``second`` discordant pairs among ``n_pairs``."""
+    if first == second:
+        return 1.0
+    law, total = _law(n_pairs), np.array([first + second])
+    seen = law.expected(total, np.array([min(first, second)]))[0]
+    none, most = _bounds(n_pairs)
+    return law.worst(law.region(float(seen), none, most))
+
+
+@lru_cache(maxsize=256)
+def critical(n_pairs: int, alpha: float) -> Counts:
+    """Return [discordants]: the largest smaller count with a p of at most ``alpha``; -1: none."""
+    law = _law(n_pairs)
+    inside, outside = _bounds(n_pairs)
+    low, high = 0.0, 1.0
+    while high - low > _TIE * high:
+        middle = 0.5 * (low + high)
+        region = law.region(middle, inside, outside)
+        if law.worst(region, limit=alpha) <= alpha:
+            low, inside = middle, region
+        else:
+            high, outside = middle, region
+    return inside
+
+
+def _bounds(n_pairs: int) -> tuple[Counts, Counts]:
+    """Return [discordants]: no table, and every table whose counts differ."""
+    total = np.arange(n_pairs + 1)
+    return np.full_like(total, -1), (total - 1) // 2
+
+
+class _Law(NamedTuple):
+    """What tables of one number of pairs have in common under no difference."""
+
+    tails: Floats
+    """[discordants, 1 + fewer]: the chance of so few or fewer on either side."""
+    others: Counts
+    """[discordants, expected]: numbers of discordant pairs that are expected beside that one."""
+    roots: Floats
+    """[discordants, expected]: of how many times as many each of them is."""
+    chances: Floats
+    """[discordants, expected]: of each of them."""
+    shares: Floats
+    """Of discordant pairs, where the largest chance is looked for."""
+    mixed: Floats
+    """[shares, discordants]: the chance of each number of discordant pairs."""
+
+    def expected(self, total: Counts, fewer: Counts) -> Floats:
+        """Return [tables]: the E step's chance of tables whose counts differ."""
+        others = self.others[total]
+        apart = (total - 2 * fewer)[:, np.newaxis] * self.roots[total]
+        # Halves of whole numbers and of roots of fractions: as near as this only where they agree.
+        most = np.maximum(np.floor((others - apart) / 2.0 + 1e-9), -1.0).astype(np.int64)
+        most[others == 0] = -1
+        return (self.chances[total] * self.tails[others, most + 1]).sum(axis=1)
+
+    def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
+        """Return [discordants]: the largest smaller count that is as far out as ``chance``.
+
+        It lies between those of the regions ``inside`` and ``outside``. Bisected: with a smaller
+        one a table is further out.
+        """
+        low, high = inside.copy(), outside + 1
+        high[0] = 0
+        every = np.arange(len(low))
+        near = (every + normal_quantile(max(chance, _LEAST) / 2.0) * np.sqrt(every)) / 2.0
+        guesses = [np.round(near + off).astype(np.int64) for off in (1.0, -1.0)]
+        while len(total := np.flatnonzero(high - low > 1)):
+            middle = (low[total] + high[total]) // 2
+            if guesses:
+                middle = np.clip(guesses.pop()[total], low[total] + 1, high[total] - 1)
+            within = self.expected(total, middle) <= chance * (1.0 + _TIE)
+            low[total] = np.where(within, middle, low[total])
+            high[total] = np.where(within, high[total], middle)
+        return low
+
+    def worst(self, region: Counts, limit: float = 1.0) -> float:
+        """Return the largest chance of a region over the shares of discordant pairs.
+
+        Beyond ``limit`` it is not looked for closely.
+        """
+        often = self.tails[np.arange(len(region)), region + 1]
+        at = self.mixed @ often
+        if at.max() > limit:
+            return float(at.max())
+        inner = np.flatnonzero((at[1:-1] >= at[:-2]) & (at[1:-1] >= at[2:])) + 1
+        best = float(at.max())
+        for peak in inner[np.argsort(-at[inner])][:_PEAKS]:
+            low, high = self.shares[peak - 1], self.shares[peak + 1]
+            for _ in range(2):
+                finer = np.linspace(low, high, _FINER)
+                near = _mixed(len(region) - 1, finer) @ often
+                top = int(near.argmax())
+                low, high = finer[max(top - 1, 0)], finer[min(top + 1, _FINER - 1)]
+                best = max(best, float(near[top]))
+        return min(1.0, best)
+
+
+@lru_cache(maxsize=4)
+def _law(n_pairs: int) -> _Law:
+    discordants = np.arange(n_pairs + 1)
+    width = min(n_pairs + 1, 2 * int(np.ceil(_SPREAD * np.sqrt(n_pairs) / 2.0)) + 1)
+    start = np.clip(discordants - width // 2, 0, n_pairs + 1 - width)
+    others = start[:, np.newaxis] + np.arange(width)
+    share = discordants / n_pairs
+    points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
+    shares = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
+    return _Law(
+        tails=_tails(n_pairs),
+        others=others,
+        roots=np.sqrt(others / np.maximum(discordants, 1)[:, np.newaxis]),
+        chances=binomial_pmf(others, n_pairs, share[:, np.newaxis]),
+        shares=shares,
+        mixed=_mixed(n_pairs, shares),
+    )
+
+
+def _mixed(n_pairs: int, shares: Floats) -> Floats:
+    return binomial_pmf(np.arange(n_pairs + 1), n_pairs, shares[:, np.newaxis])
+
+
+def _tails(n_pairs: int) -> Floats:
+    """Return [discordants, 1 + fewer]: the chance that the smaller count is at most the fewer."""
+    widest = n_pairs // 2 + 1
+    tails = np.zeros((n_pairs + 1, widest + 1))
+    split = np.zeros(widest + 1)
+    split[0] = 1.0
+    for total in range(n_pairs + 1):
+        if total:
+            split[1:] = 0.5 * (split[1:] + split[:-1])
+            split[0] *= 0.5
+        tails[total, 1:] = np.minimum(1.0, 2.0 * np.cumsum(split[:widest]))
+    return tails

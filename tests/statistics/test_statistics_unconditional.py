@@ -1,0 +1,113 @@
+"""The E+M test against enumerating every table by its definition, and against exact McNemar."""
+
+import time
+from itertools import pairwise
+from math import comb, sqrt
+
+import numpy as np
+import pytest
+
+from faultpath.statistics import Resamples, success_effect, unconditional, with_test
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.power import rule_power
+from faultpath.statistics.score import quantile, rejects
+
+
+def tables(n):
+    """Return every table of n pairs: how many first alone and second alone."""
+    return [(b, d - b) for d in range(n + 1) for b in range(d + 1)]
+
+
+def chances(n, share):
+    """Return the chance of each table under no difference, where `share` of pairs is discordant."""
+    return np.array(
+        [
+            float(comb(n, b + c) * comb(b + c, b))
+            * (share / 2) ** (b + c)
+            * (1 - share) ** (n - b - c)
+            for b, c in tables(n)
+        ]
+    )
+
+
+def by_definition(n):
+    """Return the E step's p of every table, by Lloyd's definition and nothing else."""
+    z = np.array([abs(b - c) / sqrt(b + c) if b + c else 0.0 for b, c in tables(n)])
+    laws = [chances(n, d / n) for d in range(n + 1)]
+    return np.array(
+        [laws[b + c][z >= own - 1e-9].sum() for (b, c), own in zip(tables(n), z, strict=True)]
+    )
+
+
+def found(n):
+    return np.array([unconditional.p_value(b, c, n) for b, c in tables(n)])
+
+
+@pytest.mark.parametrize("n", [1, 2, 10, 30])
+def test_p_values_are_those_of_the_definition_and_keep_their_level(n):
+    """Of every table; the maximum is looked for on another grid."""
+    grid = np.unique(np.append(np.linspace(0.0, 1.0, 401), np.arange(n + 1) / n))
+    laws = np.array([chances(n, share) for share in grid])
+    e_step, ours = by_definition(n), found(n)
+    for own, p in zip(e_step, ours, strict=True):
+        expected = min(1.0, (laws @ (e_step <= own * (1.0 + 1e-9))).max())
+        assert p == pytest.approx(expected, rel=2e-3)
+        assert p >= expected * (1.0 - 1e-7)  # as near as the maximum is looked for
+    for alpha in (0.05, 0.025, 0.05 / 6, 0.001):
+        assert (laws @ (ours <= alpha)).max() <= alpha
+
+
+def test_of_a_hundred_pairs_it_agrees_with_tangos_interval_nearly_everywhere():
+    """What the documents say: where each test and the interval disagree, level, and power."""
+    first, second = np.array(tables(100)).T
+    total, fewer = first + second, np.minimum(first, second)
+    em = fewer <= unconditional.critical(100, 0.05)[total]
+    exact = np.array([sign_p_value(b, c) for b, c in zip(first, second, strict=True)]) <= 0.05
+    counts = np.stack([second, 100 - total, first], axis=1).astype(float)
+    interval = rejects(np.array([-1.0, 0.0, 1.0]), counts, 0.0, np.ones(len(em)), quantile(0.95))
+    assert len(em) == 5151
+    assert (em != interval).sum() == 12
+    assert (exact != interval).sum() == 94
+    levels = [chances(100, share)[em].sum() for share in np.linspace(0.0, 1.0, 51)]
+    assert 0.049 < max(levels) < 0.0498
+    # 5 % of pairs discordant, all of them on one side: the power of test and interval together.
+    power = {rule: rule_power(100, 0.05, 0.05, rule=rule) for rule in ("exact", "unconditional")}
+    assert power == pytest.approx({"exact": 0.38, "unconditional": 0.74}, abs=5e-3)
+
+
+@pytest.mark.parametrize(("n", "alpha"), [(7, 0.05), (40, 0.05), (40, 0.05 / 6), (100, 0.025)])
+def test_the_critical_counts_are_where_p_passes_the_level(n, alpha):
+    for total, critical in enumerate(unconditional.critical(n, alpha).tolist()):
+        for fewer in range(max(0, critical - 1), min(critical + 2, total // 2) + 1):
+            p = unconditional.p_value(total - fewer, fewer, n)
+            assert (p <= alpha) == (fewer <= critical)
+
+
+def test_it_has_the_symmetries_of_a_test_of_no_difference():
+    for n, b, c in ((100, 0, 5), (60, 11, 3), (9, 9, 0)):
+        assert unconditional.p_value(b, c, n) == unconditional.p_value(c, b, n)
+    assert unconditional.p_value(0, 0, 20) == unconditional.p_value(7, 7, 20) == 1.0
+    # All on one side: then no table is further out, and both tests are the same.
+    assert unconditional.p_value(8, 0, 8) == pytest.approx(sign_p_value(8, 0), rel=1e-12)
+    more = [unconditional.p_value(b, 2, 100) for b in range(2, 60)]
+    assert all(one > two for one, two in pairwise(more))
+
+
+def test_a_thousand_pairs_are_quick_and_very_many_do_not_underflow():
+    unconditional.p_value.cache_clear()
+    unconditional.p_value(3, 1, 1000)
+    before = time.process_time()
+    unconditional.p_value(60, 35, 1000)
+    assert time.process_time() - before < 0.1
+    assert unconditional.p_value(1400, 0, 1500) == pytest.approx(0.0, abs=1e-300)
+
+
+def test_the_rule_chooses_the_test_of_one_seed():
+    first = np.zeros((100, 1))
+    first[:5] = 1
+    effect = success_effect(first, 0 * first, Resamples.draw("em", 100, n_resamples=1))
+    exact, em = with_test(effect, "exact").test, with_test(effect, "unconditional").test
+    assert (exact.p_value, exact.leans) == (0.0625, 1)
+    assert (round(em.p_value, 3), em.leans) == (0.023, 1)
+    assert exact.name == "exact McNemar"
+    assert "E+M" in em.name
