@@ -20,7 +20,17 @@ import numpy as np
 
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.streams import generator
-from faultpath.trials import Library, LoopSystem, Metric, SceneRef, Status, System, Wiring
+from faultpath.trials import (
+    ErrorSum,
+    ErrorTerm,
+    Library,
+    LoopSystem,
+    Metric,
+    SceneRef,
+    Status,
+    System,
+    Wiring,
+)
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
 
@@ -134,6 +144,21 @@ class Controller(Module):
         return {"command": wanted / inputs["gain", "inverse"]}, memory
 
 
+def gain_error(trial):
+    """Return by how much the controller misjudges what its push does, m/s^2."""
+    wrong = trial.got("gain", "controller.inverse") - trial.held("gain_estimate")
+    return wrong * trial.held("command")
+
+
+def slope_error(trial):
+    """Return by how much the slope that it is told is wrong, m/s^2."""
+    speed, push = trial.held("speedometer"), trial.held("command")
+    moved = np.diff(speed, axis=0, append=np.nan) / DT_S
+    return trial.got("slope", "controller.feedforward") - (
+        moved - trial.held("gain_estimate") * push
+    )
+
+
 class Toy(LoopSystem):
     name, control_dt_s = "toy", DT_S
     interface = interface_of(FACTS, (Controller(), Observer(calibrated=True), Cart()))
@@ -147,9 +172,18 @@ class Toy(LoopSystem):
     }
     ends = {Status.TIMEOUT: "missed"}  # noqa: RUF012 - never changed
     wirings = {  # noqa: RUF012 - never changed
-        "calibrated": Wiring("The observer reads the gain estimate."),
-        "blind": Wiring("It assumes gain 1."),
+        "calibrated": Wiring("The observer works with the gain estimate, right or wrong."),
+        "blind": Wiring("The observer ignores the gain estimate and always takes the gain for 1."),
     }
+    # Only for the report: what the controller believes of the acceleration, minus the truth.
+    errors = ErrorSum(
+        "error of the expected acceleration",
+        "m/s^2",
+        (
+            ErrorTerm("controller: wrong gain", gain_error),
+            ErrorTerm("observer: wrong slope", slope_error),
+        ),
+    )
 
     def plant(self):
         return Cart()

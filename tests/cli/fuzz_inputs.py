@@ -81,7 +81,7 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--thresholds": ("0.1,1", "x", "nan"),
             "--workers": ("0",),
             "--out": ("run", "folder", "text.txt"),
-            "--signals": (None,),
+            "--no-signals": (None,),
         },
     ),
     "interface": (

@@ -20,22 +20,21 @@ from faultpath.store.signals import IN_FORCE, SIGNALS, Signal
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 SCENE = "cart/001"
+AUDIT = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain:scale=0.6,onset=20,for=30",
+    "library": "carts",
+    "scenes": 3,
+    "workers": 0,
+    "progress": False,
+}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     place = tmp_path_factory.mktemp("replay") / "run"
-    faultpath.audit(
-        TOY,
-        baseline="calibrated",
-        repair="blind",
-        fault="gain:scale=0.6,onset=20,for=30",
-        library="carts",
-        scenes=3,
-        folder=place,
-        workers=0,
-        progress=False,
-    )
+    faultpath.audit(TOY, **AUDIT, folder=place, signals=False)
     return place
 
 

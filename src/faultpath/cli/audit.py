@@ -117,10 +117,10 @@ def command(
     signals: Annotated[
         bool,
         typer.Option(
-            "--signals",
+            "--signals/--no-signals",
             help="Fly the scenes that the report begins with once more and plot their signals.",
         ),
-    ] = False,
+    ] = True,
     as_json: Json = False,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
@@ -158,27 +158,17 @@ def command(
         executor=executor,
         time_limit_s=time_limit,
         memory_limit_gib=memory_limit,
+        signals=signals,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 
-    heard = max(_hear(console, run) for run in runs) if signals else 0
     if as_json:
         tell_json(runs)
     if len(runs) > 1:
         if details:
             tell(console, runs, details)
-        return max(heard, _tell_sweep(console, runs, out))
-    return max(heard, tell(console, runs, details))
-
-
-def _hear(console: "SafeConsole", run: "Run") -> int:
-    """Fly the scenes that a report begins with again, for what is heard in them."""
-    from faultpath.cli.replay import fly_again
-    from faultpath.door.replaying import chosen_scenes
-    from faultpath.door.saved import read_run
-
-    held, _ = read_run(run.folder)
-    return fly_again(console, run.folder, held, chosen_scenes(held, (), ()), (), signals=True)
+        return _tell_sweep(console, runs, out)
+    return tell(console, runs, details)
 
 
 def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None) -> int:

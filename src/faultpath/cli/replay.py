@@ -86,13 +86,7 @@ def fly_again(
     from faultpath.report.wording import counted
     from faultpath.tables.terminal import STYLES
 
-    asked = held.record.question
-    more = {}
-    if asked.system == "quadrotor":
-        from faultpath.quadrotor.evidence.signals import quadrotor_signals
-
-        more = {asked.system: quadrotor_signals}
-    found = replay(held, scenes, paths, more, lambda said: console.print(said, markup=False))
+    found = replay(held, scenes, paths, lambda said: console.print(said, markup=False))
     unlike = [each for each in found if each.differs]
     for each in unlike:
         at = each.address

@@ -88,7 +88,11 @@ def _flags(verb: Callable[..., Any]) -> dict[str, bool]:
         for note in getattr(parameter.annotation, "__metadata__", ()):
             if isinstance(note, OptionInfo):
                 named = note.default if isinstance(note.default, str) else ""
-                flags = (named, *(note.param_decls or ())) if named else (f"--{_dashed(name)}",)
+                flags = (
+                    (*named.split("/"), *(note.param_decls or ()))
+                    if named
+                    else (f"--{_dashed(name)}",)
+                )
                 found |= dict.fromkeys(flags, parameter.annotation.__origin__ is not bool)
     return found
 

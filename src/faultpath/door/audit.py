@@ -57,6 +57,7 @@ def audit(
     executor: str = LOCAL,
     factorial: bool = False,
     share: str | PathLike[str] | None = None,
+    signals: bool = True,
 ) -> "Run":
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault.
@@ -101,6 +102,8 @@ def audit(
             they flew, of the same arms and scenes, by the same code, on the same machine. The
             default is `runs/.shared` where `folder` is left out; a folder that you name is flown
             from scratch. Only trials that this machine's worker processes flew are shared.
+        signals: Whether to fly the scenes that the report begins with once more and keep what their
+            modules read and wrote, for the report to plot.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
@@ -141,6 +144,7 @@ def audit(
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.carrying_out import carry_out
+    from faultpath.door.recording import provenance_of, record_signals
     from faultpath.door.run import Run
     from faultpath.door.saved import read_run
 
@@ -152,11 +156,12 @@ def audit(
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
     held = None if after is None or chosen.own else Path(after)
-    between = between_runs(share, folder, executor)
+    between, before = between_runs(share, folder, executor), provenance_of(place)
+    limits = time_limit_s, memory_limit_gib
     with hands(built, chosen.workers, chosen.executor) as workforce:
-        carry_out(
-            built, asked, place, workforce, told, time_limit_s, memory_limit_gib, held, between
-        )
+        carry_out(built, asked, place, workforce, told, *limits, held, between)
+        if signals:
+            record_signals(built, asked, place, workforce, told, before, *limits)
     run = Run(place, *read_run(place))
     run.report()
     return run

@@ -1,31 +1,33 @@
 """Flying trials of a finished run again: whether they come out as they did, and what was heard."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TypeAlias
 
 from faultpath.door.saved import read_run
 from faultpath.door.systems import choose
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Done, Raised
+from faultpath.execution.attempt import Died, Done, Wrong
 from faultpath.execution.differences import difference
+from faultpath.execution.flying import Flying
+from faultpath.execution.limits import TimeLimit, memory_limit
+from faultpath.execution.worker import Brief
 from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
-from faultpath.review.hearing import Heard, fly_heard, signals
+from faultpath.review.listening import Listening, Overheard, listen, listen_here
 from faultpath.store import TrialAddress, write_text
 from faultpath.store.atomic import write_file
 from faultpath.store.sealed import seal
 from faultpath.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.text import unknown
-from faultpath.trials import Outcome, System, SystemSpec, library_of
-
-More: TypeAlias = Callable[[System, Heard, Done], list[tuple[Signal, ...]]]
-"""What a system says beside what is heard, by scene."""
+from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, library_of
+from faultpath.trials.state import system_code
+from faultpath.work import Executor, local
 
 
 @dataclass(frozen=True)
@@ -55,22 +57,29 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
+    return tuple(scene for scene, _ in shown_first(held))
+
+
+def shown_first(held: ReportInput) -> tuple[tuple[str, int], ...]:
+    """Return the scenes that the report begins with, and the seed of each."""
     pairs = read_pairs(held.outcomes, held.record)
-    few = [showing.any_pair.scene for showing in picked(held.record, held.traces, pairs)]
-    return tuple(few or [scene for scene, _ in by_scene(pairs)][:1])
+    few = picked(held.record, held.traces, pairs)
+    return (
+        tuple((each.any_pair.scene, each.any_pair.seed) for each in few)
+        or tuple(by_scene(pairs))[:1]
+    )
 
 
 def replay(
     held: ReportInput,
     scenes: Sequence[str],
     paths: Sequence[str] = (),
-    more: Mapping[str, More] | None = None,
     tell: Callable[[str], None] = lambda said: None,
 ) -> list[Replayed]:
     """Fly the trials of some scenes again, on all paths or on some, in both arms.
 
-    `more` has what systems say beside what is heard, by the name of the system. Raises `UserError`
-    where the system cannot be built, or no longer has the scenes and variants of the run.
+    Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
+    of the run.
     """
     asked = held.record.question
     if SystemSpec(name=asked.system).is_object:
@@ -96,35 +105,103 @@ def replay(
         library=library,
         seeds=asked.seeds,
     ).study
-    flown = {
+    wanted = [
+        at
+        for at in flown(held)
+        if at.scene in scenes and at.path in (paths or {row.path for row in study.rows})
+    ]
+
+    def note(arm: Arm, done: int, total: int) -> None:
+        faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
+        tell(f"Flew {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
+
+    with local(0) as hands:
+        return fly_again(held, study, system, hands, wanted, note)
+
+
+def flown(held: ReportInput) -> dict[TrialAddress, Outcome]:
+    """Return the trials of a run that ran to their end, with their tracks."""
+    return {
         (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
             row.outcome, trace=held.traces.positions.get(at)
         )
         for row in held.outcomes.rows
+        if not row.outcome.failed
     }
-    said = (more or {}).get(asked.system)
-    found: list[Replayed] = []
+
+
+def fly_again(
+    held: ReportInput,
+    study: Study,
+    system: System,
+    hands: Executor,
+    wanted: Iterable[TrialAddress],
+    note: Callable[[Arm, int, int], None],
+    time_limit_s: float | None = None,
+    memory_limit_gib: float | None = None,
+) -> list[Replayed]:
+    """Fly some trials of a study again and listen; an arm that several paths share flies once.
+
+    Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
+    """
+    before, wanted = flown(held), set(wanted)
+    tasks: dict[str, Listening] = {}
+    addresses: dict[tuple[str, str], list[TrialAddress]] = {}
     for row in study.rows:
-        if paths and row.path not in paths:
-            continue
-        addresses = [TrialAddress(row.variant, row.path, row.seed, scene) for scene in scenes]
-        first = [at for at in addresses if at in flown and not flown[at].failed]
-        if not first:
-            continue
-        tell(f"Flying {row.variant}, {row.path}, seed {row.seed}, again.")
-        done, heard = fly_heard(system, row.arm, [at.scene for at in first])
-        before = [flown[at] for at in first]
-        if not isinstance(done, Done):
-            error = done.error if isinstance(done, Raised) else str(done.error)
-            found += [Replayed(at, flown[at], f"failed: {error}") for at in first]
-            continue
-        named = signals(heard, done, system.control_dt_s)
-        if said is not None:
-            named = [a + b for a, b in zip(named, said(system, heard, done), strict=True)]
-        for at, was, now, each in zip(first, before, done.outcomes, named, strict=True):
-            differs = difference([was], Done((now,), (), 0.0))
-            found.append(Replayed(at, was, differs, () if differs else each))
-    return found
+        scenes: list[str] = []
+        for scene in study.scenes:
+            at = TrialAddress(row.variant, row.path, row.seed, scene)
+            if at in wanted and at in before:
+                addresses.setdefault((row.arm.key(), scene), []).append(at)
+                scenes.append(scene)
+        if scenes:
+            old = tasks.get(row.arm.key())
+            every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
+            tasks[row.arm.key()] = Listening(row.arm, tuple(every))
+    code = system_code(system, study.system).state
+    found: list[Replayed] = []
+    waiting, done = list(tasks.values()), 0
+
+    def settle(task: Listening, reply: Overheard | Died | Wrong) -> None:
+        nonlocal done
+        done += 1
+        found.extend(_compared(task, reply, before, addresses))
+        note(task.arm, done, len(tasks))
+
+    limit = memory_limit(memory_limit_gib, system.memory_limit_gib)
+    brief = Brief(study.system, study.library, code, held.record.question.library_hash, limit)
+    there, here = partial(listen, brief), partial(listen_here, system, study.system.name)
+    call = here if hands.in_process else there
+    seconds = TimeLimit(system.time_limit_s if time_limit_s is None else time_limit_s)
+    flying = Flying[Listening](hands, lambda task: partial(call, task), seconds, study.system.name)
+    flying.run(lambda _: waiting.pop(0) if waiting else None, settle, lambda: None)
+    order = {at: place for place, at in enumerate(before)}
+    return sorted(found, key=lambda each: order[each.address])
+
+
+def _compared(
+    task: Listening,
+    reply: Overheard | Died | Wrong,
+    before: dict[TrialAddress, Outcome],
+    addresses: dict[tuple[str, str], list[TrialAddress]],
+) -> Iterable[Replayed]:
+    """Return what a second flight was like, trial by trial; what differs has no signals."""
+    heard = reply if isinstance(reply, Overheard) else Overheard(error=_said(reply))
+    for place, scene in enumerate(task.scenes):
+        for at in addresses[task.arm.key(), scene]:
+            if heard.error:
+                yield Replayed(at, before[at], f"failed: {heard.error}")
+                continue
+            differs = difference([before[at]], Done((heard.outcomes[place],), (), 0.0))
+            yield Replayed(at, before[at], differs, () if differs else heard.signals[place])
+
+
+def _said(reply: Died | Wrong) -> str:
+    if isinstance(reply, Died):
+        return reply.how
+    if isinstance(reply.error, UserError):
+        raise reply.error
+    return f"{type(reply.error).__name__}: {reply.error}"
 
 
 def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> list[Path]:
@@ -132,9 +209,14 @@ def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> 
 
     Returns what was written. `UserError` where the folder cannot be written.
     """
+    write_signals(folder, held, found)
+    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]
+
+
+def write_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> None:
+    """Write the signals beside the run's outcomes, with those of before."""
     signals = {**held.signals, **{each.address: each.signals for each in found if each.signals}}
     write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
     files = {**held.provenance.files, **seal(folder, [SIGNALS])}
     sealed = held.provenance.model_copy(update={"files": files})
     write_text(folder / "provenance.json", sealed.model_dump_json(indent=2) + "\n", folder)
-    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]

@@ -17,6 +17,9 @@ SIGNALS = "signals.parquet"
 IN_FORCE = "fault in force"
 """The signal that is 1 while a fault was in force at some tap."""
 
+TOGETHER = "both together"
+"""The signal that is the sum of the two others of its topic, the errors of two modules."""
+
 _SCHEMA = {
     **dict.fromkeys(("variant", "path"), TEXT),
     "seed": INTEGER,

@@ -13,10 +13,13 @@ from faultpath.trials.registry import load_measurer, load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, TrialRow
+from faultpath.trials.terms import ErrorSum, ErrorTerm
 
 __all__ = [
     "Arm",
     "Deliveries",
+    "ErrorSum",
+    "ErrorTerm",
     "FloorPlan",
     "Library",
     "LoopSystem",

@@ -13,6 +13,7 @@ from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.hearing import Heard, Values, laid_out, steps_of
+from faultpath.review.listening import added
 from faultpath.store.signals import Signal
 from faultpath.trials import System
 
@@ -27,6 +28,8 @@ def quadrotor_signals(system: System, heard: Heard, done: Done) -> list[tuple[Si
     The acceleration errors are those of the paper, with the thrust and the attitude of the flight:
     what a wrong calibration does to the nominal acceleration, and what is left of it after the wind
     that the predictor was given. They exist where the predictor has analytic dynamics and a wind.
+    Along the thrust they have a sign, so that it shows whether they cancel (paper, Eq. 2). What a
+    learned predictor adds to its analytic dynamics is in none of them.
     """
     assert isinstance(system, Quadrotor)
     ahead = _predicted(heard)
@@ -70,12 +73,21 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
     first = nominal(told("mass", "dynamics"), told("thrust_scale", "dynamics")) - nominal(
         mass, scale
     )
-    wind = told("wind", "wind_map") if ("wind", "predictor.wind_map") in heard.got else None
-    pairs = {"nominal": first}
-    if wind is not None:
-        believed = force(wind) / told("mass", "wind_map")
-        pairs["combined"] = first + believed - force(true("true_wind")) / mass
-    return [
+    pairs, along = {"nominal": first}, ()
+    if ("wind", "predictor.wind_map") in heard.got:
+        believed = force(told("wind", "wind_map")) / told("mass", "wind_map")
+        second = believed - force(true("true_wind")) / mass
+        pairs["combined"] = first + second
+        errors = {"predictor: wrong mass and thrust": first, "reconstruction: wrong wind": second}
+        along = added(
+            "error of the predicted acceleration along the thrust",
+            "m/s^2",
+            {
+                name: np.einsum("tp,tp->t", error, rotation[:, :, 2])
+                for name, error in errors.items()
+            },
+        )
+    norms = [
         _signal(
             f"{name} acceleration error",
             "acceleration error",
@@ -84,6 +96,7 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
         )
         for name, error in pairs.items()
     ]
+    return [*norms, *along]
 
 
 @arithmetic()
