@@ -40,9 +40,9 @@ def with_paths(source: ReportInput, change: Callable[[Path], Path]) -> ReportInp
 def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     told = {fork.title: fork for fork in forks(one_seed)}
     assert list(told) == ["Predictor only", "Reconstruction only", "Shared fault"]
-    alone = ["predictor: correct reading", "reconstruction: 2 taps struck"]
+    alone = ["predictor: correct readings", "reconstruction: wrong readings"]
     assert states(told["Reconstruction only"]) == [alone, alone]
-    both = ["predictor: 5 taps struck", "reconstruction: 2 taps struck"]
+    both = ["predictor: wrong readings", "reconstruction: wrong readings"]
     assert states(told["Shared fault"]) == [both, both]
     assert [fork.everywhere for fork in told.values()] == [False, False, True]
     assert "mass at reconstruction.head, thrust_scale at reconstruction.head" in (
@@ -90,7 +90,7 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
 
     blind = with_paths(blind, unstruck)
     (_, alone, shared) = forks(blind)
-    assert states(alone)[1] == ["predictor: correct reading", "reconstruction: does not read it"]
+    assert states(alone)[1] == ["predictor: correct readings", "reconstruction: does not read it"]
     assert shared.everywhere
     assert 'class="absent"' in fork_panels([alone])[0]
     assert out_of_reach(blind) == (
@@ -108,11 +108,11 @@ def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
     shared = forks(with_paths(one_seed, silent))[-1]
     assert not shared.everywhere
     assert states(shared) == [
-        ["predictor: correct reading", "reconstruction: correct reading"],
-        ["predictor: struck, unchanged", "reconstruction: correct reading"],
+        ["predictor: correct readings", "reconstruction: correct readings"],
+        ["predictor: unchanged by fault", "reconstruction: correct readings"],
     ]
     some = with_paths(one_seed, lambda p: p.model_copy(update={"struck": p.struck[:3]}))
-    assert states(forks(some)[-1])[1][0] == "predictor: 3 of 5 taps struck"
+    assert states(forks(some)[-1])[1][0] == "predictor: partly wrong"
 
 
 def test_the_story_names_modules_and_what_the_fault_does(one_seed: ReportInput) -> None:

@@ -8,7 +8,9 @@ from markupsafe import Markup
 from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.record.plain import about, decided_words, plain_words
 from faultpath.report import story, wording
+from faultpath.report.adding import adding
 from faultpath.report.factorial import by_factors
+from faultpath.report.figures.adding import adding_panels, line_key
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
 from faultpath.report.figures.fork import fork_panels
 from faultpath.report.figures.frequency import frequency_panel, shared_range
@@ -45,7 +47,7 @@ def report_page(source: ReportInput) -> str:
         asked=source.record.question,
         provenance=source.provenance,
         paths=_path_titles(source.record),
-        story=_story(source),
+        story=_story(source, pairs),
         tiles=_tiles(source.record),
         pictures=_pictures(source, pairs, viewer),
         struck=struck_paths(source.record),
@@ -89,9 +91,17 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     return [folder / name for name in makers]
 
 
-def _story(source: ReportInput) -> Mapping[str, object]:
+def _story(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
     """Return what the first screen tells, beside the headline and the tiles."""
+    why = adding(source, pairs)
     return {
+        "adding": why
+        and {
+            "words": why.words,
+            "caption": why.caption,
+            "key": [(Markup(sample), name) for sample, name in line_key(why)],
+            "panels": list(map(Markup, adding_panels(why))),
+        },
         "fault": story.fault_story(source),
         "variants": list(zip(("baseline", "repair"), source.variants, strict=True)),
         "meaning": story.isolation_words(source),

@@ -12,7 +12,6 @@ from faultpath.record import CORRECT, SHARED
 from faultpath.record.fault_words import fault_words, spelled_out
 from faultpath.record.model import Path, StruckTap
 from faultpath.record.words import capital, series
-from faultpath.report import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_layout import Tap
 from faultpath.trials import VariantShown
@@ -33,13 +32,15 @@ class Reader:
     @property
     def state(self) -> str:
         """Say what reaches the module."""
+        names = {channel for channel, _ in self.taps}
+        what = _named(*names) if len(names) == 1 else "readings"
         if not self.taps:
             return "does not read it"
         if not self.struck:
-            return "correct reading"
+            return f"correct {what}"
         if not self.changed:
-            return "struck, unchanged"
-        return f"{_of(self.struck, self.taps)} struck"
+            return "unchanged by fault"
+        return f"wrong {what}" if self.struck == self.taps else "partly wrong"
 
 
 @dataclass(frozen=True)
@@ -186,11 +187,6 @@ def _reader(module: str, reads: frozenset[Tap], struck: Sequence[StruckTap]) -> 
     # Receipts come before the wiring: a tap that was struck was read.
     taps = hit | frozenset(tap for tap in reads if module_of(tap[1]) == module)
     return Reader(module, taps, hit, any(tap.altered_steps for tap in here))
-
-
-def _of(some: frozenset[Tap], every: frozenset[Tap]) -> str:
-    count = wording.counted(len(every), "tap")
-    return count if some == every else f"{len(some)} of {count}"
 
 
 def _told(reader: Reader) -> str:

@@ -7,6 +7,7 @@ from faultpath.record.model import Effect, Question
 from faultpath.statistics import BreakEven, Estimate
 
 MINUS = "−"
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 
 
@@ -90,6 +91,11 @@ def ended(question: Question, status: str) -> str:
 def typeset(text: str) -> str:
     """Return a record's sentence with real minus signs before its numbers."""
     return _HYPHEN_FOR_MINUS.sub(MINUS, text)
+
+
+def unit(name: str) -> str:
+    """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
+    return re.sub(r"\^(-?\d)", lambda found: found[1].translate(_RAISED), name)
 
 
 def sentence(words: str) -> str:

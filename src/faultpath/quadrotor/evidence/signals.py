@@ -80,7 +80,7 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
         pairs["combined"] = first + second
         errors = {"predictor: wrong mass and thrust": first, "reconstruction: wrong wind": second}
         along = added(
-            "error of the predicted acceleration along the thrust",
+            "error of the predictor's analytic acceleration along the thrust",
             "m/s^2",
             {
                 name: np.einsum("tp,tp->t", error, rotation[:, :, 2])

@@ -1,0 +1,109 @@
+"""Why errors add up or cancel: two errors and their sum in one scene, from recorded signals."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faultpath.report.adding import adding
+from faultpath.report.figures.adding import adding_panels
+from faultpath.report.html import report_page
+from faultpath.report.inputs import ReportInput
+from faultpath.report.pairing import read_pairs
+from faultpath.report.viewer_choice import choose
+from faultpath.review.listening import added
+from faultpath.store import TrialAddress
+
+TOPIC = "error of the predicted acceleration"
+SIZES = {"predictor": (2.0, 0.0), "reconstruction": (0.0, -2.0), "shared": (2.0, -1.75)}
+STEPS = 40
+
+
+def errors(one: float, other: float):
+    ones = np.ones(STEPS)
+    ones[-1] = np.nan
+    return added(TOPIC, "m/s^2", {"predictor: thrust": one * ones, "wind: speed": other * ones})
+
+
+@pytest.fixture
+def heard(one_seed: ReportInput) -> ReportInput:
+    """The first scene of the viewer's choice, with the errors of all its trials."""
+    pair = choose(one_seed.record, one_seed.traces, pairs_of(one_seed))[0].any_pair
+    asked = one_seed.record.question
+    signals = {
+        TrialAddress(variant, path, pair.seed, pair.scene): errors(*sizes)
+        for path, sizes in SIZES.items()
+        for variant in (asked.baseline, asked.repair)
+    }
+    return replace(one_seed, signals=signals)
+
+
+def pairs_of(source: ReportInput):
+    return read_pairs(source.outcomes, source.record)
+
+
+def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) -> None:
+    shown = adding(heard, pairs_of(heard))
+    assert shown is not None
+    assert [path for path, *_ in shown.paths] == list(SIZES)
+    for path, _, arms in shown.paths:
+        one, other = SIZES[path]
+        for arm in arms:
+            assert arm.sizes == pytest.approx((abs(one), abs(other), abs(one + other)))
+    assert shown.scene in shown.caption
+    assert "under the shared fault" in shown.caption
+    assert shown.caption.count("2.0 and 1.8 m/s²") == 2
+    page = report_page(heard)
+    first = page[: page.index('<section aria-labelledby="interface"')]
+    assert first.count('class="term both') == 6 + 1  # the key has a sample
+    assert f"Why: {TOPIC}" in first
+
+
+def test_all_panels_share_their_axes_and_mark_the_end(heard) -> None:
+    shown = adding(heard, pairs_of(heard))
+    panels = adding_panels(shown)
+    assert len(panels) == 3
+    ticks = {tuple(re.findall(r'text-anchor="end">(−?[\d.]+)<', panel)) for panel in panels}
+    assert len(ticks) == 1
+    for panel in panels:
+        assert panel.count('class="end-sign') == 2
+        assert "m/s²" in panel
+        assert "nan" not in panel
+
+
+def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
+    """Where a run begins with a jump, what comes after it is what a reader has to see."""
+    jump = {
+        at: tuple(replace(each, values=_jumped(each.values)) for each in named)
+        for at, named in heard.signals.items()
+    }
+    calm, jumped = (
+        adding_panels(adding(each, pairs_of(each)))
+        for each in (heard, replace(heard, signals=jump))
+    )
+    levels = [re.findall(r'text-anchor="end">(−?[\d.]+)<', each[0]) for each in (calm, jumped)]
+    assert levels[0] == levels[1]
+
+
+def _jumped(values):
+    values = values.copy()
+    values[0] = 100.0
+    return values
+
+
+@pytest.mark.parametrize("lost", ["all", "repair", "sum", "numbers"])
+def test_without_signals_the_picture_is_left_out(heard, lost) -> None:
+    asked = heard.record.question
+    left = {
+        "all": {},
+        "repair": {at: s for at, s in heard.signals.items() if at.variant != asked.repair},
+        "sum": {at: named[:2] for at, named in heard.signals.items()},
+        "numbers": {
+            at: tuple(replace(each, values=each.values * np.nan) for each in named)
+            for at, named in heard.signals.items()
+        },
+    }[lost]
+    source = replace(heard, signals=left)
+    assert adding(source, pairs_of(source)) is None
+    assert "Why:" not in report_page(source)
