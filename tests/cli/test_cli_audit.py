@@ -10,6 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
 
+from faultpath.door.listing import runs
 from faultpath.door.run import open_run
 from faultpath.interface import read_interface
 from faultpath.record import SHARED
@@ -266,7 +267,11 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     assert "has changed" not in audit(system=f"{system}:create").out
     (before,) = (tmp_path / "runs").iterdir()
     outcomes = (before / "outcomes.parquet").read_bytes()
-    assert "Kept 36 of 36 trials, from 20" in audit(system=f"{system}:create").out
+    again = audit(system=f"{system}:create").out
+    (run,) = runs([tmp_path / "runs"])
+    assert f"Kept {run.trials} of {run.trials} trials, from 20" in again
+    assert f"Running: {run.trials} of {run.trials} trials" in again
+    assert f"{run.trials} trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
 
     system.write_text(
         system.read_text().replace("TOLERANCE_M = 0.1, 100, 0.25", "TOLERANCE_M = 0.1, 100, 9.0")

@@ -86,11 +86,12 @@ def test_how_far_an_unfinished_run_has_come(begun: Path) -> None:
     kept = found.trials
     assert (found.kind, found.state, found.scenes) == ("audit", "unfinished", 3)
     assert kept == 6 * 3, "six arms are distinct"
-    assert found.words == f"{kept} trials kept; the run asks for {kept}"
+    asked = f"the run asks for {kept}, which stand for {8 * 3}"
+    assert found.words == f"{kept} trials kept; {asked}"
     shards = sorted((begun / "shards").iterdir())
     data = shards[0].read_bytes()
     shards[0].write_bytes(data[: len(data) // 2])
-    assert only(begun).words == f"{kept - 3} trials kept; the run asks for {kept}"
+    assert only(begun).words == f"{kept - 3} trials kept; {asked}"
     shards[0].write_bytes(data)
 
 

@@ -152,6 +152,8 @@ def test_the_curve_is_coloured_where_an_arm_is_decided_to_be_ahead() -> None:
     drawn = _panel("a is ahead", ((0.3, 0.7),), *regions)
     assert drawn.count('class="curve baseline"') == drawn.count('class="curve repair"') == 1
     assert drawn.count('class="star-range"') == 1
+    assert "share of episodes with the fault, %" in drawn
+    assert "expected difference in success, pp" in drawn
     silent = _panel("", ((0.3, 0.7),), *regions)
     assert "curve baseline" not in silent
     assert "curve repair" not in silent

@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
+from faultpath.door.reproduced import ReproductionRun
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
@@ -26,8 +27,13 @@ STICKING_OUT = """() => {
 }"""  # noqa: E501 - as it is easiest to read
 
 
-def _report(run: str) -> Callable[[Path], Path]:
-    return lambda folder: open_run(REFERENCE / run).report(folder)[0]
+def _report(name: str) -> Callable[[Path], Path]:
+    def made(folder: Path) -> Path:
+        run = open_run(REFERENCE / name)
+        assert not isinstance(run, ReproductionRun)
+        return run.report(folder)[0]
+
+    return made
 
 
 def _comparison(folder: Path) -> Path:

@@ -5,12 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import parting_step
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import pack, unpack
+from faultpath.report.viewer_signals import plots
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 from faultpath.trials import FloorPlan, Pillar, Prism
@@ -70,14 +72,49 @@ def test_what_was_hit_is_what_is_nearest() -> None:
     assert hit(plan, np.array((5.0, 5.0, 5.0))) is None
 
 
-def test_without_positions_or_with_one_axis_nothing_is_drawn_in_space(one_seed) -> None:
+def test_positions_along_one_axis_are_plotted_over_time(one_seed: ReportInput) -> None:
     flat = {at: track * [1, 0, 0] for at, track in one_seed.traces.positions.items()}
-    for positions, space in (({}, "none"), (flat, "line")):
-        source = replace(one_seed, traces=Traces(positions, 0.05), plans={})
-        data, _ = _unpacked(source)
-        assert data["space"] == space
-        assert len(data["scenes"]) == 80
-        assert [plot["title"] for plot in data["plots"]] == ["position"] * (space == "line")
+    data, _ = _unpacked(replace(one_seed, traces=Traces(flat, 0.05), plans={}))
+    assert data["space"] == "line"
+    assert len(data["scenes"]) == 80
+    assert [plot["title"] for plot in data["plots"]] == ["position"]
+
+
+def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
+    """Without positions only scenes of which signals were recorded can be played."""
+    still = replace(one_seed, traces=Traces({}, 0.05), plans={})
+    page = report_page(still)
+    assert 'id="flights"' not in page
+    assert 'href="#scene=' not in page
+    scene = next(iter(one_seed.plans))
+    steps = np.arange(5, dtype=np.float32)[:, None]
+    heard = {TrialAddress("gru", "shared", 0, scene): (Signal("thrust", "thrust", "N", steps),)}
+    data, _ = _unpacked(still, signals=heard)
+    assert [each["scene"] for each in data["scenes"]] == [scene]
+
+
+def test_commands_name_the_folder_of_the_run(one_seed: ReportInput) -> None:
+    page = report_page(replace(one_seed, folder="runs/my cart"))
+    assert 'data-run="&#39;runs/my cart&#39;"' in page
+    assert "replay RUN" not in page
+
+
+def test_what_is_zero_throughout_has_no_axes(one_seed: ReportInput) -> None:
+    zero = np.zeros((5, 2), dtype=np.float32)
+    one = np.tile(np.array((0.0, 1.0), np.float32), (5, 1))
+    error = Signal("gain error at a.b", "gain error", "1", one)
+    nothing = Signal("wind error at a.b", "wind error", "m/s", zero)
+    at = TrialAddress("gru", "shared", 0, next(iter(one_seed.plans)))
+    assert [plot.title for plot in plots({at: (error, nothing)})] == ["gain error, 2"]
+    effects = tuple(
+        effect.model_copy(
+            update={"time_s": effect.success.model_copy(update={"value": 0.0, "low": 0, "high": 0})}
+        )
+        for effect in one_seed.record.effects
+    )
+    record = one_seed.record.model_copy(update={"effects": effects})
+    assert "Time on joint successes" in report_page(one_seed)
+    assert "Time on joint successes" not in report_page(replace(one_seed, record=record))
 
 
 def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: ReportInput) -> None:

@@ -88,7 +88,7 @@ def _run(
     with told.progress("Running") as show:
 
         def note(now: Progress) -> None:
-            count = f"{now.trials_done} of {now.trials_total} trials"
+            count = f"{now.rows_done} of {now.rows_total} trials"
             show(Now(now.trials_estimated, now.trials_total, count, now.seconds_left))
 
         try:

@@ -157,7 +157,9 @@ def _begun(folder: Path) -> Listed:
     study = manifest.study
     asked, maps = len(study.arms()) * len(study.scenes), any("," in r.path for r in study.rows)
     # A map grows from round to round, so what it asks for now is not all.
-    of = "" if maps else f"; the run asks for {asked}{' at most' if study.look else ''}"
+    rows = len(study.rows) * len(study.scenes)
+    table = f", which stand for {rows}" if rows != asked else ""
+    of = "" if maps else f"; the run asks for {asked}{' at most' if study.look else ''}{table}"
     return replace(
         told,
         kind="map" if maps else "audit",

@@ -100,7 +100,7 @@ class _Flying:
         return points, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
 
     def _announce(self, points: Sequence[Point]) -> None:
-        first = len(self.plan.study(points).arms()) * len(self.plan.scenes)
+        first = len(self.plan.study(points).rows) * len(self.plan.scenes)
         self.told.say(
             f"{len(points)} pairs of errors first, {first} trials; then more where the sign is not "
             f"decided, about {self._most(points, first)} trials at most."
@@ -120,10 +120,11 @@ class _Flying:
     ) -> RunResult:
         def note(now: Progress) -> None:
             most = self._most(points, now.trials_total)
+            rows = self._most(points, now.rows_total)
             open_, left = now.trials_total - now.trials_estimated, None
             if now.seconds_left is not None and open_ > 0:
                 left = now.seconds_left / open_ * (most - now.trials_estimated)
-            count = f"{now.trials_done} trials, about {most} at most"
+            count = f"{now.rows_done} trials, about {rows} at most"
             show(Now(now.trials_estimated, most, count, left, f"{len(points)} pairs of errors"))
 
         return run_study(

@@ -1,6 +1,7 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from datetime import datetime
@@ -102,7 +103,8 @@ def run_study(
         study=study,
     )
     run = RunFolder(Path(folder))
-    standing = Standing(units, run, workers, limit)
+    rows = Counter(row.arm.key() for row in study.rows)
+    standing = Standing(units, run, workers, limit, rows)
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
@@ -190,9 +192,8 @@ def _keep_finished(
             kept.append(unit.key)
             again += standing.keep(unit, shard)
     if kept:
-        notice(
-            _kept_trials(standing.progress(), sum(len(t.scenes) for t in again), run.written(kept))
-        )
+        failed = sum(standing.rows(task.unit) * len(task.scenes) for task in again)
+        notice(_kept_trials(standing.progress(), failed, run.written(kept)))
     schedule = Schedule(missing, in_order)
     schedule.put(again)
     return schedule
@@ -250,7 +251,7 @@ def _kept_trials(now: Progress, again: int, written: tuple[datetime, datetime]) 
     first, last = (f"{moment:%Y-%m-%d %H:%M}" for moment in written)
     when = f"from {first}" if first == last else f"from {first} to {last}"
     tried = f"; {again} that failed are tried again" if again else ""
-    return f"Kept {now.trials_done} of {now.trials_total} trials, {when} UTC{tried}."
+    return f"Kept {now.rows_done} of {now.rows_total} trials, {when} UTC{tried}."
 
 
 def _unnamed(paths: Sequence[str]) -> str:

@@ -1,7 +1,7 @@
 """Which units are done, and what becomes of a reply."""
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
@@ -22,7 +22,11 @@ class Progress:
     blocks_kept: int
     """Of those done, the ones that an earlier invocation left."""
     trials_done: int
+    """Flown, each once, however many rows of the table it stands in."""
     trials_total: int
+    rows_done: int
+    """The same as trials of the outcome table, which is what all documents count."""
+    rows_total: int
     trials_estimated: float
     """Trials done, plus the likely share of those that run now."""
     seconds_left: float | None
@@ -41,8 +45,12 @@ class Standing:
         folder: RunFolder,
         workers: int,
         limit: TimeLimit | None = None,
+        rows: Mapping[str, int] | None = None,
     ) -> None:
+        """`rows`: in how many rows an arm's trials stand, by its key; one where nothing is said."""
         self.units = tuple(units)
+        self._rows = {unit.key: (rows or {}).get(unit.arm.key(), 1) for unit in self.units}
+        self._rows_done = 0
         self.outcomes: dict[tuple[str, str], Outcome] = {}
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self.kept = 0
@@ -61,6 +69,10 @@ class Standing:
     def done(self) -> int:
         """Units done."""
         return self.kept + self.computed
+
+    def rows(self, unit: Unit) -> int:
+        """Return in how many rows of the outcome table each trial of a unit stands."""
+        return self._rows[unit.key]
 
     def keep(self, unit: Unit, shard: Shard) -> tuple[Task, ...]:
         """Take over a unit that was done before; return the task of its failed trials, if any."""
@@ -127,7 +139,18 @@ class Standing:
             for (_, scenes), since in self._running.items():
                 estimated += min(0.95 * len(scenes), (now - since) / pace)
             left = (total - estimated) * pace / max(1, self._workers)
-        return Progress(self.done, len(self.units), self.kept, done, total, estimated, left)
+        rows = sum(self._rows[key] * len(part) for key, part in self._partial.items())
+        return Progress(
+            blocks_done=self.done,
+            blocks_total=len(self.units),
+            blocks_kept=self.kept,
+            trials_done=done,
+            trials_total=total,
+            rows_done=self._rows_done + rows,
+            rows_total=sum(self._rows[unit.key] * len(unit.scenes) for unit in self.units),
+            trials_estimated=estimated,
+            seconds_left=left,
+        )
 
     def _fail(self, task: Task, error: str, details: str) -> tuple[Task, ...]:
         (scene,) = task.scenes
@@ -177,3 +200,4 @@ class Standing:
         key = unit.arm.key()
         self.outcomes.update(((key, outcome.scene), outcome) for outcome in shard.outcomes)
         self._taps[unit.key] = shard.taps
+        self._rows_done += self._rows[unit.key] * len(shard.outcomes)

@@ -1,5 +1,6 @@
 """The report as one page that opens without a network, as a notebook's cell, and as files."""
 
+import shlex
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -54,9 +55,11 @@ def report_page(source: ReportInput) -> str:
         void=[pair for pair in pairs if pair.kind is Kind.VOID],
         n_void=sum(pair.kind is Kind.VOID for pair in pairs),
         n_pairs=len(pairs),
+        n_trials=len(source.outcomes.rows),
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         effects=Markup(html(by_path(source.record, BEHIND, "What stands behind each effect"))),
         viewer=viewer,
+        folder=shlex.quote(source.folder),
         w=wording,
     )
 
@@ -142,7 +145,9 @@ def _pictures(
         "forest": Markup(forest(rows, asked.baseline, asked.repair)),
         "forest_narrow": Markup(forest(rows, asked.baseline, asked.repair, narrow=True)),
         "frequency": [
-            Markup(frequency_panel(b, titles.get(b.path, b.path), axis)) for b in record.break_even
+            Markup(frequency_panel(b, titles.get(b.path, b.path), axis))
+            for b in record.break_even
+            if b.curve
         ],
         "pairs": [
             Markup(pair_grid(title, [p for p in pairs if p.path == name], asked.ends, shown))
@@ -192,5 +197,5 @@ def _secondary(record: DecisionRecord) -> list[Markup]:
     return [
         Markup(secondary_panel(name, unit, rows, good))
         for name, unit, rows, good in panels
-        if any(estimate for _, estimate in rows)
+        if any(e and any((e.value, e.low, e.high)) for _, e in rows)
     ]

@@ -60,19 +60,19 @@ def viewer_data(
     pairs: Sequence[Pair],
     signals: Signals | None = None,
 ) -> Viewer | None:
-    """Return every trial for the page's scripts; `None` where nothing was flown that is kept.
+    """Return every trial for the page's scripts; `None` where there is nothing to play.
 
-    Where some trials have a track, scenes without any are left out.
+    Left out are scenes without any track and, where no trial has one, those without signals.
     """
     asked = record.question
     space = _space(traces, plans)
-    groups = by_scene(pairs)
-    if space != "none":
-        groups = {
-            at: group
-            for at, group in groups.items()
-            if any(len(t) for pair in group.values() for t in tracks_of(asked, traces, pair))
-        }
+    heard = {(at.scene, at.seed) for at in signals or ()}
+    groups = {
+        at: group
+        for at, group in by_scene(pairs).items()
+        if (space == "none" and at in heard)
+        or any(len(t) for pair in group.values() for t in tracks_of(asked, traces, pair))
+    }
     if not groups:
         return None
     chosen = [(s.any_pair.scene, s.any_pair.seed) for s in choose(record, traces, pairs)]

@@ -2,7 +2,8 @@
 
 A plot is one component of one topic: the wind that is reconstructed with the wind that blew. Lines
 that are the same in every trial are one line with two names. A plot in which nothing ever changes
-or differs is left out, unless it is an error, which exists only where a fault made it.
+or differs is left out, unless it is an error, which exists only where a fault made it; one that is
+zero throughout is left out too.
 """
 
 from collections.abc import Iterable, Mapping
@@ -61,7 +62,7 @@ def plots(signals: Signals) -> tuple[Plot, ...]:
     made = [
         Plot(_title(topic, part, parts[topic, unit] + 1), unit, _told(lines))
         for (topic, unit, part), lines in topics.items()
-        if "error" in topic or _varies(lines.values())
+        if ("error" in topic and _differs(lines.values())) or _varies(lines.values())
     ]
     return tuple(sorted(made, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2)))
 
@@ -107,6 +108,11 @@ def _varies(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
             trials.setdefault(at, []).append(values[np.isfinite(values)])
     joined = (np.concatenate(parts) for parts in trials.values())
     return any(values.size and values.min() < values.max() for values in joined)
+
+
+def _differs(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
+    """Return whether anything is not zero in some trial."""
+    return any(np.nan_to_num(values).any() for line in lines for values in line.values())
 
 
 def _told(

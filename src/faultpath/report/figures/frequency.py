@@ -25,15 +25,16 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     """
     shown = wording.break_even(path.result)
     words = f"{path.words or 'No frequency is decided'}."
-    svg = Svg(290, 262, f"{title}: expected success difference against fault frequency", words)
+    svg = Svg(290, 278, f"{title}: expected success difference against fault frequency", words)
     svg.text(0, 14, shortened(title, 285, 13), "head", tip=title)
     for i, line in enumerate(wrapped(words, 285, 11, 2)):
         svg.text(0, 31 + 14 * i, line, "small soft", tip=words)
-    x, y = Axis(0.0, 1.0, 34, 280), vertical.at(222, 56)
+    x, y = Axis(0.0, 1.0, 34, 280), vertical.at(238, 72)
     draw_levels(svg, x, y, 5, zero="zero")
     for percent in (0, 25, 50, 75, 100):
         draw_tick(svg, x, y, percent / 100, str(percent))
-    svg.text(x(0.5), y.start + 34, "episodes with the fault, %", "small soft", "middle")
+    svg.text(x(0.5), y.start + 34, "share of episodes with the fault, %", "small soft", "middle")
+    svg.text(0, y.end - 10, "expected difference in success, pp", "small soft")
     if not path.curve:
         return svg.render()
     upper = [(x(p), y(high)) for p, _, _, high in path.curve]

@@ -77,7 +77,7 @@ const Small = {
         for (const v of values) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
       }
     }
-    if (low > high) return null;
+    if (low > high || (low === 0 && high === 0)) return null;
     if (data.plots[plot].zero) [low, high] = [Math.min(low, 0), Math.max(high, 0)];
     const margin = (high - low || Math.abs(high) || 1) * 0.05;
     return [low - margin, high + margin];
@@ -88,7 +88,11 @@ const Small = {
   },
 
   // Plots the lines of a path over the one clock, with the spans in which a fault was in force.
+  // Where there are none, or all are zero, nothing is drawn.
   plot(host, title, pair, step, scene, plot, range, data) {
+    const lines = Small.lines(pair, plot, data);
+    host.hidden = !lines.some(({ values }) => values.some((v) => v));
+    if (host.hidden) return;
     const { svg, w, h } = Draw.svg(host, title);
     const last = Flight.last(scene), left = 52, right = w - 16, under = h - 20;
     const x = (i) => left + (i / last) * (right - left), y = (v) => under - ((v - range[0]) / (range[1] - range[0])) * (under - 8);
@@ -103,7 +107,7 @@ const Small = {
       Draw.node(svg, "text", { x: left - 5, y: inside, "text-anchor": "end", class: "v-text soft" }, Small.number(v, range[1] - range[0]));
     }
     Draw.times(svg, last, data.dt_s, x, h - 5);
-    for (const { arm, line, values } of Small.lines(pair, plot, data)) {
+    for (const { arm, line, values } of lines) {
       const points = values.flatMap((v, i) => (v === null ? [] : [`${x(i).toFixed(1)},${y(v).toFixed(1)}`]));
       Draw.node(svg, "polyline", { points: points.join(" "), class: `v-signal ${arm} line-${Math.min(line, 3)}` });
     }

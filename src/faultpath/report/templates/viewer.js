@@ -130,7 +130,8 @@ if (document.getElementById("viewer-data")) {
       const note = get("unrecorded");
       if (note) {
         note.hidden = scene.pairs.some((p) => Flight.flown(p).some((arm) => heard(p[arm])));
-        note.querySelector("code").textContent = `faultpath replay RUN --scene ${scene.scene} --signals`;
+        const code = note.querySelector("code");
+        code.textContent = `faultpath replay ${code.dataset.run} --scene ${scene.scene} --signals`;
       }
       for (const { plot } of columns) { plot.replaceChildren(); plot.hidden = !has.length; }
       if (!has.length) { range = null; return; }
