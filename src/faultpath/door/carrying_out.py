@@ -16,8 +16,10 @@ from faultpath.execution import (
 )
 from faultpath.planning import Audit
 from faultpath.record import DecisionRecord, Question
+from faultpath.record.looks import after_looks
 from faultpath.statistics import RULES
 from faultpath.store import write_text
+from faultpath.store.manifest import kin
 from faultpath.store.sealed import read_regular, seal
 from faultpath.trials import System, system_shown
 from faultpath.work import Executor
@@ -42,6 +44,9 @@ def carry_out(
     Trials that the run in the folder `after` has of the same arms are taken over, and those that
     runs share in `share`.
 
+    What was concluded before in the folder, or in another that shares these trials, is told in the
+    record: see `after_looks`.
+
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
     """
@@ -54,6 +59,8 @@ def carry_out(
     result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after, share)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
+    places = [folder, *(kin(folder) if share is not None else ())]
+    record = after_looks(record, (each for place in places for each in _concluded(place)))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
     files = seal(folder, MADE_FROM)
@@ -61,17 +68,24 @@ def carry_out(
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
 
 
+def _concluded(folder: Path) -> tuple[DecisionRecord, ...]:
+    """Return the record that a folder holds, from an earlier conclusion; none that is not sound."""
+    place = folder / RECORD
+    try:
+        return (parsed(read_regular(place), place, DecisionRecord),)
+    except UserError:  # nothing was decided there, or it is damaged and made anew
+        return ()
+
+
 def _check_rule(folder: Path, asked: Question) -> None:
     """Raise `UserError` where a run was decided by another rule: its verdict is not redone."""
-    try:
-        before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord).question
-    except UserError:  # nothing was decided there, or it is damaged and made anew
-        return
-    if not (before.stop or asked.stop) and before.rule != asked.rule:
-        raise UserError(
-            f"{folder} was decided by the rule '{before.rule}' ({RULES[before.rule].words}), and a "
-            f"verdict is not redone by another: give --rule {before.rule}, or another folder."
-        )
+    for before in (each.question for each in _concluded(folder)):
+        if not (before.stop or asked.stop) and before.rule != asked.rule:
+            raise UserError(
+                f"{folder} was decided by the rule '{before.rule}' ({RULES[before.rule].words}), "
+                f"and a verdict is not redone by another: give --rule {before.rule}, or another "
+                "folder."
+            )
 
 
 def _run(

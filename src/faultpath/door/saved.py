@@ -32,7 +32,7 @@ _Table = TypeVar("_Table")
 
 def as_text(record: DecisionRecord) -> str:
     """Return a record as its file holds it."""
-    absent = {"factorial"} if record.factorial is None else None
+    absent = {name for name in ("factorial", "earlier") if not getattr(record, name)}
     return json.dumps(record.model_dump(mode="json", exclude=absent), indent=2) + "\n"
 
 

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from faultpath.faults import Fault
 from faultpath.frozen import Frozen
+from faultpath.record.earlier import EarlierLook
 from faultpath.record.factors import Factorial
 from faultpath.statistics import RULES, BreakEven, Estimate, RuleName, Sign, Turn
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
@@ -268,10 +269,11 @@ class DecisionRecord(Frozen):
     """What intervals and tests speak of."""
     verdict: Verdict
     findings: tuple[str, ...] = ()
-    """What the run found that a reader has to know, a sentence each: pairs of different conditions,
-    results that do not repeat or depend on their block, consumers that never read."""
+    """What a reader has to know of the run, a sentence each."""
     stopped: Stopped | None = None
     """Of a sequential audit."""
+    earlier: tuple[EarlierLook, ...] = ()
+    """Concluded before, from the same trials and otherwise."""
     factorial: Factorial | None = None
     """Where one was asked for."""
 

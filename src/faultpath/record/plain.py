@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.headline import places, reversed_at
+from faultpath.record.looks import look_words
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.words import (
     About,
@@ -168,7 +169,9 @@ def _qualified(record: DecisionRecord) -> Iterator[str]:
 
 def _sure(record: DecisionRecord) -> Iterator[str]:
     yield from _qualified(record)
-    if record.question.generalise == "scenes" and any(each.detected for each in record.effects):
+    if record.earlier:
+        yield look_words(record.earlier)
+    elif record.question.generalise == "scenes" and any(each.detected for each in record.effects):
         yield "Of audits of two equal systems, at most 5 % would decide anything."
 
 

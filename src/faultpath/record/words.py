@@ -272,8 +272,9 @@ def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
     if missed:
         listed = "; ".join(f"{least} pp {' and '.join(at)}" for least, at in missed.items())
         lines.append(
-            f"More scenes: a smaller true difference than these is found with less than 80 % "
-            f"power: {listed}."
+            f"Fresh scenes, which no audit has looked at, and more of them, or --stop-when, which "
+            f"allows for looks: a smaller true difference than these is found with less than 80 % "
+            f"power: {listed}. Adding scenes to this audit would break its 5 %."
         )
     return (*lines, ANOTHER)
 

@@ -31,6 +31,10 @@ class Manifest(Frozen):
         content = self.model_dump(mode="json")
         return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
+    def of_any_scenes(self) -> "Manifest":
+        """Return it without its choice of scenes."""
+        return self.model_copy(update={"study": self.study.model_copy(update={"scenes": ()})})
+
 
 def read_manifest(path: Path) -> Manifest | None:
     """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
@@ -87,6 +91,20 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
             f"{folder} holds the run of another study, with another {differences[0]}: choose a "
             "new folder, or repeat the command that made this one"
         )
+
+
+def kin(folder: Path) -> list[Path]:
+    """Return the folders beside a run's that hold its study by its code, but for the scenes."""
+    own = read_manifest(folder / "manifest.json")
+    found: list[Path] = []
+    for path in sorted(folder.parent.iterdir()):
+        try:
+            other = read_manifest(path / "manifest.json") if path.is_dir() else None
+        except UserError:  # of another format, or damaged
+            continue
+        if own and other and path != folder and own.of_any_scenes() == other.of_any_scenes():
+            found.append(path)
+    return found
 
 
 def _damaged(path: Path) -> UserError:
