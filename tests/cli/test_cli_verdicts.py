@@ -31,7 +31,7 @@ def seen() -> str:
 
 def test_three_scenes_are_too_few_to_decide():
     record, printed = audited(scenes=3)
-    said = "Too few scenes to decide: 3 compared, and this question needs at least 8."
+    said = "Too few scenes to decide: 3 compared, and this question needs at least 7."
     assert record.verdict.headline == said
     assert said in printed
     for text in (printed, seen()):

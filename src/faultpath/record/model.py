@@ -265,8 +265,7 @@ class DecisionRecord(Frozen):
     """With fewer, nothing can be decided, whatever comes out."""
     hypotheses: int
     """Contrasts that share the error rate of 5 %: all that the audit may announce."""
-    estimand: str
-    """What intervals and tests speak of."""
+    estimand: str  # what intervals and tests speak of
     verdict: Verdict
     findings: tuple[str, ...] = ()
     """What a reader has to know of the run, a sentence each."""
