@@ -35,7 +35,7 @@ def test_what_a_user_brings_stands_beside_what_ships():
     assert own.bindings == shipped.bindings
     assert "reconstruction.wind_map" in own.consumers
     assert "reconstruction.head" not in own.consumers
-    assert own.description == f"Heavy of {PREDICTOR}; Constant of {WIND} supplies the wind."
+    assert own.description == f"Prediction: Heavy of {PREDICTOR}. Wind: Constant of {WIND}."
     assert system.parts == (WIND, PLANNER, PREDICTOR)
 
 

@@ -115,36 +115,51 @@ def _recurrent(calibrated: bool) -> Callable[[Platform], Reconstruction]:
 
 PREDICTORS: Mapping[str, Kind[Predictor]] = MappingProxyType(
     {
-        "dki": Kind("kinematic integrator", _integrator(drag=False)),
-        "dki-drag": Kind("kinematic integrator with nominal drag", _integrator(drag=True)),
+        "dki": Kind("physics without drag", _integrator(drag=False)),
+        "dki-drag": Kind("physics with nominal drag", _integrator(drag=True)),
         "true-parameter": Kind(
-            "the vehicle's own parameters", lambda platform: TrueParameter(platform.follows_motors)
+            "the simulator's physics and parameters",
+            lambda platform: TrueParameter(platform.follows_motors),
         ),
-        "wm-a": Kind("anchored model", _anchored(wind=False)),
-        "wm-a+dcc": Kind("anchored model, calibration noise", _anchored(wind=False)),
-        "wm-u": Kind("unanchored model", _unanchored),
-        "wm-u+dcc": Kind("unanchored model, calibration noise", _unanchored),
-        "wm-a-wind": Kind("anchored model, wind-conditioned", _anchored(wind=True)),
-        "wm-a-nowind": Kind("anchored model, wind withheld", _anchored(wind=False)),
+        "wm-a": Kind("physics with a learned correction", _anchored(wind=False)),
+        "wm-a+dcc": Kind(
+            "physics with a learned correction, trained with errors of mass and thrust",
+            _anchored(wind=False),
+        ),
+        "wm-u": Kind("a learned model without physics", _unanchored),
+        "wm-u+dcc": Kind(
+            "a learned model without physics, trained with errors of mass and thrust", _unanchored
+        ),
+        "wm-a-wind": Kind(
+            "physics with a learned correction and a wind input", _anchored(wind=True)
+        ),
+        "wm-a-nowind": Kind(
+            "physics with a learned correction, trained in wind that it is not told",
+            _anchored(wind=False),
+        ),
     }
 )
 
 RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
     {
         "dob": Kind(
-            "the disturbance observer",
+            "the acceleration that mass, thrust and drag do not explain",
             lambda platform: DisturbanceObserver(drag_kgps=platform.drag_kgps),
         ),
-        "gru": Kind("the learned reconstruction", _recurrent(calibrated=True)),
+        "gru": Kind(
+            "a network that reads recent motion, mass and thrust scale", _recurrent(calibrated=True)
+        ),
         "gru+dcc": Kind(
-            "the learned reconstruction, trained with calibration noise",
+            "a network that reads recent motion, mass and thrust scale, and was trained "
+            "with errors of both",
             _recurrent(calibrated=True),
         ),
         "gru-withheld": Kind(
-            "a learned reconstruction without calibration", _recurrent(calibrated=False)
+            "a network that reads recent motion, and neither mass nor thrust scale",
+            _recurrent(calibrated=False),
         ),
         "gru-trajectory": Kind(
-            "a reconstruction that learned from closed-loop flights, without calibration",
+            "a network that reads recent motion alone, trained on flights of the planner",
             _recurrent(calibrated=False),
         ),
     }

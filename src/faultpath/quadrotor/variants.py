@@ -34,8 +34,8 @@ ZERO_WIND = "zero-wind"
 TRUE_WIND = "true-wind"
 
 _FIXED = {
-    ZERO_WIND: ("zero_wind", "the wind input is held at zero"),
-    TRUE_WIND: ("true_wind", "the simulator's wind at this moment is supplied: a reference"),
+    ZERO_WIND: ("zero_wind", "taken for zero"),
+    TRUE_WIND: ("true_wind", "that of the simulator, as a reference"),
 }
 """Source of the wind channel and its description, where no reconstruction supplies it."""
 
@@ -87,16 +87,15 @@ class Setup:
             "clearance": "estimated_clearance" if seen else "true_clearance",
             "wind": "zero_wind",
         }
-        words = self._said(self.predictor, PREDICTORS)
-        words = f"{words[0].upper()}{words[1:]}"
+        words = f"Prediction: {self._said(self.predictor, PREDICTORS)}"
         if self.wind is not None:
             bindings["wind"], said = _FIXED.get(self.wind) or (
                 "reconstructed_wind",
-                f"{self._said(self.wind, RECONSTRUCTIONS)} supplies the wind",
+                self._said(self.wind, RECONSTRUCTIONS),
             )
-            words = f"{words}; {said}"
+            words = f"{words}. Wind: {said}"
         if self.planner is not None:
-            words = f"{words}; {self.brought[self.planner].description} plans"
+            words = f"{words}. Planning: {self.brought[self.planner].description}"
         return Wiring(f"{words}.", bindings)
 
     def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
