@@ -23,6 +23,7 @@ from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_parts import ChannelRows, concerned, tap_rows
 from faultpath.report.interface_wiring import Wiring, struck_paths
 from faultpath.report.pairing import Kind, Pair, read_pairs
+from faultpath.report.shares import shares
 from faultpath.report.svg import template
 from faultpath.report.tables import BEHIND, SHOWN, by_path, latex_table, markdown_table
 from faultpath.report.thresholds import by_threshold
@@ -33,7 +34,7 @@ from faultpath.tables.html import html
 from faultpath.trials.metrics import VEHICLE
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
-_SCRIPTS = ("page.js", *VIEWER_SCRIPTS)
+_SCRIPTS = ("page.js", "shares.js", *VIEWER_SCRIPTS)
 
 
 def report_page(source: ReportInput) -> str:
@@ -149,6 +150,7 @@ def _pictures(
             for b in record.break_even
             if b.curve
         ],
+        "shares": shares(record),
         "pairs": [
             Markup(pair_grid(title, [p for p in pairs if p.path == name], asked.ends, shown))
             for name, title in titles.items()
