@@ -29,6 +29,7 @@ from faultpath.store import TrialAddress, read_outcomes, read_traces
 from faultpath.store.sealed import seal
 from faultpath.store.signals import SIGNALS, decode_signals
 from faultpath.studies import reversal, shipped
+from faultpath.studies.central import of_page
 from faultpath.studies.claims import LIMITS, TOPICS, again
 from faultpath.studies.pages import PAGES, table_4
 from faultpath.studies.run import CONCLUSIONS, plan, read_results
@@ -145,6 +146,7 @@ def _paper(folder: Path, target: Path) -> list[str]:
             beside=shipped.beside(found.ledger),
             topics=TOPICS,
             limits=LIMITS,
+            central=of_page(found),
         )
     )
     tables = found.tables

@@ -24,6 +24,7 @@ from typing import Any
 
 import beside_blocks
 import blocks
+import central_blocks
 import drift_blocks
 import erring_blocks
 import fault_pictures
@@ -57,6 +58,7 @@ KINDS: Mapping[str, Any] = {
     "map": map_blocks.KIND,
     "beside": beside_blocks.KIND,
     "erring": erring_blocks.fill,
+    "central": central_blocks.fill,
     "faults": fault_pictures.KIND,
     "new-scenes": new_scenes.fill,
     "paper": paper_blocks.KIND,
@@ -86,6 +88,7 @@ def statistics_check() -> Mapping[Path, str]:
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     statistics_check,
     drift_blocks.pictures,
+    central_blocks.files,
     fault_pictures.pictures,
     learning_blocks.pictures,
     map_blocks.pictures,

@@ -149,7 +149,7 @@ def test_a_reproduction_and_a_probe(tmp_path: Path, toy: Path, begun: Path) -> N
     reseal(place, "reproduction.json", made.model_dump_json())
     found = only(place)
     assert (found.kind, found.state, found.scenes) == ("reproduction", "finished", 7)
-    assert "confirm 0, refute 0" in found.words
+    assert "tests the pipeline" in found.words
     probe = tmp_path / "probe"
     probe.mkdir()
     (probe / "a.measured.parquet").write_bytes(b"")

@@ -251,16 +251,16 @@ def test_filled_dot_leaves_out_zero_and_band_shows_what_could_not_be_detected() 
     assert 'class="dot open"' in unclear
     assert f'class="band" x="{number(scale(-10.0))}"' in unclear
     assert "limit" not in unclear
-    assert ">0<" in interval_plot("a", Shown(5.0, (1.0, 9.0)), scale, labelled=True)
+    assert ">0 m<" in interval_plot("a", Shown(5.0, (1.0, 9.0)), scale, " m")
 
 
 def test_of_ratios_one_is_no_effect_and_thresholds_are_drawn() -> None:
     scale = Scale.of("times", [0.5, 0.8, 4.0])
-    lower = interval_plot("a", Shown(0.6, (0.5, 0.8), limits=(0.7,)), scale, labelled=True)
+    lower = interval_plot("a", Shown(0.6, (0.5, 0.8), limits=(0.7,)), scale, "×")
     assert 'class="dot"' in lower
     assert f'x1="{number(scale(0.7))}"' in lower.partition('class="limit"')[2]
     assert scale(1.0) - scale(0.5) == pytest.approx(scale(2.0) - scale(1.0))
-    assert ">1<" in lower
+    assert ">1×<" in lower
     open_ = interval_plot("a", Shown(1.1, (0.8, 1.3), limits=(1.0,)), scale)
     assert 'class="dot open"' in open_
     assert "limit" not in open_
@@ -311,3 +311,44 @@ def test_markdown_has_one_row_a_claim_and_escapes() -> None:
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 1
     assert "<script>" not in "".join(rows)
     assert "+57.3 pp \\[48.3, 66.3\\]" in rows[2]
+    assert "What is claimed" in rows[0].split("|")[2]
+
+
+CENTRAL = Table(
+    columns=("Isolated", "Shared"),
+    lines=(Line(label="Here", entries=(Entry(text="+5.0", detected=True), Entry(text="−4.0"))),),
+    notes=("The reversal is decided here.",),
+)
+
+
+def test_the_page_begins_with_the_central_claim_and_counts_come_after(
+    toy: ReproductionInput, page: Page
+) -> None:
+    text = Page(reproduction_page(replace(toy, central=("C26 is open here.", CENTRAL)))).text
+    counts = text.index("Of the paper’s 4 claims")
+    for said in ("C26", "reverses the ranking", "C26 is open here.", "+5.0", "is decided here"):
+        assert 0 <= text.index(said) < counts
+    assert "reverses the ranking" not in page.text
+
+
+def test_a_quick_run_decides_nothing_and_says_where_verdicts_stand(
+    toy: ReproductionInput,
+) -> None:
+    quick = toy.reproduction.model_copy(update={"profile": "quick"})
+    console = Console(width=200)
+    with console.capture() as captured:
+        console.print(ledger_view(ledger(), "quick"))
+    page = Page(reproduction_page(replace(toy, reproduction=quick))).text
+    for said in (captured.get(), ledger_markdown(ledger(), "quick"), page):
+        assert "tests the pipeline" in said
+        assert not re.search(r"confirm \d|refute \d|\d confirmed, ✕", said)
+    for said in (captured.get(), page):
+        assert "docs/reproduction.md" in said
+
+
+def test_what_another_platform_answered_is_counted_over_the_same_claims() -> None:
+    other = ledger().model_copy(update={"platform": "second"})
+    few = ledger().model_copy(update={"claims": ledger().claims[:1]})
+    said = words.beside(few, other)
+    assert "1 confirmed, 0 refuted, 0 undecided" in said
+    assert "1 of 1 claims" in said

@@ -67,12 +67,16 @@ def command(
 def tell(run: "ReproductionRun", whole: bool) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
     from faultpath.door.display import SafeConsole
+    from faultpath.report.reproduction import words
     from faultpath.report.reproduction.terminal import ledger_view
     from faultpath.tables.terminal import drawn
 
     console = SafeConsole()
+    profile = run.record.profile
     if whole:
-        console.print(ledger_view(run.record.ledger))
+        console.print(ledger_view(run.record.ledger, profile))
+    elif profile == words.QUICK:
+        console.print(f"{words.headline(run.record.ledger, profile)}. {words.VERDICTS}\n")
     for table in () if whole else run.record.tables:
         console.print(drawn(table))
     page = run.folder / "reproduction.html"

@@ -138,7 +138,7 @@ def _verdict(folder: Path, provenance: RunProvenance, told: Listed) -> Listed:
         from faultpath.report.reproduction.words import headline
 
         paper = parsed(held[_REPRODUCTION], folder / _REPRODUCTION, Reproduction)
-        words, scenes = f"{headline(paper.ledger)}.", paper.ledger.scenes
+        words, scenes = f"{headline(paper.ledger, paper.profile)}.", paper.ledger.scenes
     trials = rows_in(folder / OUTCOMES)
     return replace(told, kind=kind, words=words, scenes=scenes, trials=trials)
 

@@ -18,6 +18,7 @@ from faultpath.store import traces_of, write_text
 from faultpath.store.folder import DELIVERIES
 from faultpath.store.sealed import seal
 from faultpath.studies import reversal
+from faultpath.studies.central import of_page
 from faultpath.studies.claims import LIMITS, TOPICS
 from faultpath.studies.flights import Flown, Leg, Pace, fly
 from faultpath.studies.pages import table_4
@@ -112,11 +113,12 @@ def _write_pages(
         beside=beside(found.ledger),
         topics=TOPICS,
         limits=LIMITS,
+        central=of_page(found),
     )
     write_text(place / "reproduction.html", reproduction_page(source), place)
     write_text(place / "tables.tex", latex.document(found.tables), place)
     write_text(place / "tables.md", "\n\n".join(map(markdown.block, found.tables)) + "\n", place)
-    write_text(place / "ledger.md", ledger_markdown(found.ledger), place)
+    write_text(place / "ledger.md", ledger_markdown(found.ledger, found.profile), place)
 
 
 def _gallery(found: Reproduction) -> list[str]:

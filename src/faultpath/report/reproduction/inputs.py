@@ -8,6 +8,7 @@ from faultpath.record import DecisionRecord, Ledger, Reproduction
 from faultpath.record.provenance import RunProvenance
 from faultpath.report.inputs import Traces
 from faultpath.report.reproduction.ledger import Limits
+from faultpath.tables import Table
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 
@@ -32,5 +33,8 @@ class ReproductionInput:
     """What runs on other platforms answered, over the same library."""
     topics: Mapping[str, Sequence[str]] = field(default_factory=dict[str, Sequence[str]])
     """Titles of topics, each with the ids of its claims; claims of none stand last."""
+    central: tuple[str, Table] | None = None
+    """What became of the paper's central claim here, and where it holds; `None` where the run is
+    not about it."""
     limits: Limits = field(default_factory=dict[str, Sequence[Sequence[float]]])
     """What the statements of claims are decided at."""

@@ -51,6 +51,13 @@ class Scale:
         outer = [t for t in (ticks[0], ticks[-1]) if abs(self(t) - self(self.no_effect)) > 22]
         return sorted({self.no_effect, *outer})
 
+    def labels(self, unit: str) -> list[tuple[float, str]]:
+        """Return the ticks with their labels, `unit` behind the one that means no effect."""
+        return [
+            (tick, tick_label(tick) + (unit if tick == self.no_effect else ""))
+            for tick in self.ticks()
+        ]
+
 
 @dataclass(frozen=True)
 class Shown:
@@ -73,27 +80,27 @@ class Shown:
         return (self.value, *self.interval, *self.papers, *self.limits, *self.other)
 
 
-def scale_plot(scale: Scale, title: str) -> str:
+def scale_plot(scale: Scale, title: str, unit: str) -> str:
     """Return the labelled scale that stands over plots that share an axis."""
     svg = Svg(WIDTH, 16, title)
-    for tick in scale.ticks():
-        svg.text(scale(tick), 11, tick_label(tick), "tiny", "middle")
+    for tick, label in scale.labels(unit):
+        svg.text(scale(tick), 11, label, "tiny", "middle")
         svg.line((scale(tick), 13), (scale(tick), 16), "zero")
     return svg.render()
 
 
-def interval_plot(title: str, shown: Shown, scale: Scale, labelled: bool = False) -> str:
+def interval_plot(title: str, shown: Shown, scale: Scale, unit: str | None = None) -> str:
     """Return one interval: filled where it leaves out what means no effect, open elsewhere.
 
     The paper's figure is marked above, the thin line below is that of another platform, dashed
     lines are limits that the statement is decided at, where they are not no effect itself. The
     light band beside an open one reaches as far as effects that would probably not have been
-    detected; `labelled` writes the scale below.
+    detected; where a `unit` is given, the scale stands below with it.
     """
     low, high = shown.interval
     zero, y = scale.no_effect, 10.0
     open_ = low <= zero <= high
-    svg = Svg(WIDTH, _LABELLED if labelled else _HEIGHT, title)
+    svg = Svg(WIDTH, _HEIGHT if unit is None else _LABELLED, title)
     if open_ and shown.least and not scale.ratio:
         left, right = max(scale(-shown.least), 0.0), min(scale(shown.least), WIDTH)
         svg.rect(left, y - 8, right - left, 16, "band", 2)
@@ -113,7 +120,7 @@ def interval_plot(title: str, shown: Shown, scale: Scale, labelled: bool = False
         at, left, right = map(scale, shown.other)
         svg.line((left, y + 10), (right, y + 10), "other")
         svg.circle((at, y + 10), 2.2, "other-dot")
-    if labelled:
-        for tick in scale.ticks():
-            svg.text(scale(tick), _LABELLED - 2, tick_label(tick), "tiny", "middle")
+    if unit is not None:
+        for tick, label in scale.labels(unit):
+            svg.text(scale(tick), _LABELLED - 2, label, "tiny", "middle")
     return svg.render()

@@ -41,13 +41,20 @@ def ledger_plots(ledger: Ledger, limits: Limits, beside: Sequence[Ledger]) -> Pl
     plots = {
         name: Markup(
             interval_plot(
-                f"{name}: {words.estimate(of)}", shown, scales[of.unit], of.unit != _HEADED
+                f"{name}: {words.estimate(of)}",
+                shown,
+                scales[of.unit],
+                None if of.unit == _HEADED else words.behind(of.unit),
             )
         )
         for name, shown, of in drawn
     }
     headed = scales.get(_HEADED)
-    scale = None if headed is None else Markup(scale_plot(headed, "Scale in percentage points"))
+    scale = (
+        None
+        if headed is None
+        else Markup(scale_plot(headed, "Scale in percentage points", words.behind(_HEADED)))
+    )
     return Plots(scale, plots)
 
 

@@ -36,6 +36,12 @@ def reproduction_page(source: ReproductionInput) -> str:
         _SCRIPTS,
         found=reproduction,
         ledger=reproduction.ledger,
+        central=source.central
+        and {
+            "state": source.central[0],
+            "table": Markup(html(source.central[1])),
+            "notes": (*source.central[1].legend(), *source.central[1].notes),
+        },
         beside=source.beside,
         plots=ledger_plots(reproduction.ledger, source.limits, source.beside),
         topics=_topics(source),

@@ -24,7 +24,7 @@ _SHOWN: dict[str, AlignMethod] = {
     "Size": "left",
     "Detectable": "right",
 }
-_PRINTED = ("Kind", "Verdict", "Estimate", "Sizes", "Detectable", "The paper", "What is claimed")
+_PRINTED = ("What is claimed", "Kind", "Verdict", "Estimate", "Sizes", "Detectable", "The paper")
 _IN_SHORT: dict[Size, str] = {
     "right sign, other size": "right sign only",
     "not comparable": MISSING,
@@ -58,13 +58,18 @@ def _table(ledger: Ledger) -> Table:
     return Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts)
 
 
-def ledger_view(ledger: Ledger) -> RenderableType:
-    """Return headline, the claims, each with its words below what came of it, and counts."""
-    title = Text(f"{words.headline(ledger)}.", style="bold")
+def ledger_view(ledger: Ledger, profile: str = "paper") -> RenderableType:
+    """Return headline, the claims, each with its words below what came of it, and counts.
+
+    A quick run has neither counts nor sizes.
+    """
+    title = Text(f"{words.headline(ledger, profile)}.", style="bold")
     note = tuple(Text(each, "dim") for each in words.notes(ledger))
     blank = Text("")
     below = (Text(words.sizes(ledger)),) if words.sizes(ledger) else ()
     about, claims = Text(_about(ledger)), _claims(ledger)
+    if profile == words.QUICK:
+        return Group(title, Text(words.VERDICTS), about, *note, blank, *claims)
     return Group(title, about, *note, blank, *claims, blank, _counts(ledger), *below)
 
 
@@ -92,12 +97,14 @@ def _shown(claim: ClaimVerdict) -> Iterable[Text]:
         yield Text(entry) if isinstance(entry, str) else Text(entry.text, STYLES[entry.tone])
 
 
-def ledger_markdown(ledger: Ledger) -> str:
+def ledger_markdown(ledger: Ledger, profile: str = "paper") -> str:
     """Return the ledger as a Markdown table, the counts above it."""
     about = " ".join([f"{_about(ledger)}.", *words.notes(ledger)])
     table = grid(_table(ledger))
     sizes = ["", markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
-    return "\n".join([f"{words.headline(ledger)}.", "", markdown(about), "", table, *sizes, ""])
+    return "\n".join(
+        [f"{words.headline(ledger, profile)}.", "", markdown(about), "", table, *sizes, ""]
+    )
 
 
 def _about(ledger: Ledger) -> str:

@@ -3,6 +3,11 @@
 from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part, Size
 from faultpath.report import wording
 
+QUICK = "quick"
+"""The profile whose runs are too small to be held against the paper."""
+VERDICTS = (
+    "The verdicts of the run that comes with faultpath: faultpath claims, docs/reproduction.md."
+)
 SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
 ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
@@ -17,7 +22,7 @@ STATES: dict[Size, str] = {
 }
 """Each size as a name for styles and addresses."""
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
-_DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0}
+_DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
 _DIFFERENCES = ("pp", "s", "m")
 _SHARES = {"times": "×", "percent": " %"}
 """Units that are not those of a difference, as written behind a number."""
@@ -35,7 +40,7 @@ def figure(of: ClaimVerdict | Part) -> str:
     if of.estimate is None:
         return ""
     write = wording.signed if of.unit in _DIFFERENCES else wording.plain
-    return f"{write(of.estimate, _digits(of.unit))}{_behind(of.unit)}"
+    return f"{write(of.estimate, _digits(of.unit))}{behind(of.unit)}"
 
 
 def interval(of: ClaimVerdict | Part) -> str:
@@ -54,7 +59,7 @@ def least_detectable(of: ClaimVerdict | Part) -> str:
     """Return the minimum detectable difference from 0; nothing where there is none."""
     if of.mde is None or of.unit in _SHARES:
         return ""
-    return f"{wording.plain(of.mde, _digits(of.unit))}{_behind(of.unit)}"
+    return f"{wording.plain(of.mde, _digits(of.unit))}{behind(of.unit)}"
 
 
 def evidence(part: Part) -> tuple[str, ...]:
@@ -115,10 +120,11 @@ def beside(ledger: Ledger, other: Ledger) -> str:
     """Say what another platform's run answered to the same claims."""
     theirs = {claim.id: claim.verdict for claim in other.claims}
     both = [claim for claim in ledger.claims if claim.id in theirs]
-    counts = ", ".join(f"{list(theirs.values()).count(answer)} {answer}" for answer in ANSWERS)
+    there = [theirs[claim.id] for claim in both]
+    counts = ", ".join(f"{there.count(answer)} {answer}" for answer in ANSWERS)
     same = sum(theirs[claim.id] == claim.verdict for claim in both)
     return (
-        f"Platform {other.platform}, beside each claim in grey: {counts}; {same} of "
+        f"Platform {other.platform}, of the same claims, beside each in grey: {counts}; {same} of "
         f"{len(both)} claims have the same answer on both."
     )
 
@@ -140,8 +146,10 @@ def sizes(ledger: Ledger) -> str:
     )
 
 
-def headline(ledger: Ledger) -> str:
-    """Return the outcome of all claims in one sentence."""
+def headline(ledger: Ledger, profile: str) -> str:
+    """Return the outcome of all claims in one sentence; a quick run has none."""
+    if profile == QUICK:
+        return "The quick profile tests the pipeline and decides nothing about the paper’s claims"
     confirmed, refuted, undecided = map(ledger.count, ANSWERS)
     claims = wording.counted(len(ledger.claims), "claim")
     about = f"{claims} that this run is about" if ledger.left_out else f"the paper’s {claims}"
@@ -165,5 +173,6 @@ def _digits(unit: str) -> int:
     return _DIGITS.get(unit, 2)
 
 
-def _behind(unit: str) -> str:
+def behind(unit: str) -> str:
+    """Return a unit as written behind a number."""
     return _SHARES.get(unit, f" {unit}" if unit else "")
