@@ -99,8 +99,11 @@ def test_a_file_that_is_read_and_not_named_is_told(mine, tmp_path):
     run_study(mine.study(), tmp_path / "named", workers=1, notice=told.append)
     assert told == []
     mine.file.write_text(mine.file.read_text().replace('data_files = ("push.txt",)', ""))
-    run_study(mine.study(), tmp_path / "unnamed", workers=1, notice=told.append)
+    found = run_study(mine.study(), tmp_path / "unnamed", workers=1, notice=told.append)
     (sentence,) = told
+    assert found.findings == (sentence,), "the record keeps it"
+    again = run_study(mine.study(), tmp_path / "unnamed", workers=1)
+    assert again.findings == (sentence,), "where nothing was left to fly, too"
     assert sentence.startswith(
         f"The system reads {mine.data.resolve()}, not named in its data_files"
     )

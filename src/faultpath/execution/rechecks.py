@@ -9,8 +9,9 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ValidationError
+from pydantic import Field, ValidationError
 
+from faultpath.code import named
 from faultpath.execution.attempt import Reply, Wrong
 from faultpath.execution.differences import difference, differing, findings, whole
 from faultpath.execution.schedule import Recheck, Task, Unit
@@ -32,15 +33,21 @@ class _Kept(Frozen):
 
     format: Literal[3] = 3
     flown: tuple[FlownAgain, ...] = ()
+    unnamed: dict[str, tuple[str, ...]] = Field(default_factory=dict[str, tuple[str, ...]])
+    """Files that were read and that the system does not name, by the state of its code."""
 
 
 class Rechecks:
-    """What is flown again in a run, and what that found; kept in the run's folder."""
+    """What is flown again in a run, and what that found; kept in the run's folder.
 
-    def __init__(self, units: Iterable[Unit], folder: RunFolder) -> None:
-        self._units = tuple(units)
+    So are the files that were read and that the system, in the state `code`, does not name."""
+
+    def __init__(self, units: Iterable[Unit], folder: RunFolder, code: str) -> None:
+        self._units, self._code = tuple(units), code
         self._folder = folder
-        self._kept = {_name(each): each for each in _read(folder.rechecks)}
+        before = _read(folder.rechecks)
+        self._kept = {_name(each): each for each in before.flown}
+        self._unnamed = dict(before.unnamed)
 
     def tasks(self, outcomes: Outcomes) -> tuple[Task, ...]:
         """Return what is to be flown again next of a run that is done; empty when nothing is left.
@@ -88,7 +95,19 @@ class Rechecks:
             other=() if wrote else differing(first, reply),
         )
         self._kept[_name(shown)] = shown
-        kept = _Kept(flown=tuple(self._kept[name] for name in sorted(self._kept)))
+        self._save()
+
+    def note_unnamed(self, paths: Iterable[str]) -> None:
+        """Keep files that were read and not named: when the run is resumed nothing reads them."""
+        before = self._unnamed.get(self._code, ())
+        found = tuple(sorted({*before, *paths}))
+        if found != before:
+            self._unnamed[self._code] = found
+            self._save()
+
+    def _save(self) -> None:
+        flown = tuple(self._kept[name] for name in sorted(self._kept))
+        kept = _Kept(flown=flown, unnamed=self._unnamed)
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
 
     def flown(self) -> tuple[FlownAgain, ...]:
@@ -106,7 +125,8 @@ class Rechecks:
 
     def findings(self) -> tuple[str, ...]:
         """Return the findings about units of this run, a sentence or two each."""
-        return findings(self.flown())
+        unnamed = self._unnamed.get(self._code, ())
+        return (*((_not_named(unnamed),) if unnamed else ()), *findings(self.flown()))
 
     def _drawn(self, sound: Sequence[Unit]) -> Unit:
         """Draw the unit whose scenes are flown again.
@@ -155,9 +175,17 @@ def _lot(*parts: str) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
-def _read(path: Path) -> tuple[FlownAgain, ...]:
+def _not_named(paths: Sequence[str]) -> str:
+    """Say that a system reads files whose change nobody would notice."""
+    return (
+        f"The system reads {named(paths)}, not named in its data_files: a change there would not "
+        "be noticed, and trials of before would be taken for trials of now."
+    )
+
+
+def _read(path: Path) -> _Kept:
     """Return what was shown before; a file that cannot be read is as good as none."""
     try:
-        return _Kept.model_validate_json(path.read_bytes()).flown
+        return _Kept.model_validate_json(path.read_bytes())
     except (OSError, ValidationError):
-        return ()
+        return _Kept()

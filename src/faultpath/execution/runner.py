@@ -2,13 +2,12 @@
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from datetime import datetime
 from functools import partial
 from pathlib import Path
 
-from faultpath.code import named
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Reply
 from faultpath.execution.flying import Flying
@@ -124,20 +123,19 @@ def run_study(
                 flown = here if held.in_process else there
                 flying = Flying[Task](held, _orders(flown), limit, study.system.name)
                 _run(flying, schedule, standing, looks, report)
-                again = Rechecks(looks.units, run)
+                again = Rechecks(looks.units, run, code.state.digest)
                 if recheck:
                     _recheck(flying, again, standing)
             for unit, scene in again.void():
                 standing.outcomes[unit.arm.key(), scene] = failed_outcome(scene, _OTHERWISE)
-            if flying.undeclared:
-                notice(_unnamed(sorted(flying.undeclared)))
+            again.note_unnamed(flying.undeclared)
             table = assemble(looks.study, library, standing.outcomes)
             taps = standing.taps(looks.units)
             deliveries = Deliveries.of(study, taps, table, again.findings())
             for finding in deliveries.findings:
                 notice(finding)
             digest = run.save_tables(table, deliveries)
-            told = flying.undeclared or held.in_process or again.findings()
+            told = held.in_process or again.findings()
             if store and recheck and not told and (sound := _sound(looks.units, standing)):
                 store.keep(run, sound, notice)
     except KeyboardInterrupt:
@@ -252,14 +250,6 @@ def _kept_trials(now: Progress, again: int, written: tuple[datetime, datetime]) 
     when = f"from {first}" if first == last else f"from {first} to {last}"
     tried = f"; {again} that failed are tried again" if again else ""
     return f"Kept {now.rows_done} of {now.rows_total} trials, {when} UTC{tried}."
-
-
-def _unnamed(paths: Sequence[str]) -> str:
-    """Say that a system reads files whose change nobody would notice."""
-    return (
-        f"The system reads {named(paths)}, not named in its data_files: a change there would not "
-        "be noticed, and trials of before would be taken for trials of now."
-    )
 
 
 def _ignore(progress: Progress) -> None:
