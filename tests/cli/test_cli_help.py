@@ -35,5 +35,33 @@ def test_help_wraps_as_the_terminal_is_wide() -> None:
     assert "and that a fault reaches every tap. Exits with 1 where a check fails." in shown
 
 
+WRITTEN = """
+from typing import Annotated, Literal
+def create(
+    part: Annotated[str, "A part, file.py:factory: or [bold]x[/bold], at [0, 1]."] = "a:star:b",
+):
+    raise SystemExit
+"""
+
+
+@pytest.mark.parametrize("verb", EXAMPLES)
+def test_help_shows_every_text_as_it_is_written(verb: str, tmp_path, monkeypatch) -> None:
+    """Once `my.py:factory: dki` showed a factory in place of its name."""
+    monkeypatch.setenv("COLUMNS", "200")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(WRITTEN)
+    command = typer.main.get_command(build()).commands[verb]
+    system = {"system", "set_"} <= {param.name for param in command.params}
+    lines = [(verb,), *((verb, each) for each in getattr(command, "commands", ()))]
+    lines += [(verb, "quadrotor"), (verb, "mine.py:create")] if system else []
+    for line in lines:
+        shown = faultpath(*line, "--help").out
+        assert not [c for c in shown if ord(c) > 0x2600], shown
+        assert EXAMPLES[verb].replace(" ", "")[:60] in "".join(shown.split()) or len(line) > 1
+    if system:
+        assert "file.py:factory: or [bold]x[/bold], at [0, 1]; default a:star:b" in shown
+        assert "Options of mine.py:create" in shown
+
+
 def test_the_version() -> None:
     assert faultpath("--version").out == f"faultpath {package.__version__}\n"

@@ -55,6 +55,10 @@ class Halved(MPPI):
         return super().update(search, scored)
 
 
+def blind(seed):
+    return K(drag=False, wind=False)
+
+
 def predictor(seed):
     return Heavy(seed)
 

@@ -11,12 +11,13 @@ from flights import HELD_OUT, bits, fly, quadrotor
 from faultpath.door.systems import with_parts
 from faultpath.errors import UserError
 from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
+from faultpath.review.check import chosen_variants
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
 
 PARTS = Path(__file__).with_name("own_parts.py")
-PREDICTOR, EXACT, WIND, PLANNER = (
-    f"{PARTS}:{name}" for name in ("predictor", "exact", "wind", "planner")
+PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
+    f"{PARTS}:{name}" for name in ("predictor", "exact", "wind", "planner", "blind")
 )
 
 
@@ -37,6 +38,27 @@ def test_what_a_user_brings_stands_beside_what_ships():
     assert "reconstruction.head" not in own.consumers
     assert own.description == f"Prediction: Heavy of {PREDICTOR}. Wind: Constant of {WIND}."
     assert system.parts == (WIND, PLANNER, PREDICTOR)
+
+
+@pytest.mark.parametrize(
+    ("options", "first"),
+    [
+        ({}, ["zero-wind"]),
+        ({"predictor": BLIND}, [BLIND]),
+        ({"predictor": PREDICTOR}, ["zero-wind"]),
+        ({"predictor": "wm-a+dcc"}, ["wm-a+dcc"]),
+        ({"bring": WIND}, [WIND]),
+        ({"bring": PLANNER}, [PLANNER]),
+        ({"bring": f"{PLANNER},{WIND}"}, [f"{PLANNER}/{WIND}"]),
+        ({"predictor": BLIND, "bring": WIND}, [BLIND, f"dki/{WIND}"]),
+    ],
+)
+def test_what_the_options_name_flies_in_the_first_variants(options, first):
+    """A check flies a few variants, and a trace one: they are to show what was named."""
+    system = quadrotor(**options)
+    assert list(system.variants)[: len(first)] == first
+    checked = [variant.name for variant in chosen_variants(system, ())]
+    assert checked[: len(first)] == first
 
 
 def test_a_part_flies_as_the_shipped_one_that_it_equals():

@@ -39,6 +39,8 @@ class Wall(System):
 
     def __init__(self, broken: str):
         self.broken = broken
+        if broken == "one at a time":
+            self.block_size = 1
 
     def library(self, name):
         return Library(name, tuple(SceneRef(f"w{i}", i) for i in range(6)), "walls-1")
@@ -50,6 +52,7 @@ class Wall(System):
         broken, n = self.broken, len(scenes)
         if broken == "raises" and "w2" in scenes:
             raise ValueError("no air")
+        assert n <= self.block_size
         if broken == "reads a file":
             (Path(__file__).parent / "gains.txt").read_text()
         draws = np.array([generator("wall", scene, seed).uniform(size=2) for scene in scenes])
@@ -66,6 +69,10 @@ class Wall(System):
                 wind += 0.01 * np.arange(n)
             case "crowded":
                 wind += 0.01 * n
+            case "rounds":
+                wind += 1e-16 * n
+            case "barely crowded":
+                wind += 1e-9 * n
         unit = 1000.0 if broken == "millimetres" else 1.0
         for step in range(20):
             shown = np.where((broken == "nan") & (step > 9), np.nan, unit * left)

@@ -148,6 +148,25 @@ def test_a_sound_system_passes(name, library):
     assert all(0 < each.altered <= each.readings for each in report.struck)
 
 
+def test_rounding_is_told_from_dependence_by_its_size():
+    """A sum over scenes beside it may change a last digit; that is no shared state."""
+    named = {each.name: each for each in check(broken="rounds").checks}
+    assert (found := named["scene independence"]).status == "passed"
+    assert re.search(r"differs by rounding alone, at most [1-9]e-1[5-7]", found.remarks[0])
+    assert "the same to rounding" in found.says
+    (told,) = failed(check(broken="barely crowded"))
+    assert told == "scene independence"
+
+
+def test_no_more_scenes_fly_together_than_the_system_takes():
+    report = check(broken="one at a time")
+    assert failed(report) == {}
+    assert report.scenes == ("w0",)
+    assert report.checks[0].says.endswith("its block_size is 1")
+    (alone,) = (each for each in report.checks if each.name == "scene independence")
+    assert alone.status == "not judged"
+
+
 def test_a_consumer_that_ignores_its_reading_is_remarked_and_not_failed():
     report = check(broken="ignores")
     assert failed(report) == {}

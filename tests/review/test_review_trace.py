@@ -47,7 +47,7 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
     assert {read.used for read in found.reads} == {None}
     (speed,) = (line for line in trace_table(found).lines if line.label == "approach.feedback")
     assert [entry.text for entry in speed.entries] == [
-        *("speed", "range_rate", "0 1 2", "0 1 2", "speedometer", "")
+        *("speed", "", "range_rate", "0 1 2", "0 1 2", "speedometer")
     ]
 
 
@@ -111,9 +111,13 @@ def test_the_command_prints_draws_and_exits_with_what_was_found(tmp_path):
         return subprocess.run([*command, *arguments], capture_output=True, text=True)
 
     drawn = tmp_path / "ran.svg"
-    told = run(TOY, "--variant", "blind", "--steps", "2", "--svg", str(drawn))
+    told = run(TOY, "--variant", "blind", "--fault", "gain:scale=0.6", "--svg", str(drawn))
     assert told.returncode == 0, told.stderr
     assert "What ran is what is declared." in told.stdout
+    lines = told.stdout.splitlines()
+    assert max(map(len, lines)) <= 80
+    (struck,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
+    assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(struck.split())
     assert "<svg" in drawn.read_text()
     found = run(BROKEN, "--broken", "nosy", "--json")
     assert (found.returncode, len(json.loads(found.stdout)["findings"])) == (1, 1)

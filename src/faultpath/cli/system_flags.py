@@ -13,6 +13,7 @@ from typing import Annotated, Any, Protocol
 import typer
 from typer.models import OptionInfo
 
+from faultpath.cli.verbs import literal
 from faultpath.errors import UserError
 
 _HELP = "--help"
@@ -153,5 +154,5 @@ def _shown(option: _Option, system: str) -> OptionInfo:
         _flag(option),
         metavar=f"<{choices}>" if short else "<str>",
         help=f"{said}." if said else None,
-        rich_help_panel=f"Options of {system}",
+        rich_help_panel=literal(f"Options of {system}"),
     )

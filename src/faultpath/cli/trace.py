@@ -36,7 +36,7 @@ def command(
     from faultpath.patience import patience
     from faultpath.report.interface_trace import draw_trace, trace_table
     from faultpath.store import write_text
-    from faultpath.tables.terminal import STYLES, drawn
+    from faultpath.tables.terminal import STYLES, Parted
 
     with patience(system, None):
         chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
@@ -46,7 +46,7 @@ def command(
         typer.echo(trace.model_dump_json(indent=2))
     else:
         table = trace_table(trace)
-        console.print(drawn(table))
+        console.print(Parted(table))
         slopes = trace.gradient.words() if trace.gradient else ()
         for said in (*table.notes, *trace.privileged, *slopes):
             console.print(said, markup=False)

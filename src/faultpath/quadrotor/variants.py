@@ -56,6 +56,11 @@ class Setup:
     """One that the user brings; `None` for that of the options."""
     brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
 
+    @property
+    def uses(self) -> set[str | None]:
+        """The parts that it flies with."""
+        return {self.predictor, self.wind, self.planner}
+
     def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
         """Return the predictor for an arm of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
@@ -105,8 +110,24 @@ class Setup:
 def setups(
     options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
 ) -> Iterator[Setup]:
-    """Yield every way to wire the quadrotor under these options, with the parts brought to it."""
-    mine, shelf = brought or {}, Shelf(options.settings, options.checkpoints)
+    """Yield every way to wire the quadrotor under these options, with the parts brought to it.
+
+    First come those that fly with what the options name: as many as there are such parts cover all.
+    """
+    every = list(_setups(options, brought or {}))
+    first: dict[str, Setup] = {}
+    named = {options.predictor, *(brought or {})}
+    for part in (options.predictor, *(brought or {})):
+        if not any(part in setup.uses for setup in first.values()):
+            using = (setup for setup in every if part in setup.uses)
+            best = max(using, key=lambda setup: len(setup.uses & named), default=None)
+            first |= {} if best is None else {best.name: best}
+    yield from first.values()
+    yield from (setup for setup in every if setup.name not in first)
+
+
+def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[Setup]:
+    shelf = Shelf(options.settings, options.checkpoints)
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
     if _has_wind(chosen, mine):

@@ -67,9 +67,9 @@ def trace_table(trace: TraceReport) -> Table:
     taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:
         taps.setdefault((read.consumer, read.channel), []).append(read)
-    columns = ("channel", "source", "at steps", "of steps", "made by", "altered by")
-    if not trace.fault:
-        columns = columns[:-1]
+    columns = ("channel", "source", "at steps", "of steps", "made by")
+    if trace.fault:
+        columns = ("channel", "altered by", *columns[1:])
     return Table(
         title=f"{trace.variant} of {trace.system}, {trace.steps} steps in {trace.scene}",
         corner="who",
@@ -95,6 +95,7 @@ def _lines(trace: TraceReport, taps: Iterable[list[TracedRead]]) -> tuple[Line, 
             trace.reconstructed.get(first.source, ("",))[0],
         ]
         if trace.fault:
-            entries.append(", ".join(dict.fromkeys(w for read in reads for w in read.altered_by)))
+            said = ", ".join(dict.fromkeys(w for read in reads for w in read.altered_by))
+            entries.insert(1, said)
         lines.append(line(first.consumer, *entries))
     return tuple(lines)

@@ -27,7 +27,8 @@ Note = Callable[[int, int | None], None]
 _FIRST = "first"
 
 MOST = 4
-"""So many variants are all checked unless some are named."""
+"""So many variants are all checked unless some are named; of more the first two, or as many as the
+user has named parts: a system puts those first that fly with them."""
 _AFTER = 5
 """Control steps for which a tap is struck at first."""
 
@@ -58,8 +59,11 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
             f"cannot check {asked.scenes} scenes of library '{library.name}': choose 1 to "
             f"{len(library.scenes)}."
         )
-    scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
-    seen = Seen(system, _variants(system, asked.variants), scenes, asked.seed, asked.workers > 0)
+    together = min(asked.scenes, system.block_size)  # an audit hands it no more at once either
+    scenes = tuple(scene.id for scene in library.scenes[:together])
+    seen = Seen(
+        system, chosen_variants(system, asked.variants), scenes, asked.seed, asked.workers > 0
+    )
     with local(asked.workers) as held:
         stable = fingerprint(system, spec, held)
         if stable.failures and asked.workers:  # a worker would refuse to fly another system
@@ -71,8 +75,12 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
         crew.fly(held, tuple(_again(seen)), seen)
         crew.fly(held, tuple(_whole(seen)), seen)
     delivered, struck = information.delivery(seen)
+    ended = promises.trials(seen)
+    if together < asked.scenes:
+        said = f"{ended.says}, in the first {together}: its block_size is {together}"
+        ended = ended.model_copy(update={"says": said})
     checks = (
-        promises.trials(seen),
+        ended,
         promises.determinism(seen),
         promises.independence(seen),
         promises.pairing(seen),
@@ -93,12 +101,14 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
     )
 
 
-def _variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]:
+def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]:
+    """Return the variants of these names; of none those that a check flies unasked."""
     every = system.variants
     for name in names:
         if name not in every:
             raise UserError(f"{system.name}: {unknown('variant', name, every)}")
-    chosen = tuple(names) or (tuple(every) if len(every) <= MOST else tuple(every)[:2])
+    few = len(every) if len(every) <= MOST else max(2, len(system.parts))
+    chosen = tuple(names) or tuple(every)[:few]
     return tuple(every[name] for name in dict.fromkeys(chosen))
 
 

@@ -1,6 +1,9 @@
 """New systems from templates: a file that flies as it is, and its test."""
 
+import sys
 from importlib.resources import files
+from importlib.util import find_spec
+from keyword import iskeyword
 from pathlib import Path
 from typing import NamedTuple
 
@@ -31,13 +34,18 @@ TEMPLATES = {
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     """Write `NAME.py` and `test_NAME.py` into a folder and return their paths.
 
-    Raises `UserError` for a name that is none in Python or begins with `test_`, an unknown
-    template, and for files that are there.
+    Raises `UserError` for a name that is none in Python or begins with `test_`, that something
+    else is imported by, an unknown template, and for files that are there.
     """
     if not name.isidentifier() or not name.islower() or name.startswith("test_"):
         raise UserError(
             f"{name!r} cannot name a system and its file: take small letters, digits and '_', such "
             "as my_rover."
+        )
+    if taken := _taken(name, folder):
+        raise UserError(
+            f"{name!r} is {taken}, which a file {name}.py would stand before: choose another name, "
+            f"such as my_{name}."
         )
     if kind not in TEMPLATES:
         raise UserError(f"there is no template {kind!r}: choose from {', '.join(TEMPLATES)}.")
@@ -58,3 +66,20 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     for place, text in zip(places, (system, test), strict=True):
         place.write_text(text, "utf-8")
     return places
+
+
+def _taken(name: str, folder: Path) -> str:
+    """Say what Python or pytest knows by this name, other than what lies in `folder`."""
+    if iskeyword(name):
+        return "a word of Python"
+    if name in sys.stdlib_module_names:
+        return "a module of Python's own"
+    if name == "conftest":
+        return "what pytest loads before all tests"
+    found = find_spec(name)
+    if found is None:
+        return ""
+    places = [*(found.submodule_search_locations or ()), *([found.origin] if found.origin else [])]
+    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places)
+    installed = "site-packages" in "".join(places) or not here
+    return "an installed package" if installed else ""

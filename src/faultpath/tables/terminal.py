@@ -18,17 +18,22 @@ _ROOMY = 5
 """Columns that leave room on a terminal of 80 characters to stand two blanks apart."""
 
 
-def drawn(table: Table, *, one_line: bool = False) -> "Drawn":
+def drawn(
+    table: Table, *, one_line: bool = False, apart: tuple[int, int, int, int] | None = None
+) -> "Drawn":
     """Return a table for rich, without its notes.
 
-    `one_line`: numbers are never folded, and words are cut at the edge of the terminal.
+    `one_line`: numbers are never folded, and words are cut at the edge of the terminal. `apart`:
+    how far entries stand from each other; by itself that follows from how many there are.
     """
     from rich.table import Table as Drawn
     from rich.text import Text
 
     title = Text(table.title) if table.title else None
     tall = _tall(table)
-    made = Drawn(title=title, title_justify="left", box=None, pad_edge=False, padding=_apart(table))
+    made = Drawn(
+        title=title, title_justify="left", box=None, pad_edge=False, padding=apart or _apart(table)
+    )
     # Columns of words give way first, else the labels, but never below their longest word.
     made.add_column(
         Text(table.corner),
@@ -69,7 +74,8 @@ class Parted:
         while True:
             rest = self._part(start, len(self._table.columns), title)
             count = max(1, _columns_within(options.max_width, rest))
-            yield drawn(self._part(start, start + count, title), one_line=True)
+            # As far apart as was reckoned with, or what has room would be cut after all.
+            yield drawn(self._part(start, start + count, title), one_line=True, apart=_apart(rest))
             start, title = start + count, ""
             if start >= len(self._table.columns):
                 return
