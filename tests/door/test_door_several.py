@@ -110,7 +110,7 @@ def test_damage_is_told_in_a_few_words(toy: Path, begun: Path) -> None:
     assert only(toy).state == "damaged"
     copy = shutil.copytree(begun, toy.parent / "begun")
     (copy / "manifest.json").write_text("[" * 100_000)
-    assert only(copy).words == "manifest.json cannot be read as a manifest"
+    assert only(copy).words.startswith("manifest.json cannot be read as a manifest")
 
 
 def test_what_is_no_run_is_not_listed(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Study files: what is written is what is flown, and nothing else."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -34,7 +35,7 @@ def file(planned: Planned, tmp_path: Path) -> Path:
 def changed(file: Path, change) -> Path:
     data = yaml.safe_load(file.read_text())
     change(data)
-    file.write_text(yaml.safe_dump(data, sort_keys=False))
+    file.write_text(json.dumps(data, indent=1))  # JSON is YAML
     return file
 
 
@@ -133,12 +134,26 @@ def test_a_run_without_the_arms_of_its_factorial_does_not_open(planned, file, tm
         (lambda d: d.update(more=1), "more: is no field"),
         (lambda d: d.pop("repair"), "repair: is missing"),
         (lambda d: d.update(audits=[]), "audits"),
-        (lambda d: d.update(audits=d["audits"] + d["audits"]), "two audits have one name"),
+        (lambda d: d.update(audits=d["audits"] + d["audits"]), "two audits have the name"),
+        (
+            lambda d: d.update(audits=[d["audits"][0] | {"name": f"a{i}"} for i in range(201)]),
+            "200",
+        ),
+        (lambda d: d["audits"][0].update(arms=2 * d["audits"][0]["arms"]), "have the path 'co"),
+        (lambda d: d["audits"][0]["arms"][0].update(role="shared"), "line .* and not shared"),
+        (lambda d: d["audits"][0]["arms"][1].update(role="correct"), "line .* and not correct"),
+        (lambda d: d.update(scenes=True), "line .*scenes: .*a whole number"),
+        (lambda d: d.update(scenes=2.0), "scenes: .*a whole number"),
+        (lambda d: d.update(scenes="2"), "scenes: .*a whole number"),
+        (lambda d: d.update(seeds=[0, True]), r"seeds\[1\]: .*a whole number"),
+        (lambda d: d.update(seeds=[2**63]), r"seeds\[0\]: "),
+        (lambda d: d.update(seeds=[10**4000]), "out of range"),
+        (lambda d: d.update(seeds=[1, 1]), "each of them once"),
         (lambda d: d["audits"][0].update(name="../out"), r"audits\[0\].name"),
         (lambda d: d["audits"][0].update(fault="gian:scale=2"), "unknown channel 'gian'"),
         (lambda d: d.update(repair="blnd"), "unknown variant 'blnd'"),
         (lambda d: d.update(scenes=1000), "cannot run 1000 scenes"),
-        (lambda d: d.update(seeds=[-1]), "-1 is not a seed"),
+        (lambda d: d.update(seeds=[-1]), r"seeds\[0\]: .*0"),
         (lambda d: d.update(system="nowhere.py:create"), "there is no file 'nowhere.py'"),
     ],
 )
@@ -156,11 +171,11 @@ def test_what_the_system_does_not_have_is_refused_before_anything_flies(
         (b"", "is empty, and must be a group of fields"),
         (b"- 1\n", "and must be a group of fields"),
         (b"a: [", "is not plain YAML"),
-        (b"a: !!python/name:os.system x", "is not plain YAML"),
-        (b"a: 2001-99-99", "is not plain YAML"),
-        (b"[" * 5000, "is not plain YAML"),
-        (b"\xff\xfe", "cannot be read"),
-        (b"#" * 1_000_001, "it is too long"),
+        (b"a: !!python/name:os.system x", "tags are not read"),
+        (b"a: 2001-99-99", "system: "),
+        (b"[" * 5000, "nested too deeply"),
+        (b"\xff\xfe", "is not UTF-8 text"),
+        (b"#" * 1_000_001, "is too long"),
     ],
 )
 def test_files_that_are_no_studies(tmp_path, text, said):

@@ -204,5 +204,6 @@ def tell_json(runs: "Sequence[Run]") -> None:
 def folder_and_record(folder: Path) -> dict[str, object]:
     """Return what `--json` tells of an audit, for `json.dumps`."""
     from faultpath.door.saved import RECORD
+    from faultpath.store.sealed import read_regular
 
-    return {"folder": str(folder), "record": json.loads((folder / RECORD).read_text("utf-8"))}
+    return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}

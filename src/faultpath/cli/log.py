@@ -27,11 +27,12 @@ def command(
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
     from faultpath.flightlog import compensation, read_columns, read_flight
+    from faultpath.flightlog.columns import HEAVIEST_KG
 
     said = read_columns(columns)
     if mass is not None:
-        if not 0 < mass < float("inf"):
-            raise UserError(f"--mass {mass:g} is not a mass: give kilograms above 0.")
+        if not 1e-6 <= mass <= HEAVIEST_KG:
+            raise UserError(f"--mass {mass:g} is not a mass: give kilograms above 0, at most 1e6.")
         said = said.model_copy(update={"mass_kg": mass})
     found = compensation(read_flight(log, said), _sizes(errors))
 

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from hashlib import sha256
+from hashlib import file_digest, sha256
 from pathlib import Path
 
 from pydantic import Field
@@ -15,6 +15,7 @@ from pydantic import Field
 from faultpath.code.graph import Graph, Root
 from faultpath.code.watch import Watch, Watched
 from faultpath.errors import UserError
+from faultpath.files.opening import opened
 from faultpath.frozen import Frozen
 
 _NAMED = 3
@@ -134,13 +135,18 @@ def _data(paths: Iterable[Path], base: Path) -> dict[str, tuple[Path, str]]:
             )
             for file in files:
                 name = file.relative_to(base) if file.is_relative_to(base) else file
-                found[name.as_posix()] = file, sha256(file.read_bytes()).hexdigest()
+                found[name.as_posix()] = file, _digest(file)
         except OSError as error:
             raise UserError(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
                 "files: put it there, or take it out of data_files"
             ) from error
     return dict(sorted(found.items()))
+
+
+def _digest(path: Path) -> str:
+    with opened(path, sys.maxsize) as file:
+        return file_digest(file, "sha256").hexdigest()
 
 
 def _differences(mine: dict[str, str], theirs: dict[str, str]) -> list[str]:

@@ -11,6 +11,7 @@ from faultpath.door.audit import audit, checked_count, checked_seeds, checked_te
 from faultpath.door.display import Display, Now, display
 from faultpath.door.systems import choose, hands
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.proposal.plan import Plan, Proposal
@@ -39,7 +40,7 @@ class Planned:
     def write(self, file: str | PathLike[str]) -> Path:
         """Write the study file and return its path; `UserError` where another one stands."""
         path, text = Path(file), self.plan.study.yaml()
-        if path.exists() and (not path.is_file() or path.read_bytes() != text.encode()):
+        if path.exists() and (not path.is_file() or contents(path) != text.encode()):
             raise UserError(f"{path} is there already, and is another: give another file.")
         check_writable(path)
         write_text(path, text)

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TypeVar
 
 import pyarrow as pa
-from pydantic import BaseModel, ValidationError
+from pydantic import BaseModel
 
 from faultpath.errors import UserError
-from faultpath.misfits import misfit_of
+from faultpath.files.plain import Misread, model_of
 from faultpath.planning import struck_taps
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.inputs import ReportInput, Traces
@@ -76,10 +76,10 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
 def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
     """Return a file's contents as `model`; `UserError` when they are not that."""
     try:
-        return model.model_validate_json(data)
-    except ValidationError as error:
+        return model_of(data, model)
+    except Misread as error:
         raise UserError(
-            f"{path} is damaged or from another version of faultpath ({misfit_of(error)}): {AGAIN}."
+            f"{path} is damaged or from another version of faultpath ({error}): {AGAIN}."
         ) from None
 
 

@@ -9,12 +9,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from faultpath.code import named
 from faultpath.execution.attempt import Reply, Wrong
 from faultpath.execution.differences import difference, differing, findings, whole
 from faultpath.execution.schedule import Recheck, Task, Unit
+from faultpath.files.opening import LARGEST_TEXT, contents
+from faultpath.files.plain import Misread, model_of
 from faultpath.frozen import Frozen
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
@@ -186,6 +188,6 @@ def _not_named(paths: Sequence[str]) -> str:
 def _read(path: Path) -> _Kept:
     """Return what was shown before; a file that cannot be read is as good as none."""
     try:
-        return _Kept.model_validate_json(path.read_bytes())
-    except (OSError, ValidationError):
+        return model_of(contents(path, LARGEST_TEXT), _Kept)
+    except (OSError, Misread):
         return _Kept()

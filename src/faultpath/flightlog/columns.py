@@ -1,16 +1,18 @@
 """Which columns of a log hold what, in which units and frames."""
 
 from importlib import resources
-from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.errors import UserError
-from faultpath.misfits import misfit_of
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, read_yaml
 
-Positive: TypeAlias = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+HEAVIEST_KG = 1e6
+Mass: TypeAlias = Annotated[float, Field(ge=1e-6, le=HEAVIEST_KG)]
+Drag: TypeAlias = Annotated[float, Field(ge=1e-9, le=1e6)]
+Factor: TypeAlias = Annotated[float, Field(ge=-1e9, le=1e9)]
 TIME_UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 SPEED_UNITS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3}
 PX4 = "px4"
@@ -46,7 +48,7 @@ class Thrust(_Frozen):
     """The collective thrust that was commanded."""
 
     column: str
-    newton_per_unit: float | Literal["fit"] = 1.0
+    newton_per_unit: Factor | Literal["fit"] = 1.0
     """`fit` chooses the factor with which thrust explains the motion best, as for normalised
     commands; the sign is then found as well."""
 
@@ -60,10 +62,10 @@ class ColumnMap(_Frozen):
     thrust: Thrust
     frame: Literal["NED", "ENU"]
     """NED with a body whose z axis points down, or ENU with one whose z axis points up."""
-    mass_kg: Positive | None = None
-    drag_kgps: tuple[Positive, Positive, Positive] | None = None
+    mass_kg: Mass | None = None
+    drag_kgps: tuple[Drag, Drag, Drag] | None = None
     """Linear drag along the body's axes; `None`: what thrust and weight leave is one force."""
-    motor_time_constant_s: float = Field(default=0.0, ge=0)
+    motor_time_constant_s: float = Field(default=0.0, ge=0, le=60)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -76,22 +78,16 @@ def read_columns(where: str) -> ColumnMap:
 
     Raises `UserError` for a file that cannot be read or says something else.
     """
-    if where == PX4:
-        text = resources.files("faultpath.flightlog").joinpath("px4.yaml").read_text("utf-8")
-    else:
-        try:
-            text = Path(where).read_text("utf-8")
-        except (OSError, UnicodeDecodeError) as error:
-            reason = error.strerror if isinstance(error, OSError) else "not UTF-8 text"
-            raise UserError(
-                f"{where}: cannot be read ({reason}): give the YAML file that says which columns "
-                "hold what, or px4"
-            ) from None
     try:
-        return ColumnMap.model_validate(yaml.safe_load(text))
-    except yaml.YAMLError as error:
-        raise UserError(f"{where}: is not plain YAML ({' '.join(str(error).split())})") from None
-    except ValidationError as error:
+        if where == PX4:
+            data = resources.files("faultpath.flightlog").joinpath("px4.yaml").read_bytes()
+        else:
+            data = contents(where)
+        return read_yaml(data).fill(ColumnMap)
+    except OSError as error:
         raise UserError(
-            f"{where}: {misfit_of(error, ColumnMap)}; see the example in docs/recorded-flights.md"
+            f"{where}: cannot be read ({error.strerror}): give the YAML file that says which "
+            "columns hold what, or px4"
         ) from None
+    except Misread as error:
+        raise UserError(f"{error.at(where)}; see the example in docs/recorded-flights.md") from None

@@ -86,9 +86,16 @@ class _Errors:
         combined = nominal(flight, predictor) + through_air(flight, wind) / (
             flight.mass_kg * (1 + predictor)
         )
-        return np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[self.settled]
+        found = np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[self.settled]
+        if not np.isfinite(found).all():
+            raise UserError(
+                "the log and its map leave an acceleration without end: correct mass, drag and "
+                "units in the map"
+            )
+        return found
 
 
+@np.errstate(all="ignore")  # what comes of it is judged
 def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Compensation:
     """Return the error of a_0 + B w for correct, isolated and shared calibration errors.
 

@@ -42,6 +42,7 @@ class Flight:
     gaps: int
 
 
+@np.errstate(all="ignore")  # what comes of it is judged
 def read_flight(path: Path, columns: ColumnMap) -> Flight:
     """Return the flight in a log.
 
@@ -118,6 +119,11 @@ def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> S
         raise UserError(
             f"{path}: the attitude has the length {np.median(lengths):.3g}, and a unit quaternion "
             "has 1: correct its columns"
+        )
+    if (odd := np.flatnonzero(abs(lengths - 1) > 0.5)).size:
+        raise UserError(
+            f"{path}: the attitude has the length {lengths[odd[0]]:.3g} at its reading {odd[0]}, "
+            "and a unit quaternion has 1: leave such cells empty"
         )
     if columns.attitude.order == "wxyz":
         quaternion = quaternion[:, [1, 2, 3, 0]]

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeAlias, cast
 
@@ -12,10 +13,15 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.flightlog.columns import TIME_UNITS, ColumnMap
-from faultpath.text import unknown
+from faultpath.text import one_line, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
+_LONGEST_S = 1e12
+"""A time of more seconds is no time; those since 1970 are a thousandth of it."""
+_LARGEST = 1e9
+"""A million metres a second, in the smallest unit."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +51,10 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
     try:
         parquet = path.suffix.lower() == ".parquet"
-        table: pa.Table = cast(Any, pq.ParquetFile(path)).read() if parquet else csv.read_csv(path)
+        data = pa.BufferReader(contents(path))
+        table: pa.Table = cast(Any, pq.ParquetFile(data)).read() if parquet else csv.read_csv(data)
     except (OSError, pa.ArrowException) as error:
-        raise UserError(f"{path}: cannot be read ({' '.join(str(error).split())})") from None
+        raise UserError(f"{path}: cannot be read ({_why(error)}): give a whole log") from None
     if columns.time is None:
         raise UserError(f"{path}: the map names no time column: add time: {{column: …, unit: s}}")
     found = {name: _numbers(path, name, table) for name in (columns.time.column, *columns.names)}
@@ -58,10 +65,14 @@ def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
 def _numbers(path: Path, name: str, table: pa.Table) -> Floats:
     if name not in table.column_names:
         raise UserError(f"{path}: {unknown('column', name, table.column_names)}")
+    if table.column_names.count(name) > 1:
+        raise UserError(f"{path}: two columns are called '{name}': give each a name of its own")
+    kind: Any = table[name].type
     try:
+        if pa.types.is_boolean(kind):
+            raise pa.ArrowInvalid
         return table[name].cast(pa.float64()).to_numpy()
     except pa.ArrowException:
-        kind = str(cast(Any, table.schema).field(name).type)
         raise UserError(
             f"{path}: column '{name}' holds {kind} and no numbers: name another, or correct it"
         ) from None
@@ -77,9 +88,12 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         ) from None
     topics = sorted({name.partition(".")[0] for name in columns.names})
     try:
-        data = cast(Sequence[Any], cast(Any, ULog(str(path), topics)).data_list)
+        log = cast(Any, ULog(BytesIO(contents(path)), topics))
+        data = cast(Sequence[Any], log.data_list)
     except Exception as error:  # pyulog raises whatever a damaged file leads it into
-        raise UserError(f"{path}: cannot be read as a ULog file ({error})") from None
+        raise UserError(
+            f"{path}: cannot be read as a ULog file ({_why(error)}): give a whole log"
+        ) from None
     messages: dict[str, dict[str, Any]] = {
         each.name: each.data for each in reversed(data)
     }  # the first instance stays
@@ -90,14 +104,27 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
             raise UserError(f"{path}: {unknown('message', topic, sorted(messages))}")
         if field not in messages[topic]:
             raise UserError(f"{path}: {unknown('field', name, sorted(messages[topic]))}")
+        if "timestamp" not in messages[topic]:
+            raise UserError(f"{path}: message '{topic}' has no timestamp: record it with its times")
         time_s = np.asarray(messages[topic]["timestamp"], dtype=np.float64) * TIME_UNITS["us"]
         found[name] = time_s, np.asarray(messages[topic][field], dtype=np.float64)
     return found
 
 
+def _why(error: Exception) -> str:
+    said = (error.strerror if isinstance(error, OSError) else "") or str(error)
+    return one_line(said) or type(error).__name__
+
+
 def _checked(path: Path, name: str, time_s: Floats, values: Floats) -> Series:
-    finite = np.isfinite(time_s) & np.isfinite(values)
-    time_s, values = time_s[finite], values[finite]
+    for what, found, most in (("times", time_s, _LONGEST_S), ("values", values, _LARGEST)):
+        if (odd := np.flatnonzero(np.abs(found) > most)).size:  # infinite ones too
+            raise UserError(
+                f"{path}: the {what} of column '{name}' reach {found[odd[0]]:g} at its reading "
+                f"{odd[0]}, which no flight does: correct the log, or leave the cell empty"
+            )
+    there = np.isfinite(time_s) & np.isfinite(values)  # what is empty is not a number
+    time_s, values = time_s[there], values[there]
     if len(time_s) < 2:
         raise UserError(f"{path}: column '{name}' has fewer than two numbers: name another")
     if (np.diff(time_s) < 0).any():

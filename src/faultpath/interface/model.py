@@ -8,7 +8,7 @@ availability (a channel that the trained module expects is missing).
 
 from collections.abc import Mapping
 from enum import StrEnum
-from typing import Annotated, Self
+from typing import Annotated, Self, cast
 
 from pydantic import (
     AfterValidator,
@@ -37,7 +37,9 @@ def _readable(text: str) -> str:
 
 
 def _several(given: object) -> object:
-    return (given,) if isinstance(given, str) else given
+    if isinstance(given, str):
+        return (given,)
+    return tuple(cast("list[object]", given)) if isinstance(given, list) else given
 
 
 def _briefly(names: tuple[str, ...]) -> str | list[str]:

@@ -1,20 +1,22 @@
 """A study file: audits of one repair, with their arms, to be carried out as they stand."""
 
+from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import Annotated, Literal, Self, get_args
 
-import yaml
-from pydantic import Field, StringConstraints, ValidationError
+from pydantic import Field, StringConstraints, model_validator
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, read_yaml, yaml_text
 from faultpath.frozen import Frozen
-from faultpath.misfits import misfit_of
 from faultpath.planning import Audit
 from faultpath.record import CORRECT, SHARED
 from faultpath.record.factorial import JOINED
 
-_LONGEST = 1_000_000
-"""Bytes of a file."""
+_MOST = 200
+"""Audits of a file. Each is a finding of its own, and a file of more asks no one question."""
 Role = Literal["correct", "repaired", "shared", "attribution", "factorial"]
 
 
@@ -28,6 +30,15 @@ class StudyArm(Frozen):
     """Consumers that the fault strikes there; without any the arm is that of correct inputs."""
     repair: tuple[str, ...] = ()
 
+    @model_validator(mode="after")
+    def _role_of_its_path(self) -> Self:
+        fit = _roles(self.path)
+        if self.role not in fit:
+            raise ValueError(
+                f"path '{self.path}' has the role {' or '.join(fit)}, and not {self.role}"
+            )
+        return self
+
 
 class StudyAudit(Frozen):
     """One audit of the repair: a fault, and its arms."""
@@ -38,6 +49,11 @@ class StudyAudit(Frozen):
     why: str = ""
     factorial: bool = False
     arms: tuple[StudyArm, ...] = Field(min_length=2)
+
+    @model_validator(mode="after")
+    def _paths_once(self) -> Self:
+        _check_once("arms", "path", [arm.path for arm in self.arms])
+        return self
 
 
 class StudyFile(Frozen):
@@ -53,47 +69,33 @@ class StudyFile(Frozen):
     library_hash: str
     scenes: int = Field(ge=1)
     """The first so many of the library."""
-    seeds: tuple[int, ...] = Field(min_length=1)
-    audits: tuple[StudyAudit, ...] = Field(min_length=1)
+    seeds: tuple[Annotated[int, Field(ge=0, lt=2**63)], ...] = Field(min_length=1)
+    audits: tuple[StudyAudit, ...] = Field(min_length=1, max_length=_MOST)
+
+    @model_validator(mode="after")
+    def _names_once(self) -> Self:
+        _check_once("audits", "name", [audit.name for audit in self.audits])
+        return self
 
     def yaml(self) -> str:
         """Return the file's text."""
         data = self.model_dump(mode="json")
-        return yaml.safe_dump(
-            data, sort_keys=False, allow_unicode=True, width=100, default_flow_style=None
-        )
+        return yaml_text(data, width=100, default_flow_style=None)
+
+
+def _check_once(what: str, having: str, names: Sequence[str]) -> None:
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise ValueError(f"two {what} have the {having} '{twice[0]}': give each its own")
 
 
 def read_study(path: Path) -> StudyFile:
     """Read a study file; `UserError` for one that cannot be read or says something else."""
     try:
-        if path.exists() and not path.is_file():  # a device may have no end
-            raise UserError(f"{path} is not a file: give the study file that `plan` wrote.")
-        with path.open("rb") as file:
-            text = file.read(_LONGEST + 1).decode("utf-8")
-    except (OSError, ValueError) as error:
-        reason = (error.strerror if isinstance(error, OSError) else "") or "not UTF-8 text"
-        raise UserError(f"{path}: cannot be read ({reason}): give a study file.") from None
-    try:
-        if len(text) > _LONGEST:
-            raise ValueError("it is too long")
-        study = StudyFile.model_validate(yaml.safe_load(text))
-    except ValidationError as error:
-        raise UserError(
-            f"{path}: {misfit_of(error, StudyFile)}, or let `faultpath plan` write the file anew."
-        ) from None
-    except (yaml.YAMLError, ArithmeticError, AttributeError, LookupError, RecursionError) as error:
-        raise _not_yaml(path, error) from None
-    except (TypeError, ValueError) as error:  # the 99th of a month, a number of 5,000 digits
-        raise _not_yaml(path, error) from None
-    names = [audit.name for audit in study.audits]
-    if len(set(names)) < len(names):
-        raise UserError(f"{path}: two audits have one name: name each once.")
-    return study
-
-
-def _not_yaml(path: Path, error: Exception) -> UserError:
-    return UserError(f"{path}: is not plain YAML ({' '.join(str(error).split())}): correct it.")
+        return read_yaml(contents(path)).fill(StudyFile)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}): give a study file.") from None
+    except Misread as error:
+        raise UserError(f"{error.at(path)}, or let `faultpath plan` write the file anew.") from None
 
 
 def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...]:
@@ -106,7 +108,7 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
     arms = [
         StudyArm(
             path=path,
-            role=_role(path, repaired),
+            role=_roles(path)[0 if path in repaired else -1],
             baseline=by_variant[asked.baseline],
             repair=by_variant[asked.repair],
         )
@@ -115,14 +117,13 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
     return tuple(sorted(arms, key=lambda arm: get_args(Role).index(arm.role)))
 
 
-def _role(path: str, repaired: tuple[str, ...]) -> Role:
+def _roles(path: str) -> tuple[Role, ...]:
+    """Return the roles that a path can have."""
     if path == CORRECT:
-        return "correct"
+        return ("correct",)
     if path == SHARED:
-        return "shared"
-    if JOINED in path:
-        return "factorial"
-    return "repaired" if path in repaired else "attribution"
+        return ("shared",)
+    return ("factorial",) if JOINED in path else ("repaired", "attribution")
 
 
 def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:

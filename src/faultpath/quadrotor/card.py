@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
-from pydantic import JsonValue, ValidationError
+from pydantic import JsonValue
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, model_of
 from faultpath.frozen import Frozen
 
 FORMAT = "faultpath-model/1"
@@ -69,8 +71,8 @@ def read_card(path: Path) -> ModelCard:
     """Read the card beside a weights file; `UserError` when it is missing or damaged."""
     card = path.with_suffix(".json")
     try:
-        return ModelCard.model_validate_json(card.read_bytes())
-    except (OSError, ValidationError) as error:
+        return model_of(contents(card), ModelCard)
+    except (OSError, Misread) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no model card"
         raise UserError(
             f"cannot read the model card {card} ({reason}): copy it again or fit the model again."

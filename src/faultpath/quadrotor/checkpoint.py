@@ -12,6 +12,7 @@ from safetensors.torch import load, save
 from torch import Tensor, nn
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.quadrotor.card import ModelCard, read_card, stem
 from faultpath.quadrotor.platform_name import DEFAULT_NAME
 from faultpath.store.atomic import write
@@ -49,7 +50,7 @@ def load_checkpoint(module: nn.Module, path: Path) -> ModelCard:
     """
     card = read_card(path)
     try:
-        data = path.read_bytes()
+        data = contents(path)
     except OSError as error:
         raise UserError(
             f"cannot read {path} ({error.strerror}): copy it again or fit the model again."

@@ -3,9 +3,11 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, model_of
 from faultpath.frozen import Frozen
 from faultpath.repairs.repair import Repair
 from faultpath.taps import TapCount
@@ -120,8 +122,8 @@ def read_record(path: Path) -> FitRecord:
     """Read the record beside a weights file; `UserError` when it is missing or damaged."""
     place = path.with_suffix(".json")
     try:
-        return FitRecord.model_validate_json(place.read_bytes())
-    except (OSError, ValidationError) as error:
+        return model_of(contents(place), FitRecord)
+    except (OSError, Misread) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no record of a fit"
         raise UserError(
             f"cannot read {place} ({reason}): copy it again or fit the module again"

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.repairs.code import code_sha256, name_of, plain_fields
 from faultpath.repairs.record import Architecture, FitRecord, Machine, read_record
 from faultpath.store.atomic import make_folder, write_file, write_text
@@ -36,7 +37,7 @@ def fill(net: nn.Module, path: Path) -> FitRecord:
     """
     record = read_record(path)
     try:
-        content = path.read_bytes()
+        content = contents(path)
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}): fit the module again") from error
     if sha256(content).hexdigest() != record.weights_sha256:

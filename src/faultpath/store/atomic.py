@@ -13,16 +13,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.files.opening import unlike_file
 
 _PREFIX = ".partial-"
-
-_NO_FILE = (
-    (stat.S_ISDIR, "a folder"),
-    (stat.S_ISFIFO, "a pipe"),
-    (stat.S_ISSOCK, "a socket"),
-    (stat.S_ISCHR, "a device"),
-    (stat.S_ISBLK, "a device"),
-)
 
 
 def write(path: Path, data: bytes, inside: Path | None = None) -> None:
@@ -104,9 +97,8 @@ def _place(path: Path, inside: Path | None) -> Path:
         mode = stat.S_IFREG
     except ValueError as error:
         raise OSError(errno.EINVAL, "the path has a null character in it") from error
-    for is_kind, kind in _NO_FILE:
-        if is_kind(mode):
-            raise OSError(errno.EEXIST, f"it is {kind}, not a file")
+    if kind := unlike_file(mode):
+        raise OSError(errno.EEXIST, f"it is {kind}, not a file")
     place = Path(os.path.realpath(path))
     if inside is not None and path.is_symlink() and not place.is_relative_to(inside.resolve()):
         raise OSError(errno.ELOOP, f"it is a link out of {inside}")

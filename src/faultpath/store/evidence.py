@@ -8,6 +8,7 @@ import numpy as np
 
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measured, Measurement
+from faultpath.files.opening import contents
 from faultpath.store.atomic import write_file
 from faultpath.store.parquet import INTEGER, NUMBER, TEXT, Row, Unreadable, decode, encode
 
@@ -32,7 +33,7 @@ def write_evidence(path: Path, table: EvidenceTable) -> None:
 def read_evidence(path: Path) -> EvidenceTable:
     """Read a table; `UserError` when there is none to read."""
     try:
-        return decode_evidence(path.read_bytes())
+        return decode_evidence(contents(path))
     except OSError as error:
         raise UserError(
             f"cannot read {path} ({error.strerror}): measure it first, or check the path"

@@ -9,6 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.store import atomic
 from faultpath.store.lock import Say, locked
 from faultpath.store.manifest import Manifest, check_same, read_manifest
@@ -94,7 +95,10 @@ class RunFolder:
         found: list[Shard] = []
         for path in self.files_of(key):
             try:
-                data = path.read_bytes()
+                data = contents(path)
+            except OSError as error:
+                raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
+            try:
                 if path.stem != f"{key}-{_digest(data)}":
                     raise Unreadable("its contents are not those that were written")
                 shard = decode_shard(data, key)

@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 from typing import Any
 
-from pydantic import ValidationError
-
 from faultpath.code import CodeState, named
 from faultpath.errors import UserError
+from faultpath.files.opening import LARGEST_TEXT, contents
+from faultpath.files.plain import Misread, model_of, read_json
 from faultpath.frozen import Frozen
 from faultpath.trials.arm import Study
 
@@ -39,21 +39,22 @@ class Manifest(Frozen):
 def read_manifest(path: Path) -> Manifest | None:
     """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
     try:
-        content: Any = json.loads(path.read_text())
+        data = contents(path, LARGEST_TEXT)
+        content: Any = read_json(data)
         found: Any = content["format"]
     except FileNotFoundError:
         return None
-    except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
-        raise _damaged(path) from error
+    except (OSError, Misread, TypeError, KeyError) as error:
+        raise _damaged(path, error) from error
     if found != FORMAT:
         raise UserError(
             f"{path.parent} was written in format {found} and this faultpath reads format "
             f"{FORMAT}: choose another folder, or the version of faultpath that wrote it"
         )
     try:
-        return Manifest.model_validate(content)
-    except ValidationError as error:
-        raise _damaged(path) from error
+        return model_of(data, Manifest)
+    except Misread as error:
+        raise _damaged(path, error) from error
 
 
 def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = False) -> None:
@@ -107,9 +108,10 @@ def kin(folder: Path) -> list[Path]:
     return found
 
 
-def _damaged(path: Path) -> UserError:
+def _damaged(path: Path, error: Exception) -> UserError:
+    why = error.strerror if isinstance(error, OSError) else error
     return UserError(
-        f"{path} cannot be read as a manifest: choose a new folder, or delete this one"
+        f"{path} cannot be read as a manifest ({why}): choose a new folder, or delete this one"
     )
 
 

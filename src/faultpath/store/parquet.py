@@ -13,6 +13,8 @@ from typing import Any, TypeAlias
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from faultpath.files.opening import opened
+
 TEXT, INTEGER, NUMBER = pa.string(), pa.int64(), pa.float64()
 NUMBERS = pa.list_(pa.float32())
 
@@ -51,7 +53,8 @@ def read_table(data: bytes) -> pa.Table:
 def rows_in(path: Path) -> int:
     """Return how many rows a Parquet file has, from its footer; `Unreadable` for anything else."""
     try:
-        return pq.read_metadata(path).num_rows
+        with opened(path) as file:
+            return pq.read_metadata(file).num_rows
     except (pa.ArrowException, OSError) as error:
         raise Unreadable(str(error)) from error
 

@@ -6,18 +6,18 @@ and parses the very bytes that it has compared.
 """
 
 import hashlib
-import stat
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 
 AGAIN = "run it again, into a new folder"
 
 
 def seal(folder: Path, names: Iterable[str]) -> dict[str, str]:
     """Return the SHA-256 of each file by name."""
-    return {name: _digest((folder / name).read_bytes()) for name in names}
+    return {name: _digest(contents(folder / name)) for name in names}
 
 
 def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> dict[str, bytes]:
@@ -43,14 +43,9 @@ def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> d
 
 
 def read_regular(path: Path) -> bytes:
-    """Return the contents of a file; `UserError` where there is none, or what is there is no file.
-
-    A pipe or a device of that name could be read for ever.
-    """
+    """Return the contents of a file; `UserError` where there is none to read."""
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise UserError(f"{path} is not a file: {AGAIN}.")
-        return path.read_bytes()
+        return contents(path)
     except FileNotFoundError:
         raise UserError(
             f"{path.parent} holds no {path.name}: give the folder of a finished run."

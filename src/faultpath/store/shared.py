@@ -11,6 +11,7 @@ from importlib.metadata import distributions
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.store import atomic
 from faultpath.store.folder import RunFolder
 from faultpath.store.lock import Say, locked
@@ -63,10 +64,10 @@ class SharedTrials:
     def _keep(self, run: RunFolder, key: str) -> bool:
         """Return whether what is kept is what this run has."""
         mine, *_ = run.files_of(key)
-        data, place = mine.read_bytes(), self._held.shards / mine.name
+        data, place = contents(mine), self._held.shards / mine.name
         if any(path != place for path in self._held.files_of(key)):
             return False
-        if not place.exists() or place.read_bytes() != data:
+        if not place.exists() or contents(place) != data:
             atomic.write(place, data, self._held.path)
             stat = mine.stat()
             os.utime(place, ns=(stat.st_atime_ns, stat.st_mtime_ns))  # when it was flown

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.store.parquet import (
     INTEGER,
     NUMBER,
@@ -143,7 +144,7 @@ def traces_of(table: OutcomeTable) -> dict[TrialAddress, Trace]:
 
 def _read(path: Path, decoded: Callable[[bytes], _Read]) -> _Read:
     try:
-        return decoded(path.read_bytes())
+        return decoded(contents(path))
     except OSError as error:
         raise UserError(
             f"cannot read {path} ({error.strerror}): finish the run that writes it"

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
-from pydantic import ValidationError
-
 from faultpath.errors import UserError
 from faultpath.evidence import EvidenceTable, Measurement
 from faultpath.execution import RunResult
+from faultpath.files.opening import LARGEST_TEXT, contents
+from faultpath.files.plain import Misread, model_of
 from faultpath.record import Configuration, Reproduction, RunProvenance, SceneShown, Sweep
 from faultpath.store import (
     RunFolder,
@@ -226,8 +226,8 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
     """
     _check_digests(folder)
     try:
-        found = Reproduction.model_validate_json((folder / CONCLUSIONS).read_bytes())
-    except (OSError, ValueError):
+        found = model_of(contents(folder / CONCLUSIONS, LARGEST_TEXT), Reproduction)
+    except (OSError, Misread):
         raise UserError(
             f"{folder} holds no finished reproduction: give the folder of one, or make it with "
             "`faultpath reproduce`."
@@ -243,8 +243,8 @@ def _check_digests(folder: Path) -> None:
     if not place.exists():
         return
     try:
-        provenance = RunProvenance.model_validate_json(read_regular(place))
-    except ValidationError:
+        provenance = model_of(read_regular(place), RunProvenance)
+    except Misread:
         raise UserError(
             f"{place} is damaged or from another version of faultpath: reproduce the paper again."
         ) from None

@@ -14,6 +14,8 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from faultpath.errors import UserError
+from faultpath.files.opening import LARGEST_TEXT, contents
+from faultpath.files.plain import read_json
 from faultpath.misfits import misfit_of
 from faultpath.quadrotor.scenes.scene import Scene, digest
 from faultpath.quadrotor.scenes.soundness import misnamed, unfit_name, unsound
@@ -66,7 +68,7 @@ def load_library(name: str | Path) -> Library:
     if isinstance(name, str) and name in FROZEN_SEEDS:
         return _read(frozen_file(name), f"frozen library {name!r}")
     path = Path(name)
-    if not path.is_file():
+    if not path.exists():
         raise UserError(
             f"There is no scene library {str(name)!r}: give one of {', '.join(FROZEN_SEEDS)}, or "
             "the path of a file made by 'faultpath scenes generate'."
@@ -85,7 +87,8 @@ def _read(file: Traversable | Path, what: str) -> Library:
         f"make it again with 'faultpath scenes generate', or use one of {', '.join(FROZEN_SEEDS)}"
     )
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
+        data = contents(file, LARGEST_TEXT) if isinstance(file, Path) else file.read_bytes()
+        content = read_json(data)
         if content["format"] != FORMAT:
             raise UserError(
                 f"The {what} has the format {content['format']!r}, but this version reads "
@@ -94,8 +97,9 @@ def _read(file: Traversable | Path, what: str) -> Library:
         entries: list[object] = list(content["scenes"])
         scenes = tuple(_scene(place, entry) for place, entry in enumerate(entries))
         library, promised = Library.of(str(content["name"]), scenes), content["content_hash"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-        reason = (str(error).splitlines() or [type(error).__name__])[0]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        said = error.strerror if isinstance(error, OSError) else str(error)
+        reason = (str(said).splitlines() or [type(error).__name__])[0]
         raise UserError(f"The {what} cannot be read as a library ({reason}): {remedy}.") from error
     if library.content_hash != promised:
         raise UserError(
@@ -109,7 +113,7 @@ def _read(file: Traversable | Path, what: str) -> Library:
 
 def _scene(place: int, entry: object) -> Scene:
     try:
-        return Scene.model_validate(entry)
+        return Scene.model_validate_json(json.dumps(entry), strict=True)
     except ValidationError as error:
         found = misfit_of(error, Scene)
         raise ValueError(f"scene {place}, {f'field {found}' if found.where else found}") from None

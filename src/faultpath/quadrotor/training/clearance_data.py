@@ -22,6 +22,8 @@ from safetensors.torch import load, save
 from torch import Tensor
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, read_json
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath.quadrotor.perception.labels import visible_distance
@@ -150,7 +152,7 @@ def read(folder: Path, recipe: Recipe | None = None) -> Samples:
     parts: list[Samples] = []
     for scene, shard in _shards(folder, recipe, library):
         try:
-            content = load(shard.read_bytes())
+            content = load(contents(shard))
         except (OSError, SafetensorError) as error:
             raise UserError(f"{shard} cannot be read: delete {path} and collect again.") from error
         parts.append(Samples(**content, scene=torch.full((recipe.images,), scene.index)))
@@ -241,6 +243,6 @@ def _provenance(recipe: Recipe, library: Library) -> dict:
 
 def _read_provenance(path: Path) -> dict:
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, json.JSONDecodeError):
+        return read_json(contents(path))
+    except (OSError, Misread):
         return {}

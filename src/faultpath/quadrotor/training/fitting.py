@@ -21,6 +21,7 @@ from torch import LongTensor, nn
 from torch.optim import Adam, AdamW, Optimizer
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.quadrotor.card import read_card, stem
 from faultpath.quadrotor.checkpoint import digest, save_checkpoint, tensors
 from faultpath.quadrotor.training.journal import (
@@ -124,7 +125,7 @@ class _Work:
         if changed:
             notice(f"{self._path.stem} is fitted again: {', '.join(changed)} changed.")
             return False
-        if digest(self._path.read_bytes()) != card.weights_sha256:
+        if digest(contents(self._path)) != card.weights_sha256:
             notice(f"{self._path.stem} is fitted again: its weights are not those of its card.")
             return False
         return True

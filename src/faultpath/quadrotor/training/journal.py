@@ -14,6 +14,7 @@ from safetensors.torch import save
 from torch import Tensor, nn
 from torch.optim import Optimizer
 
+from faultpath.files.opening import opened
 from faultpath.quadrotor.checkpoint import tensors
 from faultpath.store.atomic import write
 
@@ -71,6 +72,7 @@ def read_journal(
     Returns None, and leaves both alone, when the file is damaged or of another recipe.
     """
     try:
+        opened(path).close()
         with safe_open(path, framework="pt") as file:
             header = json.loads((file.metadata() or {}).get(_ENTRY, "{}"))
             state = {key: file.get_tensor(key).clone() for key in file.keys()}  # noqa: SIM118 - a file is no mapping: it has keys, and no iterator

@@ -17,6 +17,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
 from faultpath.quadrotor.training.provenance import Provenance, read_provenance
 from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
 from faultpath.quadrotor.vehicle import VehicleParameters
@@ -109,8 +110,8 @@ def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None
 def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
     """Return the rows and the episodes of batches that `write_flights` wrote."""
     return (
-        join(Path(f"{stem}.rows").read_bytes() for stem in stems),
-        join(Path(f"{stem}.episodes").read_bytes() for stem in stems),
+        join(contents(f"{stem}.rows") for stem in stems),
+        join(contents(f"{stem}.episodes") for stem in stems),
     )
 
 
@@ -132,7 +133,7 @@ def steps_of(episodes: bytes) -> np.ndarray:
 
 def _read(path: Path, sha256: str) -> bytes:
     try:
-        data = path.read_bytes()
+        data = contents(path)
     except OSError as error:
         raise UserError(
             f"cannot read {path} ({error.strerror}): delete the pool and collect it again."

@@ -7,10 +7,12 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, JsonValue, ValidationError
+from pydantic import BaseModel, ConfigDict, JsonValue
 
 from faultpath.code import Root, read_code
 from faultpath.errors import UserError
+from faultpath.files.opening import contents
+from faultpath.files.plain import Misread, model_of
 from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.vehicle import VehicleRanges
 
@@ -84,10 +86,10 @@ def read_provenance(path: Path) -> Provenance | None:
     """Return the provenance of the pool at `path`, `None` without one; `UserError` if damaged."""
     place = provenance_path(path)
     try:
-        return Provenance.model_validate_json(place.read_bytes())
+        return model_of(contents(place), Provenance)
     except FileNotFoundError:
         return None
-    except (OSError, ValidationError) as error:
+    except (OSError, Misread) as error:
         raise UserError(
             f"{place} cannot be read as a pool's provenance: delete the pool and collect it again."
         ) from error

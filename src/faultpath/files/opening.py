@@ -1,0 +1,67 @@
+"""The one place where files are opened that somebody else may have put there.
+
+A pipe, a device or a socket could be read for ever, or never begin. What is opened is looked at
+after it is open, so that nothing can take its place in between.
+"""
+
+import errno
+import os
+import stat
+from io import BufferedReader
+
+LARGEST = 4 * 2**30
+"""Bytes of a file. A table of a million trials is a hundredth of it; a memory is filled by more."""
+LARGEST_TEXT = 256 * 2**20
+"""Bytes of JSON, which takes several times as much in memory."""
+
+_NO_FILE = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+def unlike_file(mode: int) -> str:
+    """Return what is there in place of a file, `a pipe` for one; empty for a file."""
+    return next((kind for is_kind, kind in _NO_FILE if is_kind(mode)), "")
+
+
+def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
+    """Open a file to read; `OSError`, whose `strerror` says why, for anything but a file.
+
+    Also for one of more than `most` bytes. Never waits.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except ValueError as error:  # a null character, or no text at all
+        raise OSError(errno.EINVAL, "nothing can have that name") from error
+    except OSError as error:
+        if error.errno == errno.ENXIO:
+            raise OSError(errno.ENXIO, "it is a socket, not a file", path) from error
+        raise
+    try:
+        found = os.fstat(descriptor)
+        if kind := unlike_file(found.st_mode):
+            raise OSError(errno.EINVAL, f"it is {kind}, not a file", path)
+        if found.st_size > most:
+            raise _too_large(path, most)
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
+def contents(path: str | os.PathLike[str], most: int = LARGEST) -> bytes:
+    """Return what is in a file; `OSError` as `opened`."""
+    with opened(path, most) as file:
+        data = file.read(most + 1)
+    if len(data) > most:  # it grew, or is one of those that the kernel makes up
+        raise _too_large(path, most)
+    return data
+
+
+def _too_large(path: str | os.PathLike[str], most: int) -> OSError:
+    size = f"{most / 2**30:g} GiB" if most >= 2**30 else f"{most / 2**20:.3g} MiB"
+    return OSError(errno.EFBIG, f"it is larger than {size}", path)
