@@ -17,6 +17,17 @@ from faultpath.report.compensation import page, sentences
 COLUMNS = flown()
 
 
+def odd(name: str, value: float) -> Any:
+    """Return what puts a value into one cell of a column."""
+
+    def change(columns: dict[str, Any]) -> Any:
+        found = np.array(columns[name], dtype=np.float64)
+        found[100] = value
+        return found
+
+    return change
+
+
 def map_file(folder: Path, text: str = MAP) -> str:
     path = folder / "map.yaml"
     path.write_text(text)
@@ -147,6 +158,40 @@ def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None
         ({"t": lambda c: c["t"][::-1]}, MAP, "go back at its reading 1: sort the rows"),
         ({"vx": lambda c: c["vx"] * np.nan}, MAP, "column 'vx' has fewer than two numbers"),
         ({"vx": lambda c: c["vx"].astype(str)}, MAP.replace("vx", "word"), "column 'word'"),
+        ({"vx": lambda c: c["vx"] > 0}, MAP, "column 'vx' holds bool and no numbers"),
+        *(
+            ({name: odd(name, value)}, MAP, f"column '{name if name != 't' else 'qw'}' reach")
+            for name in ("t", "qw", "vx", "thrust")
+            for value in (np.inf, -1e308, 1e155)
+        ),
+        ({"qx": odd("qx", 3.0)}, MAP, "at its reading 100, and a unit quaternion has 1"),
+        ({n: odd(n, 0.0) for n in ("qw", "qx", "qy", "qz")}, MAP, "length 0 at its reading 100"),
+        *(
+            ({}, MAP.replace(old, f"{old.split()[0]} {new}"), f"line 7: {says}")
+            for old, new, says in (
+                ("mass_kg: 1.5", "true", "mass_kg: is true, and must be a number"),
+                ("mass_kg: 1.5", "'1.5'", "mass_kg: "),
+                ("mass_kg: 1.5", "١", "mass_kg: "),
+                ("mass_kg: 1.5", "0x10", "mass_kg: "),
+                ("mass_kg: 1.5", "2001-01-01", "mass_kg: "),
+                ("mass_kg: 1.5", "2001-99-99", "mass_kg: "),
+                ("mass_kg: 1.5", ".inf", "the number .inf is out of range"),
+                ("mass_kg: 1.5", "1e999", "the number 1e999 is out of range"),
+                ("mass_kg: 1.5", "9" * 5000, "the number 9999"),
+                ("mass_kg: 1.5", "1e308", "mass_kg: "),
+                ("mass_kg: 1.5", "1e-320", "mass_kg: "),
+                ("mass_kg: 1.5", "!!bool 7", "tags are not read"),
+                ("mass_kg: 1.5", "[" * 900, "is nested too deeply"),
+            )
+        ),
+        *(
+            ({}, MAP.replace("[0.3, 0.3, 0.6]", f"[{value}, 0.3, 0.6]"), "drag_kgps[0]: ")
+            for value in ("1e-320", "1e-12", "1e308", "true")
+        ),
+        ({}, f"{MAP}motor_time_constant_s: 1e308", "motor_time_constant_s: "),
+        ({}, MAP.replace("thrust}", "thrust, newton_per_unit: 1e308}"), "newton_per_unit: "),
+        ({}, MAP.replace("thrust}", "thrust, newton_per_unit: true}"), "newton_per_unit: "),
+        ({}, f"{MAP}mass_kg: 3", "line 9: key 'mass_kg' appears twice"),
     ],
 )
 def test_a_mistake_is_one_sentence(
@@ -192,6 +237,21 @@ def test_the_command_prints_and_writes_what_it_found(tmp_path: Path, known: Comp
     html = (tmp_path / "out" / "report.html").read_text()
     assert html == page(known, "flight.csv")
     assert "<script>" not in html.replace("<script></script>", "")
+
+
+def test_a_message_without_times_is_a_mistake(tmp_path: Path) -> None:
+    pytest.importorskip("pyulog")
+    log = write_ulog(tmp_path / "flight.ulg", COLUMNS)
+    log.write_bytes(log.read_bytes().replace(b"uint64_t timestamp", b"uint64_t timestand"))
+    with pytest.raises(UserError, match="has no timestamp"):
+        read_flight(log, read_columns("px4").model_copy(update={"mass_kg": 1.5}))
+
+
+def test_a_log_with_a_column_twice_is_a_mistake(tmp_path: Path) -> None:
+    log = write(tmp_path / "flight.csv", COLUMNS)
+    log.write_bytes(log.read_bytes().replace(b'"vy"', b'"vx"', 1))
+    with pytest.raises(UserError, match="two columns are called 'vx'"):
+        read_flight(log, read_columns(map_file(tmp_path)))
 
 
 def test_a_name_is_escaped(known: Compensation) -> None:

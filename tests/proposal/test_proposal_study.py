@@ -172,7 +172,7 @@ def test_what_the_system_does_not_have_is_refused_before_anything_flies(
         (b"- 1\n", "and must be a group of fields"),
         (b"a: [", "is not plain YAML"),
         (b"a: !!python/name:os.system x", "tags are not read"),
-        (b"a: 2001-99-99", "system: "),
+        (b"a: 2001-99-99", "a: is no field"),
         (b"[" * 5000, "nested too deeply"),
         (b"\xff\xfe", "is not UTF-8 text"),
         (b"#" * 1_000_001, "is too long"),

@@ -51,7 +51,7 @@ def read_series(path: Path, columns: ColumnMap) -> Mapping[str, Series]:
 def _table(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
     try:
         parquet = path.suffix.lower() == ".parquet"
-        data = pa.BufferReader(contents(path))
+        data = BytesIO(contents(path))
         table: pa.Table = cast(Any, pq.ParquetFile(data)).read() if parquet else csv.read_csv(data)
     except (OSError, pa.ArrowException) as error:
         raise UserError(f"{path}: cannot be read ({_why(error)}): give a whole log") from None
