@@ -117,7 +117,7 @@ def test_what_is_no_file_is_refused_in_one_sentence(
 @pytest.mark.parametrize("thing", THINGS)
 def test_rechecks_that_are_no_file_are_as_good_as_none(thing: str, tmp_path: Path) -> None:
     THINGS[thing](tmp_path / "rechecks.json")
-    assert Rechecks((), RunFolder(tmp_path)).flown() == ()
+    assert Rechecks((), RunFolder(tmp_path), "").flown() == ()
 
 
 def test_a_file_is_read_up_to_a_size(tmp_path: Path) -> None:
