@@ -23,6 +23,7 @@ from faultpath.streams import generator
 from faultpath.trials import (
     ErrorSum,
     ErrorTerm,
+    FloorPlan,
     Library,
     LoopSystem,
     Metric,
@@ -53,6 +54,12 @@ channels:
 """
 
 
+def drawn(scene):
+    """Return the three numbers that decide a scene, and what they make of gain, slope and goal."""
+    draw = generator("toy/cart", scene, 0).uniform(size=3)
+    return draw, draw * [0.8, 4.0, 4.0] + [0.6, -2.0, 3.0]
+
+
 @dataclass(frozen=True)
 class Carts:
     """Every array is `[B]`; `draws` is what decides a scene."""
@@ -72,8 +79,8 @@ class Cart(Plant):
     reads = frozenset({Port("push", "motor")})
 
     def start(self, batch):
-        draws = np.array([generator("toy/cart", s, 0).uniform(size=3) for s in batch.scenes])
-        gain, slope, goal = (draws * [0.8, 4.0, 4.0] + [0.6, -2.0, 3.0]).T
+        draws, made = map(np.array, zip(*map(drawn, batch.scenes), strict=True))
+        gain, slope, goal = made.T
         return Carts(draws, gain, slope, goal, *np.zeros((2, len(draws))))
 
     def sense(self, now):
@@ -194,6 +201,11 @@ class Toy(LoopSystem):
     def library(self, name: str) -> Library:
         scenes = tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))
         return Library(name, scenes, "carts-1")
+
+    def floor_plan(self, scene: str) -> FloorPlan:
+        """Return what a report draws: the rail and the goal on it."""
+        start, end, goal = (0.0, 0.0, 0.0), (8.0, 0.0, 0.0), (float(drawn(scene)[1][2]), 0.0, 0.0)
+        return FloorPlan(start, end, prisms=(), pillars=(), start=start, goal=goal, title=scene)
 
 
 def create() -> System:

@@ -1,6 +1,7 @@
 """Every label of every picture lies inside its picture, at all widths."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,9 @@ from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
 from faultpath.door.reproduced import ReproductionRun
+from faultpath.report.html import write_report
+from faultpath.report.inputs import ReportInput, Traces
+from faultpath.trials import FloorPlan
 
 pytestmark = pytest.mark.browser
 REFERENCE = Path(__file__).parents[2] / "docs" / "reference"
@@ -39,6 +43,22 @@ def _report(name: str) -> Callable[[Path], Path]:
 def _comparison(folder: Path) -> Path:
     runs = [REFERENCE / run for run in ("toy", "pendulum", "quadrotor-L3")]
     return compare(runs).report(folder / "page.html")
+
+
+def test_a_goal_on_the_one_axis_is_drawn(
+    make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
+) -> None:
+    source = make(n_scenes=4, void=False)
+    line = {at: track * [1, 0, 0] for at, track in source.traces.positions.items()}
+    rail = FloorPlan((0, 0, 0), (9, 0, 0), (), (), (0, 0, 0), (9.2, 0, 0), "")
+    plans = dict.fromkeys(source.plans, rail)
+    flat = replace(source, traces=Traces(line, 0.05), plans=plans)
+    opened = browser.new_page()
+    opened.goto(write_report(flat, tmp_path)[0].as_uri())
+    opened.wait_for_selector("#viewer[data-ready]")
+    assert opened.locator(".v-goal").count() == len(source.record.paths)
+    assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.paths)
+    opened.close()
 
 
 PAGES = {run: _report(run) for run in ("toy", "quadrotor-L3", "map-toy")} | {"side": _comparison}

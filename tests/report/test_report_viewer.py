@@ -70,6 +70,8 @@ def test_what_was_hit_is_what_is_nearest() -> None:
     }
     assert {at: hit(plan, np.array(at)) for at in cases} == cases
     assert hit(plan, np.array((5.0, 5.0, 5.0))) is None
+    rail = FloorPlan((0, 0, 0), (8, 0, 0), (), (), (0, 0, 0), (5, 0, 0), "")
+    assert hit(rail, np.array((4.0, 0.0, 0.0))) is None
 
 
 def test_positions_along_one_axis_are_plotted_over_time(one_seed: ReportInput) -> None:

@@ -146,7 +146,9 @@ class _Film:
         self._still = Image.new("RGB", (self.size[0] * _FINE, self.size[1] * _FINE), _INK["paper"])
         pen = self._draw(self._still)
         asked = held.record.question
-        self._text(pen, (_GAP, 8), f"{plan.title if plan else scene}, {asked.fault}", "ink", 15)
+        self._text(
+            pen, (_GAP, 8), f"{plan.title or scene if plan else scene}, {asked.fault}", "ink", 15
+        )
         for number, line in enumerate(caption):
             self._text(pen, (_GAP, 30 + _LINE * number), line, "soft", _SAID)
         for tile in tiles:

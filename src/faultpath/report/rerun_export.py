@@ -50,7 +50,8 @@ def export(held: ReportInput, scene: str, seed: int | None, out: Path) -> None:
                 )
             for signal in held.signals.get(TrialAddress(variant, path, drawn, scene), ()):
                 for part, values in enumerate(signal.values.T):
-                    name = rr.new_entity_path([*at, signal.topic, signal.name, str(part)])
+                    called = signal.parts[part] if signal.parts else str(part)
+                    name = rr.new_entity_path([*at, signal.topic, signal.name, called])
                     lines = rr.Scalars.columns(scalars=values)
                     stream.send_columns(name, [_clock(rr, held, len(values))], lines)
     stream.flush()

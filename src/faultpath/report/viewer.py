@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import DecisionRecord, Path, Question
+from faultpath.record import SHARED, DecisionRecord, Path, Question
 from faultpath.report import wording
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Pair, by_scene
@@ -83,6 +83,7 @@ def viewer_data(
     packing = _Packing(asked, traces, plans, kept, lines, captions(record, pairs), series)
     scenes = [packing.scene(group) for group in groups.values()]
     places = {at: place for place, at in enumerate(groups)}
+    picked = [at for at in chosen if at in places]
     content = {
         "dt_s": traces.dt_s,
         "parting_m": PARTING_M,
@@ -90,12 +91,21 @@ def viewer_data(
         "baseline": asked.baseline,
         "repair": asked.repair,
         "paths": [{"name": path.name, "title": path.title} for path in record.paths],
-        "picked": [places[at] for at in chosen if at in places],
+        "picked": [places[at] for at in picked],
+        "path": _begin(record, groups[picked[0] if picked else next(iter(groups))]),
         "plots": [plot.told for plot in lines],
         "plans": {name: _plan(plans[name]) for name, _ in groups if name in plans},
         "scenes": scenes,
     }
     return Viewer(record.paths, space, PARTING_M, frozenset(groups), pack(content, series))
+
+
+def _begin(record: DecisionRecord, first: Mapping[str, Pair]) -> str:
+    """Return the path that is shown first: one on which the first scene goes as was announced."""
+    signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
+    apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
+    primary = record.question.primary or SHARED
+    return apart[0] if apart and primary not in apart else primary
 
 
 @dataclass(frozen=True)
@@ -178,7 +188,8 @@ def _centimetres(track: Track) -> NDArray[np.int32]:
 def _space(traces: Traces, plans: Mapping[str, FloorPlan]) -> str:
     if not any(map(len, traces.positions.values())):
         return "none"
-    flat = not plans and all(not track[:, 1:].any() for track in traces.positions.values())
+    solid = any(plan.prisms or plan.pillars for plan in plans.values())
+    flat = not solid and all(not track[:, 1:].any() for track in traces.positions.values())
     return "line" if flat else "space"
 
 

@@ -22,8 +22,8 @@ class Hit(NamedTuple):
 
 def hit(plan: FloorPlan, at: NDArray[Any]) -> Hit | None:
     """Return what is nearest to the point `at` `[3]`, metres; `None` where nothing is near."""
-    distance, found = min(_distances(plan, at), key=lambda each: each[0])
-    return found if distance <= _NEAR_M else None
+    near = [each for each in _distances(plan, at) if each[0] <= _NEAR_M]
+    return min(near, key=lambda each: each[0])[1] if near else None
 
 
 def _distances(plan: FloorPlan, at: NDArray[Any]) -> Iterator[tuple[float, Hit]]:
@@ -34,9 +34,12 @@ def _distances(plan: FloorPlan, at: NDArray[Any]) -> Iterator[tuple[float, Hit]]
     for number, pillar in enumerate(plan.pillars, len(plan.prisms)):
         aside = max(np.hypot(x - pillar.x, y - pillar.y) - pillar.radius, 0.0)
         yield np.hypot(aside, _outside(z, pillar.bottom, pillar.top)), Hit("a pillar", number)
-    yield max(z - plan.low[2], 0.0), Hit("the floor", None)
-    yield max(plan.high[2] - z, 0.0), Hit("the ceiling", None)
+    if plan.low[2] < plan.high[2]:  # on a plane, or along a line, nothing is above or beside
+        yield max(z - plan.low[2], 0.0), Hit("the floor", None)
+        yield max(plan.high[2] - z, 0.0), Hit("the ceiling", None)
     for axis, value in enumerate((x, y)):
+        if plan.low[axis] == plan.high[axis]:
+            continue
         for side in (value - plan.low[axis], plan.high[axis] - value):
             yield max(side, 0.0), Hit("the edge of the free volume", None)
 

@@ -6,19 +6,20 @@ or differs is left out, unless it is an error, which exists only where a fault m
 zero throughout is left out too.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.report import wording
 from faultpath.report.viewer_packing import Whole
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, Signals
 
 _MOST_COMPONENTS = 4
-"""A rotation matrix or an image says little as lines."""
+"""A rotation matrix or an image says little as lines, where nobody named its components."""
 _LEVELS = 4095
 _GAP = -1
 """In place of a level, where nothing was read."""
@@ -40,7 +41,8 @@ class Plot:
     def told(self) -> dict[str, Any]:
         """What a page says of it."""
         lines = [name for _, name in self.lines]
-        return {"title": self.title, "unit": self.unit, "lines": lines, "zero": self.of_errors}
+        unit = wording.unit(self.unit)
+        return {"title": self.title, "unit": unit, "lines": lines, "zero": self.of_errors}
 
     @property
     def of_errors(self) -> bool:
@@ -51,16 +53,20 @@ class Plot:
 def plots(signals: Signals) -> tuple[Plot, ...]:
     """Return what is plotted of the signals: first errors, then what differs within its topic."""
     topics: dict[tuple[str, str, int], dict[_Line, dict[TrialAddress, NDArray[Any]]]] = {}
+    parts: dict[tuple[str, str], tuple[str, ...]] = {}
     for address, named in signals.items():
         for each in named:
-            if each.name == IN_FORCE or each.values.shape[1] > _MOST_COMPONENTS:
+            if each.name == IN_FORCE:
                 continue
+            if each.values.shape[1] > _MOST_COMPONENTS and not each.parts:
+                continue
+            parts[each.topic, each.unit] = each.parts or parts.get((each.topic, each.unit), ())
             for part, values in enumerate(each.values.T):
                 lines = topics.setdefault((each.topic, each.unit, part), {})
                 lines.setdefault((each.name, part), {})[address] = values
-    parts = {(topic, unit): part for topic, unit, part in topics}
+    many = {(topic, unit): part + 1 for topic, unit, part in topics}
     made = [
-        Plot(_title(topic, part, parts[topic, unit] + 1), unit, _told(lines))
+        Plot(*_called(topic, unit, part, many[topic, unit], parts[topic, unit]), _told(lines))
         for (topic, unit, part), lines in topics.items()
         if ("error" in topic and _differs(lines.values())) or _varies(lines.values())
     ]
@@ -96,8 +102,14 @@ def in_force(named: Mapping[str, Signal]) -> list[list[int]]:
     return edges.reshape(-1, 2).tolist()
 
 
-def _title(topic: str, part: int, parts: int) -> str:
-    return topic if parts == 1 else f"{topic}, {'xyz'[part] if parts == 3 else part + 1}"
+def _called(topic: str, unit: str, part: int, many: int, names: Sequence[str]) -> tuple[str, str]:
+    """Return what a component is called, and its own unit where each has one."""
+    topic = topic.replace("_", " ")
+    if many == 1:
+        return topic, unit
+    units = unit.split(", ")
+    name = names[part] if len(names) == many else part + 1
+    return f"{topic}, {name}", units[part] if len(units) == many else unit
 
 
 def _varies(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:

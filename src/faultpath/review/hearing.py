@@ -20,6 +20,7 @@ from faultpath.arrays import is_array, to_numpy
 from faultpath.execution.attempt import Done, Raised, Wrong, attempt
 from faultpath.interface import Interface, Provenance
 from faultpath.loop import Loop
+from faultpath.review.components import Components, components_of
 from faultpath.store.signals import IN_FORCE, Signal
 from faultpath.taps import Query, Reading, Taps
 from faultpath.taps.tally import Tally
@@ -37,6 +38,7 @@ class Heard:
     """What was said in a flight, by control step, `[B, P]` each."""
 
     interface: Interface
+    components: Components = field(default_factory=dict[str, Sequence[str]])
     sources: dict[str, dict[int, Values]] = field(default_factory=dict[str, dict[int, Values]])
     """By source, or by `plant.truth` for what the plant shows to estimators alone."""
     got: dict[tuple[str, str], dict[int, Values]] = field(
@@ -119,7 +121,7 @@ def fly_heard(
     system: System, arm: Arm, scenes: Sequence[str]
 ) -> tuple[Done | Raised | Wrong, Heard]:
     """Run an arm over some scenes and listen; an error comes back as a value."""
-    heard = Heard(system.interface)
+    heard = Heard(system.interface, components_of(system))
     listened = system
     if isinstance(system, LoopSystem):
         loop = system.loop
@@ -138,6 +140,12 @@ def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
     }
     units = {source.name: source.unit for source in heard.interface.sources}
     channels = {channel.name for channel in heard.interface.channels}
+    named = {
+        channel.name: heard.components[source]
+        for channel in heard.interface.channels
+        for source in reversed(channel.sources)
+        if source in heard.components
+    }
     found: list[tuple[str, str, str, Mapping[int, Values]]] = []
     fixed = {s.name for s in heard.interface.sources if s.provenance is Provenance.CONSTANT}
     for name, held in heard.sources.items():
@@ -158,9 +166,15 @@ def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
     if heard.force:
         force = {step: mask[:, None].astype(np.float64) for step, mask in heard.force.items()}
         found.append((IN_FORCE, IN_FORCE, "1", force))
+
+    def parts(name: str, topic: str) -> tuple[str, ...]:
+        return tuple(heard.components.get(name) or named.get(topic.removesuffix(" error"), ()))
+
     return [
         tuple(
-            Signal(name, topic, unit, laid_out(held, at, steps).astype(np.float32))
+            Signal(
+                name, topic, unit, laid_out(held, at, steps).astype(np.float32), parts(name, topic)
+            )
             for name, topic, unit, held in found
             if held
         )

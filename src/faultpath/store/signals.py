@@ -8,7 +8,16 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.store.parquet import INTEGER, NUMBERS, TEXT, Row, Unreadable, decode, encode
+from faultpath.store.parquet import (
+    INTEGER,
+    NUMBERS,
+    TEXT,
+    Row,
+    Unreadable,
+    columns_in,
+    decode,
+    encode,
+)
 from faultpath.store.tables import TrialAddress
 
 SIGNALS = "signals.parquet"
@@ -27,6 +36,8 @@ _SCHEMA = {
     "component": INTEGER,
     "values": NUMBERS,
 }
+_NAMED = {**_SCHEMA, "part": TEXT}
+"""Since components have names."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +50,8 @@ class Signal:
     unit: str
     values: NDArray[np.float32]
     """`[T, P]`: a row a control step from the first on, not a number where nothing was read."""
+    parts: tuple[str, ...] = ()
+    """What the components are called, where somebody named them."""
 
 
 Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
@@ -46,19 +59,21 @@ Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
 
 def encode_signals(signals: Signals) -> bytes:
     """Return the signals as a Parquet file."""
-    return encode(_SCHEMA, _rows(signals))
+    return encode(_NAMED, _rows(signals))
 
 
 def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
-    rows, _ = decode(data, _SCHEMA)
+    rows, _ = decode(data, _NAMED if "part" in columns_in(data) else _SCHEMA)
     found: dict[TrialAddress, list[Signal]] = {}
-    for key, parts in groupby(rows, key=_key):
+    for key, group in groupby(rows, key=_key):
+        parts = tuple(group)
         columns = [part["values"] for part in parts]
         if len({len(column) for column in columns}) != 1:
             raise Unreadable("the components of a signal differ in length")
         address, name, topic, unit = key
-        signal = Signal(name, topic, unit, np.stack(columns, axis=1))
+        named = tuple(filter(None, (part.get("part") for part in parts)))
+        signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
         found.setdefault(address, []).append(signal)
     return {address: tuple(signals) for address, signals in found.items()}
 
@@ -78,5 +93,6 @@ def _rows(signals: Signals) -> Iterable[Row]:
                     "topic": each.topic,
                     "unit": each.unit,
                     "component": component,
+                    "part": each.parts[component] if each.parts else "",
                     "values": np.ascontiguousarray(values, np.float32),
                 }

@@ -10,6 +10,7 @@ from torch import Tensor
 from faultpath.execution.attempt import Done
 from faultpath.quadrotor.chunks import Chunk
 from faultpath.quadrotor.device import arithmetic
+from faultpath.quadrotor.evidence.components import WORLD
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.hearing import Heard, Values, laid_out, steps_of
@@ -40,7 +41,8 @@ def quadrotor_signals(system: System, heard: Heard, done: Done) -> list[tuple[Si
         named += _errors(system, heard, scene, steps)
         for horizon, positions in ahead.items():
             said = f"position predicted {horizon * system.control_dt_s:g} s before"
-            named.append(_signal(said, "position", "m", laid_out(positions, scene, steps)))
+            values = laid_out(positions, scene, steps).astype(np.float32)
+            named.append(Signal(said, "position", "m", values, WORLD))
         found.append(tuple(named))
     return found
 

@@ -70,8 +70,13 @@ const Small = {
         arm, line, values: Array.from(data.series[place], (v) => (v < 0 ? null : low + v * level)),
       })));
   },
+  // Where the goal lies on the one axis of a position that is plotted over time.
+  goal(scene, plot, data) {
+    return data.space === "line" && data.plots[plot].title === "position" ? (scene.plan?.goal[0] ?? null) : null;
+  },
   range(scene, plot, data) {
-    let [low, high] = [Infinity, -Infinity];
+    const goal = Small.goal(scene, plot, data);
+    let [low, high] = goal === null ? [Infinity, -Infinity] : [goal, goal];
     for (const pair of scene.pairs) {
       for (const { values } of Small.lines(pair, plot, data)) {
         for (const v of values) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
@@ -107,6 +112,12 @@ const Small = {
       Draw.node(svg, "text", { x: left - 5, y: inside, "text-anchor": "end", class: "v-text soft" }, Small.number(v, range[1] - range[0]));
     }
     Draw.times(svg, last, data.dt_s, x, h - 5);
+    if (data.plots[plot].zero) Draw.node(svg, "line", { x1: left, x2: right, y1: y(0), y2: y(0), class: "v-line" });
+    const goal = Small.goal(scene, plot, data);
+    if (goal !== null) {
+      Draw.node(svg, "line", { x1: left, x2: right, y1: y(goal), y2: y(goal), class: "v-goal" });
+      Draw.node(svg, "text", { x: left + 5, y: y(goal) + (y(goal) < 26 ? 14 : -5), class: "v-text" }, "goal");
+    }
     for (const { arm, line, values } of lines) {
       const points = values.flatMap((v, i) => (v === null ? [] : [`${x(i).toFixed(1)},${y(v).toFixed(1)}`]));
       Draw.node(svg, "polyline", { points: points.join(" "), class: `v-signal ${arm} line-${Math.min(line, 3)}` });

@@ -18,7 +18,9 @@ if (document.getElementById("viewer-data")) {
     const spatial = data.space === "space";
     const view = spatial ? new Scene3D(get("3d")) : null;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
-    const state = { scene: data.picked[0] ?? 0, path: data.paths[data.paths.length - 1].name, step: 0, plot: 0, playing: 0 };
+    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0 };
+    // Along one axis the flight itself is a plot, and comes first.
+    if (!spatial) state.plot = Math.max(0, data.plots.findIndex(({ title }) => title === "position"));
     const current = () => Flight.open(data.scenes[state.scene], data);
     const pairOf = (path) => current().pairs.find((p) => p.path === path);
     const pair = () => pairOf(state.path) ?? current().pairs[0];
