@@ -25,13 +25,20 @@ from faultpath.studies.claims.rules import (
     Bound,
     Rule,
     at_least,
+    at_most,
+    bounded,
     by_point,
     less_than,
-    more_than,
     within,
 )
 from faultpath.studies.claims.turning import Turned
 from faultpath.studies.results import decisive
+
+
+def more_than(limit: float) -> Rule:
+    """Return the rule that a value is above a limit."""
+    return bounded(Bound(limit, 1, strict=True))
+
 
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
@@ -117,10 +124,13 @@ def test_not_detecting_counts_only_where_something_would_have_been_seen(
         (more_than(15.1), found(UP), "refuted"),
         (less_than(10), found(UP), "undecided"),
         (less_than(10.1), found(UP), "confirmed"),
-        (at_least(10, seen=True), found(UP, 0.01), "confirmed"),
-        (at_least(10, seen=True), found(UP, 0.2), "undecided"),
-        (at_least(3, seen=True), found(OPEN, 0.2), "undecided"),
-        (at_least(20, seen=True), found(UP, 0.01), "refuted"),
+        (bounded(Bound(10, 1), seen=True), found(UP, 0.01), "confirmed"),
+        (at_most(-10, seen=True), found(DOWN, 0.01), "confirmed"),
+        (at_most(-10, seen=True), found(DOWN, 0.2), "undecided"),
+        (at_most(-20), found(DOWN, 0.01), "refuted"),
+        (bounded(Bound(10, 1), seen=True), found(UP, 0.2), "undecided"),
+        (bounded(Bound(3, 1), seen=True), found(OPEN, 0.2), "undecided"),
+        (bounded(Bound(20, 1), seen=True), found(UP, 0.01), "refuted"),
         (within(9, 11), found(UP), "confirmed"),
         (within(11, 12), found(UP), "undecided"),
         (within(16, 20), found(UP), "refuted"),

@@ -7,8 +7,9 @@ from faultpath.studies.claims.rules import (
     NO_LOSS,
     REPORTED,
     at_least,
+    at_most,
     by_point,
-    more_than,
+    less_than,
 )
 from faultpath.studies.claims.statement import Statement, Statements
 from faultpath.studies.claims.sweep import above_worst, range_gained, worst_difference
@@ -26,13 +27,13 @@ PLUS, MINUS = ((table_2.cell(BASELINE, e), (table_2.error_under(e),)) for e in F
 _NOISY = published("in_text", "state_noise_and_delay_correct_calibration")
 
 
-def _lost(model: str, error: float) -> tuple[Cell, Cell]:
-    """Return the cells whose difference is the success that a model loses to an error."""
-    return table_2.cell(model, 0.0), table_2.cell(model, error)
+def _under(model: str, error: float) -> tuple[Cell, Cell]:
+    """Return the cells whose difference is what an error changes in the success of a model."""
+    return table_2.cell(model, error), table_2.cell(model, 0.0)
 
 
-def _lost_in_paper(model: str, error: float) -> float:
-    return table_2.paper_rate(model, 0.0) - table_2.paper_rate(model, error)
+def _under_in_paper(model: str, error: float) -> float:
+    return table_2.paper_rate(model, error) - table_2.paper_rate(model, 0.0)
 
 
 def _error_at_lower_success_in_paper() -> float:
@@ -80,10 +81,10 @@ CLAIMS: dict[str, Statements] = {
     **{
         claim: (
             Statement(
-                f"success of WM-A lost at e = {error:+g}",
-                success(*_lost(BASELINE, error)),
-                at_least(lost_pp, seen=True),
-                Printed(_lost_in_paper(BASELINE, error)),
+                f"success of WM-A at e = {error:+g} minus at e = 0",
+                success(*_under(BASELINE, error)),
+                at_most(-lost_pp, seen=True),
+                Printed(_under_in_paper(BASELINE, error)),
             ),
         )
         for claim, error, lost_pp in (("C05", 0.1, 30), ("C06", -0.1, 20))
@@ -91,23 +92,23 @@ CLAIMS: dict[str, Statements] = {
     "C07": (
         Statement(
             "success of WM-U at e = +0.1 minus at e = 0",
-            success(*reversed(_lost(WM_U[1], 0.1))),
+            success(*_under(WM_U[1], 0.1)),
             BELOW,
-            Printed(-_lost_in_paper(WM_U[1], 0.1)),
+            Printed(_under_in_paper(WM_U[1], 0.1)),
         ),
         Statement(
-            "success lost at e = +0.1 by WM-A, minus that by WM-U",
-            combined((1, _lost(BASELINE, 0.1)), (-1, _lost(WM_U[1], 0.1))),
-            more_than(0),
-            Printed(_lost_in_paper(BASELINE, 0.1) - _lost_in_paper(WM_U[1], 0.1)),
+            "success of WM-A at e = +0.1 minus at e = 0, minus that of WM-U,",
+            combined((1, _under(BASELINE, 0.1)), (-1, _under(WM_U[1], 0.1))),
+            less_than(0),
+            Printed(_under_in_paper(BASELINE, 0.1) - _under_in_paper(WM_U[1], 0.1)),
         ),
     ),
     "C08": (
         Statement(
-            "success of WM-U lost at e = -0.1, minus a third of that lost at e = +0.1,",
-            combined((1, _lost(WM_U[1], -0.1)), (-1 / 3, _lost(WM_U[1], 0.1))),
-            by_point(-1),
-            Printed(_lost_in_paper(WM_U[1], -0.1) - _lost_in_paper(WM_U[1], 0.1) / 3),
+            "success of WM-U at e = -0.1 minus at e = 0, minus a third of the same at e = +0.1,",
+            combined((1, _under(WM_U[1], -0.1)), (-1 / 3, _under(WM_U[1], 0.1))),
+            by_point(1),
+            Printed(_under_in_paper(WM_U[1], -0.1) - _under_in_paper(WM_U[1], 0.1) / 3),
         ),
     ),
     "C09": tuple(_repaired(WM_A, error) for error in FAULTS),

@@ -154,14 +154,14 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
     return Rule(f"{bound.words}{' and detected' if seen else ''}", judge, limits=(bound.limit,))
 
 
-def at_least(limit: float, *, seen: bool = False) -> Rule:
-    """The value reaches a lower limit; `seen` as in `bounded`."""
-    return bounded(Bound(limit, 1), seen=seen)
+def at_least(limit: float) -> Rule:
+    """The value reaches a lower limit."""
+    return bounded(Bound(limit, 1))
 
 
-def more_than(limit: float) -> Rule:
-    """The value is above a limit."""
-    return bounded(Bound(limit, 1, strict=True))
+def at_most(limit: float, *, seen: bool = False) -> Rule:
+    """The value reaches an upper limit; `seen` as in `bounded`."""
+    return bounded(Bound(limit, -1), seen=seen)
 
 
 def less_than(limit: float) -> Rule:
