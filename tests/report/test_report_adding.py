@@ -78,12 +78,12 @@ def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
         at: tuple(replace(each, values=_jumped(each.values)) for each in named)
         for at, named in heard.signals.items()
     }
-    calm, jumped = (
-        adding_panels(adding(each, pairs_of(each)))
-        for each in (heard, replace(heard, signals=jump))
-    )
+    both = (heard, replace(heard, signals=jump))
+    calm, jumped = (adding_panels(adding(each, pairs_of(each))) for each in both)
     levels = [re.findall(r'text-anchor="end">(−?[\d.]+)<', each[0]) for each in (calm, jumped)]
     assert levels[0] == levels[1]
+    said = "Lines are cut at the edge of the axes."
+    assert [said in report_page(each) for each in both] == [False, True]
 
 
 def _jumped(values):

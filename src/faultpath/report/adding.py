@@ -16,6 +16,7 @@ from faultpath.store import TrialAddress
 from faultpath.store.signals import TOGETHER, Signal
 from faultpath.trials import Status
 
+_SQUEEZED = 2.5
 _MOST_PATHS = 4
 """The last ones, among them the shared fault."""
 
@@ -51,6 +52,25 @@ class Adding:
     dt_s: float
     paths: tuple[tuple[str, str, tuple[Lines, ...]], ...]
     """Name and title of a path, with the baseline's lines and the repair's."""
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """The range of the values; where a few would squeeze the others, that of the others."""
+        values = self._every
+        low, high = (float(end) for end in np.quantile(values, (0.03, 0.97)))
+        few = values.max() - values.min() > _SQUEEZED * max(high - low, 1e-9)
+        return (low, high) if few else (float(values.min()), float(values.max()))
+
+    @property
+    def cut(self) -> bool:
+        """Whether some values lie outside that range."""
+        low, high = self.span
+        return bool(self._every.min() < low or self._every.max() > high)
+
+    @property
+    def _every(self) -> NDArray[np.float64]:
+        arms = (arm.values for _, _, both in self.paths for arm in both)
+        return np.concatenate([values[np.isfinite(values)] for values in arms])
 
     @property
     def caption(self) -> str:

@@ -103,6 +103,7 @@ def _story(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
         and {
             "words": why.words,
             "caption": why.caption,
+            "cut": why.cut,
             "key": [(Markup(sample), name) for sample, name in line_key(why)],
             "panels": list(map(Markup, adding_panels(why))),
         },

@@ -3,7 +3,6 @@
 from math import isfinite
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.report.adding import Adding, Lines
 from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
@@ -12,7 +11,6 @@ from faultpath.trials import Status
 
 _WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
 _TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
-_SQUEEZED = 2.5
 _LINES = ("term one", "term two", "term both")
 _SIGN = {Status.SUCCESS: "M-5 0l3 4l7 -9", Status.CRASH: "M-5 -5l10 10M5 -5l-10 10"}
 _OTHER = "M-4 -4h8v8h-8Z"
@@ -21,17 +19,9 @@ _OTHER = "M-4 -4h8v8h-8Z"
 def adding_panels(shown: Adding) -> list[str]:
     """Return a picture of each path, the baseline above the repair, all on the same axes."""
     arms = [arm for _, _, both in shown.paths for arm in both]
-    values = [arm.values[np.isfinite(arm.values)] for arm in arms]
-    upward = covering(_most(np.concatenate([each.ravel() for each in values])), least=1e-9)
+    upward = covering(shown.span, least=1e-9)
     clock = Axis(0.0, max(arm.time_s for arm in arms), _LEFT, _WIDTH - _RIGHT)
     return [_panel(shown, title, both, upward, clock) for _, title, both in shown.paths]
-
-
-def _most(values: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the range of the values; where a few would squeeze the others, that of the others."""
-    low, high = (float(end) for end in np.quantile(values, (0.03, 0.97)))
-    few = values.max() - values.min() > _SQUEEZED * max(high - low, 1e-9)
-    return (low, high) if few else (float(values.min()), float(values.max()))
 
 
 def line_key(shown: Adding) -> list[tuple[str, str]]:
