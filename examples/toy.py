@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from faultpath.errors import UserError
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.streams import generator
 from faultpath.trials import (
@@ -34,6 +35,7 @@ from faultpath.trials import (
 )
 
 DT_S, STEPS, TOLERANCE_M = 0.1, 100, 0.25
+LIBRARIES = ("carts", "selection", "held-out")  # the same scenes under three names
 
 FACTS = """
 name: toy
@@ -199,6 +201,8 @@ class Toy(LoopSystem):
         return Observer(variant == "calibrated"), Controller()
 
     def library(self, name: str) -> Library:
+        if name not in LIBRARIES:
+            raise UserError(f"the toy has no library '{name}': choose {' or '.join(LIBRARIES)}.")
         scenes = tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))
         return Library(name, scenes, "carts-1")
 

@@ -51,7 +51,10 @@ def described(error: BaseException) -> str:
     pydantic, refused = sys.modules.get("pydantic"), cast(Any, error)
     if pydantic is not None and isinstance(error, pydantic.ValidationError):
         return one_line(f"{refused.title} cannot be made: {misfit_of(refused)}")
-    said = error.msg if isinstance(error, SyntaxError) else str(error)
+    try:
+        said = error.msg if isinstance(error, SyntaxError) else str(error)
+    except Exception:  # an error of the system's own may fail even at that
+        said = ""
     return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
 
 

@@ -1,5 +1,6 @@
 """Building a system in a command's own process: how long it may take, what it prints, who hears."""
 
+import math
 import signal
 import threading
 from collections.abc import Callable, Generator
@@ -38,6 +39,12 @@ def building_s(asked_s: float | None) -> float:
     return LONGEST_S if asked_s is None else min(max(LEAST_S, asked_s), _MOST_S)
 
 
+def check_limit(asked_s: float | None) -> None:
+    """Raise `UserError` for what limits no time."""
+    if asked_s is not None and not (math.isfinite(asked_s) and asked_s > 0):
+        raise UserError(f"the time limit is {asked_s:g} s: give a number of seconds above 0")
+
+
 @contextmanager
 def patience(what: str, asked_s: float | None) -> Generator[None]:
     """Interrupt what takes too long to be built, `what` by name; `UserError` says so.
@@ -50,6 +57,7 @@ def patience(what: str, asked_s: float | None) -> Generator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    check_limit(asked_s)
     seconds = building_s(asked_s)
     before = signal.signal(signal.SIGALRM, _ring)
     signal.setitimer(signal.ITIMER_REAL, seconds)

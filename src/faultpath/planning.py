@@ -129,6 +129,8 @@ def plan_audit(
     variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
         raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
+    if primary is not None and not primary:
+        raise UserError("the primary path is empty: name a module or shared, or leave it out.")
     chosen = scenes_of(library, scenes, in_order=stop_when is None)
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")

@@ -46,7 +46,7 @@ class Paper(System):
     fault_presets = {"both": halve}  # noqa: RUF012
 
     def library(self, name: str) -> Library:
-        return Library(name, tuple(SceneRef(f"s{i}", i) for i in range(5)), "hash-1")
+        return Library(name, tuple(SceneRef(f"s{i}", i) for i in range(5)), f"{name}-1")
 
     def fingerprint(self) -> str:
         return "paper-1"

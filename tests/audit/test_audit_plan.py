@@ -94,7 +94,7 @@ def test_the_question_says_what_was_asked():
     question = audit.question
     assert (question.baseline, question.repair) == ("plain", "observed")
     assert question.fault == "mass:scale=2,onset=3"
-    assert (question.library, question.library_hash) == ("five", "hash-1")
+    assert (question.library, question.library_hash) == ("five", "five-1")
     assert (question.n_scenes, question.seeds) == (2, (4,))
     assert audit.study.scenes == ("s0", "s1")
     faults = [fault for row in audit.study.rows for fault in row.arm.faults]

@@ -44,7 +44,7 @@ TOY_MISTAKES = {
     "fewer scenes": ({"scenes": -4}, ["-4 scenes", "1 to 100"]),
     "too many scenes": ({"scenes": 101}, ["101 scenes", "1 to 100"]),
     "words for scenes": ({"scenes": "few"}, ["--scenes", "audit --help"]),
-    "no seeds": ({"seeds": ""}, ["--seeds ''", "0,1,2"]),
+    "no seeds": ({"seeds": ""}, ["--seeds ''", "empty"]),
     "half a seed": ({"seeds": "0,1.5"}, ["'0,1.5'", "0,1,2"]),
     "words for seeds": ({"seeds": "a,b"}, ["'a,b'", "0,1,2"]),
     "a seed twice": ({"seeds": "1,2,1"}, ["each of them once"]),

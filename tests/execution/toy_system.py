@@ -50,7 +50,7 @@ class ToySystem(System):
     def library(self, name: str) -> Library:
         kinds = ("open", "narrow")
         scenes = tuple(SceneRef(f"s{i:02d}", i, kinds[i % 2]) for i in range(10))
-        return Library(name, scenes, "library-1")
+        return Library(name, scenes, f"{name}-1")
 
     def fingerprint(self) -> str:
         return self._options.get("fingerprint", "toy-1")

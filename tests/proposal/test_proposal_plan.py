@@ -83,7 +83,7 @@ class Sized(System):
     }
 
     def library(self, name):
-        return Library(name, (SceneRef("s", 0),), "one")
+        return Library(name, (SceneRef("s", 0),), f"{name}-1")
 
     def run(self, variant, scenes, taps, seed):
         raise AssertionError("nothing flies")

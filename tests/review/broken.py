@@ -43,7 +43,7 @@ class Wall(System):
             self.block_size = 1
 
     def library(self, name):
-        return Library(name, tuple(SceneRef(f"w{i}", i) for i in range(6)), "walls-1")
+        return Library(name, tuple(SceneRef(f"w{i}", i) for i in range(6)), f"{name}-1")
 
     def fingerprint(self):
         return os.urandom(8).hex() if self.broken == "fingerprint" else ""

@@ -78,7 +78,7 @@ class Loops(LoopSystem):
         return (Pilot(self.broken),)
 
     def library(self, name):
-        return Library(name, tuple(SceneRef(f"l{i}", i) for i in range(6)), "loops-1")
+        return Library(name, tuple(SceneRef(f"l{i}", i) for i in range(6)), f"{name}-1")
 
 
 def create(broken: str = "") -> System:

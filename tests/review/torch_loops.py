@@ -117,7 +117,7 @@ class Torches(LoopSystem):
         return Pilot(self.kind, self.body), Guesser(self.kind, self.body)
 
     def library(self, name):
-        return Library(name, tuple(SceneRef(f"t{i}", i) for i in range(6)), "torches-1")
+        return Library(name, tuple(SceneRef(f"t{i}", i) for i in range(6)), f"{name}-1")
 
 
 def create(kind: str = "") -> System:

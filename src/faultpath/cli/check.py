@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, settings
+from faultpath.cli.options import LARGEST, SET, TimeLimit, names, settings
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -25,7 +25,7 @@ def command(
     ] = None,
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
     scenes: Annotated[int, typer.Option(help="Fly the first N scenes.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the trials.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the trials.")] = 0,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of lines.")] = False,
     workers: Annotated[
@@ -44,7 +44,7 @@ def command(
 
     report = check(
         system,
-        variants=tuple(name for name in (variants or "").split(",") if name),
+        variants=() if variants is None else names(variants, "--variants"),
         library=library,
         scenes=scenes,
         seed=seed,

@@ -60,10 +60,16 @@ def command() -> NoReturn:
     try:
         status = _run(arguments)
     except BaseException as error:
-        if isinstance(error, BrokenPipeError):  # whoever read our output has seen enough
+        from faultpath.blame import place
+
+        theirs = bool(place(error))  # a system may raise what would mean something of ours
+        if (
+            isinstance(error, BrokenPipeError) and not theirs
+        ):  # whoever read our output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
             sys.exit(UNREAD)
-        if ctrl_c.pressed or isinstance(error, (Stopped, KeyboardInterrupt)):
+        interrupted = isinstance(error, KeyboardInterrupt) and not theirs
+        if ctrl_c.pressed or interrupted or isinstance(error, Stopped):
             _end(str(error) if isinstance(error, Stopped) else _AGAIN, INTERRUPTED)
         sentence = _sentence(error)
         if sentence is None:
@@ -119,6 +125,7 @@ def _run(arguments: list[str]) -> int:
     """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
     import typer
 
+    from faultpath.blame import place
     from faultpath.cli.app import build
     from faultpath.cli.options import check_arguments
 
@@ -129,6 +136,8 @@ def _run(arguments: list[str]) -> int:
         ) as context:
             status = context.command.invoke(context)
     except typer.Exit as end:
+        if place(end):
+            raise
         status = end.exit_code
     return status if isinstance(status, int) else 0
 
@@ -138,13 +147,15 @@ def _sentence(error: BaseException) -> str | None:
     for an error of faultpath's own."""
     from typer import TyperException
 
-    from faultpath.blame import explained
+    from faultpath.blame import described, explained
 
     if isinstance(error, TyperException):
         return _misread(error)
     mistake = explained(error)
     if mistake is not None:
         return str(mistake)
+    if isinstance(error, SystemExit):
+        return f"what the command ran ends the program ({described(error)}): correct it there"
     if isinstance(error, MemoryError):
         return "there is not enough memory: ask for less, or for fewer --workers."
     if isinstance(error, OSError) and error.strerror:

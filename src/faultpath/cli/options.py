@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated
 
@@ -51,7 +52,16 @@ SET = "System option, key=value; for scripts, and where a flag above has the sam
 
 def check_arguments(arguments: Sequence[str]) -> None:
     """Refuse arguments that can name nothing; they would fail later, and garble the terminal."""
-    for argument in arguments:
+    for before, argument in pairwise(("", *arguments)):
+        flag = f"{before} " if before.startswith("--") and "=" not in before else ""
+        if not argument or re.fullmatch(r"--[\w-]+=", argument):
+            said = argument or f"{flag}''"
+            raise UserError(f"the argument {said} is empty: give a value, or leave it out.")
+        if foreign := next(filter(_foreign_number, re.split(r"[,=:/@]|\.\.", argument)), ""):
+            raise UserError(
+                f"the argument {flag}'{one_line(argument)}' holds the number {foreign}: write it "
+                "in the digits 0 to 9."
+            )
         if steers(argument):
             raise UserError(
                 f"the argument '{one_line(argument)}' holds control characters or is not UTF-8 "
@@ -61,6 +71,17 @@ def check_arguments(arguments: Sequence[str]) -> None:
             raise UserError(
                 f"the argument '{one_line(argument)}' is too long: write at most {_LONGEST} bytes."
             )
+
+
+def _foreign_number(text: str) -> bool:
+    """Return whether Python would take a text for a number that is not in our digits."""
+    if text.isascii():
+        return False
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def settings(pairs: Sequence[str], named: Mapping[str, str] | None = None) -> dict[str, str]:
@@ -76,6 +97,16 @@ def settings(pairs: Sequence[str], named: Mapping[str, str] | None = None) -> di
         if key in found:
             raise UserError(f"the options name '{key}' twice: give it once.")
         found[key] = value
+    return found
+
+
+def names(text: str, what: str) -> tuple[str, ...]:
+    """Read comma-separated names; `UserError` for an empty one, and for one given twice."""
+    found = tuple(part.strip() for part in text.split(","))
+    if not all(found):
+        raise UserError(f"{what} '{text}' holds an empty name: part names by one comma each.")
+    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
+        raise UserError(f"{what} '{text}' names '{twice[0]}' twice: name each once.")
     return found
 
 

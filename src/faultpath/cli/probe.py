@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import SET, numbers, path, settings
+from faultpath.cli.options import SET, names, numbers, path, settings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -50,13 +50,14 @@ def command(
     from faultpath.patience import patience
     from faultpath.trials import SystemSpec, load_measurer, load_system
 
+    chosen = names(variants, "--variants")
     measure = load_measurer(system)
     options = settings(set_ or [])
     with patience(system, None):
         built = load_system(SystemSpec(name=system, options=options))
     plan = ProbePlan(
         recording=Recording(library=library, variant=recorded_with, options=options),
-        variants=tuple(name for name in variants.split(",") if name),
+        variants=chosen,
         perturbations=tuple(
             perturb or expected_perturbations(built.interface, built.fault_presets)
         ),

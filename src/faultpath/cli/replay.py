@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from faultpath.cli.options import LARGEST
 from faultpath.cli.options import path as as_path
 from faultpath.errors import UserError
 
@@ -35,7 +36,7 @@ def command(
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(min=0, help="Seed to film; default the first.")
+        int | None, typer.Option(min=0, max=LARGEST, help="Seed to film; default the first.")
     ] = None,
     speed: Annotated[float, typer.Option(min=0.1, max=10, help="Of the film.")] = 1.0,
 ) -> int:

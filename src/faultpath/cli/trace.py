@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import SET, path, settings
+from faultpath.cli.options import LARGEST, SET, path, settings
 
 FOUND = 1
 
@@ -18,7 +18,7 @@ def command(
     steps: Annotated[int, typer.Option(min=1, help="Control steps to trace.")] = 3,
     scene: Annotated[str | None, typer.Option(help="Scene by its id; default the first.")] = None,
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the trial.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the trial.")] = 0,
     fault: Annotated[
         str | None, typer.Option(help="A fault, as in `audit`, to see whom it reaches.")
     ] = None,

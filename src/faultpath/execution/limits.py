@@ -1,18 +1,18 @@
 """How long a block may take and how much, and how many failures say that nothing works."""
 
-import math
 import sys
 from functools import cache
 from pathlib import Path
 
 from faultpath.errors import UserError
-from faultpath.patience import building_s
+from faultpath.patience import building_s, check_limit
 
 FIRST_S = 3600.0
 """Until a first block is done nobody knows how long one takes."""
 LEAST_S = 300.0
 TIMES = 20
 _GIB = 2**30
+_MOST_GIB = 2**20
 FEW = 5
 """So many failed trials without one that ran to its end stop the study."""
 
@@ -21,8 +21,7 @@ class TimeLimit:
     """The seconds that a task may take: as asked, or many times as long as the slowest so far."""
 
     def __init__(self, asked_s: float | None = None) -> None:
-        if asked_s is not None and not (math.isfinite(asked_s) and asked_s > 0):
-            raise UserError(f"the time limit is {asked_s:g} s: give a number of seconds above 0")
+        check_limit(asked_s)
         self._asked_s = asked_s
         self._slowest_s = 0.0
         self._slowest_scene_s = 0.0
@@ -55,8 +54,10 @@ def memory_limit(asked_gib: float | None, default_gib: float | None) -> float | 
     found = default_gib if asked_gib is None else asked_gib
     if found is None:
         return None
-    if not (math.isfinite(found) and found > 0):
-        raise UserError(f"the memory limit is {found:g} GiB: give a number above 0")
+    if not 0 < found <= _MOST_GIB:
+        raise UserError(
+            f"the memory limit is {found:g} GiB: give a number above 0, at most {_MOST_GIB:,}"
+        )
     if sys.platform != "linux":
         if asked_gib is not None:
             raise UserError("a memory limit needs Linux: leave it out here")

@@ -63,6 +63,10 @@ class QuadrotorOptions(QuadrotorChoices):
         given = choices.model_dump(include=choices.model_fields_set)
         given["settings"] = PLATFORMS[choices.platform]
         _check_planner(choices)
+        if choices.bring and not all(part.strip() for part in choices.bring.split(",")):
+            raise UserError(
+                f"bring '{choices.bring}' holds an empty name: part names by one comma each."
+            )
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
         if choices.plant is not PlantName.TORCH and choices.device is not DeviceName.CPU:

@@ -68,7 +68,7 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
         stable = fingerprint(system, spec, held)
         if stable.failures and asked.workers:  # a worker would refuse to fly another system
             return check_system(system, spec, replace(asked, workers=0, time_limit_s=None), note)
-        limit = TimeLimit(asked.time_limit_s or system.time_limit_s)
+        limit = TimeLimit(system.time_limit_s if asked.time_limit_s is None else asked.time_limit_s)
         crew = _Crew(system, spec, library, limit, note)
         crew.fly(held, tuple(_first(seen)), seen)
     with local(asked.workers) as held:  # new processes: what is kept in one is not in the other

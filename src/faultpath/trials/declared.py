@@ -103,7 +103,10 @@ def _items(what: str, found: Any) -> Iterable[Any]:
 
 def shown(found: Any) -> str:
     """Return a wrong value in a line that is short enough for a message."""
-    text = one_line(repr(found))
+    try:
+        text = one_line(repr(found))
+    except Exception:  # whatever a system's own object does when it is printed
+        return f"a {type(found).__name__}"
     return text if len(text) <= 80 else f"{text[:80]}…"
 
 

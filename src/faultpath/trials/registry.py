@@ -18,7 +18,7 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import TYPE_CHECKING
 
-from faultpath.blame import note_system
+from faultpath.blame import described, note_system
 from faultpath.blame import place as where
 from faultpath.code import Root, shadowed
 from faultpath.code.places import Kind, kind_of
@@ -54,12 +54,17 @@ def load_system(spec: SystemSpec) -> System:
     imports later is found. Where loading fails both are put back.
     """
     with _undone_on_failure(), _needing(spec.name):
-        system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
+        said = ":".join(_target(spec.name))
+        try:
+            system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
+        except (Exception, SystemExit) as error:
+            if isinstance(error, UserError) or spec.name in BUILT_IN or where(error):
+                raise  # what has no place is no code of anybody's
+            raise SystemMistake(
+                f"{said} builds no system ({described(error)}): name a function that returns one"
+            ) from error
         if not isinstance(system, System):
-            raise UserError(
-                f"{':'.join(_target(spec.name))} returned a {type(system).__name__}: it must "
-                "return a faultpath.trials.system.System"
-            )
+            raise UserError(f"{said} returned a {type(system).__name__}: it must return a System")
         check_system(system, spec.name)
         return system
 
@@ -97,8 +102,8 @@ def _factory(name: str) -> Factory:
 
 def _module(place: str, name: str) -> ModuleType:
     module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
-    if module.__file__ is not None and name not in BUILT_IN:
-        note_system(module.__file__)
+    if (file := getattr(module, "__file__", None)) and name not in BUILT_IN:
+        note_system(file)
     return module
 
 

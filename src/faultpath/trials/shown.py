@@ -6,11 +6,11 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from faultpath.errors import UserError
+from faultpath.errors import SystemMistake, UserError
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface
 from faultpath.misfits import misfit_of
-from faultpath.trials.declared import FloorPlan, Variant
+from faultpath.trials.declared import FloorPlan, Variant, shown
 from faultpath.trials.system import System
 
 
@@ -64,6 +64,9 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
     with a coordinate that is not finite.
     """
     plans = {scene: plan for scene in scenes if (plan := system.floor_plan(scene)) is not None}
+    for plan in plans.values():
+        if not isinstance(plan, FloorPlan):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise SystemMistake(f"`floor_plan` returned {shown(plan)}: return a FloorPlan or None")
     try:
         return SystemShown.model_validate(
             {

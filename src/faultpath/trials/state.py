@@ -8,7 +8,7 @@ from types import ModuleType
 
 from faultpath.code import Code, CodeState, Root, read_code
 from faultpath.trials.arm import SystemSpec
-from faultpath.trials.checks import fingerprint_of
+from faultpath.trials.checks import fingerprint_of, paths_of
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 
@@ -27,7 +27,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     root = _class_root(system) if spec.is_object else factory_root(spec)
     code = read_code(
         ((root,) if root else ()) + (*_classes(system, root), *_parts(system), _FLIES),
-        data=map(Path, system.data_files),
+        data=map(Path, paths_of(system, "data_files")),
         base=root.path.parent if root and root.path else None,
         given=fingerprint_of(system) if root else f"{_source(system)}{fingerprint_of(system)}",
     )
@@ -56,7 +56,7 @@ def _source(system: System) -> str:
 
 def _parts(system: System) -> tuple[Root, ...]:
     """Return the modules of the parts that the user named: no import leads there."""
-    return tuple(factory_root(SystemSpec(name=name)) for name in system.parts)
+    return tuple(factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
 
 
 def source_state(spec: SystemSpec) -> CodeState:

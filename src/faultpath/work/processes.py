@@ -24,6 +24,9 @@ KEEP_MEMORY = {
 """Large blocks stay with the process once freed: glibc would give them back to the system and fault
 them in again at the next tensor of that size."""
 
+_MOST = 4096
+"""Processes of one machine; more is a slip of the keyboard."""
+
 _BOOT = (
     "import sys; from faultpath.work.process import main; main(int(sys.argv[1]), int(sys.argv[2]))"
 )
@@ -31,8 +34,10 @@ _BOOT = (
 
 def local(workers: int) -> Executor:
     """Return so many processes of this machine, or for 0 this process itself."""
-    if workers < 0:
-        raise UserError(f"the number of workers is {workers}: use 0 (this process) or more")
+    if not 0 <= workers <= _MOST:
+        raise UserError(
+            f"the number of workers is {workers}: use 0 (this process) or more, at most {_MOST}"
+        )
     return Processes(workers) if workers else Here()
 
 

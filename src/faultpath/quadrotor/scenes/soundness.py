@@ -2,11 +2,11 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from math import ceil, prod
+from math import ceil, dist, prod
 
 from faultpath.quadrotor.scenes.prisms import arena, solids
 from faultpath.quadrotor.scenes.scene import Point, Scene
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M, VehicleParameters
 
 MOST_OBSTACLES = 256
 """Boxes and pillars of a scene: all scenes of a block are padded to as many."""
@@ -15,6 +15,16 @@ FURTHEST_M = 1000.0
 MOST_CELLS = 2**22
 """Cells of 0.1 m in an arena: 16 MB of baked distance a scene."""
 CELL_M = 0.1
+GOAL_RADIUS_M = 0.5
+"""Where a flight has reached its goal, as `world` has it."""
+_RANGES = {
+    "mass_kg": (0.05, 20.0),
+    "thrust_scale": (0.1, 10.0),
+    "torque_scale": (0.1, 10.0),
+    "inertia_kgm2": (1e-4, 10.0),
+    "motor_time_constant_s": (0.005, 1.0),
+    "drag_kgps": (1e-6, 10.0),
+}
 
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
@@ -83,11 +93,23 @@ def _faults(scene: Scene) -> Iterator[str]:
             )
     for place, at in (("start_m", scene.start_m), ("goal_m", scene.goal_m)):
         yield from _not_free(scene, place, at)
+    if dist(scene.start_m, scene.goal_m) <= GOAL_RADIUS_M:
+        yield f"goal_m: within {GOAL_RADIUS_M:g} m of start_m, so a flight is over at its start"
     if not scene.vehicle.is_rigid:
         yield "vehicle.inertia_kgm2: no rigid body has a moment above the sum of the others"
     if scene.vehicle.thrust_to_weight <= 1:
         ratio = scene.vehicle.thrust_to_weight
         yield f"vehicle: thrust over weight is {ratio:.2f}, so it cannot lift itself"
+    yield from _outlandish(scene.vehicle)
+
+
+def _outlandish(vehicle: VehicleParameters) -> Iterator[str]:
+    """Yield what no multirotor has; the integration of its motion would not bear it either."""
+    for name, (least, most) in _RANGES.items():
+        found = getattr(vehicle, name)
+        for value in found if isinstance(found, tuple) else (found,):
+            if not least <= value <= most:
+                yield f"vehicle.{name}: {value:g} is not between {least:g} and {most:g}"
 
 
 def _not_free(scene: Scene, place: str, at: Point) -> Iterator[str]:

@@ -1,0 +1,69 @@
+"""Arguments that name nothing, or a number in other digits, for every option of every verb."""
+
+import pytest
+from cli_runs import TOY, audit, faultpath
+
+from faultpath.cli.options import check_arguments, names
+from faultpath.errors import UserError
+
+
+@pytest.mark.parametrize("option", ["primary", "metric", "library", "thresholds", "out", "seeds"])
+def test_an_empty_value_is_refused_by_the_name_of_its_option(option: str) -> None:
+    said = audit(**{option: ""}).refused()
+    assert f"--{option}" in said
+    assert "empty" in said
+    assert f"--{option}=" in faultpath("audit", TOY, f"--{option}=").refused()
+
+
+@pytest.mark.parametrize(
+    "argument", ["٣", "0,٣", "gain:scale=٣", "calibration=-0.2..०.2/9", "steps=١", "１２"]
+)
+def test_numbers_are_written_in_our_digits(argument: str) -> None:
+    with pytest.raises(UserError, match="digits 0 to 9"):
+        check_arguments(["audit", "--scenes", argument])
+
+
+@pytest.mark.parametrize("argument", ["modèle-²", "نموذج٣", "日本", "a=", "1e3", "-1", "½"])
+def test_names_in_any_script_are_left_alone(argument: str) -> None:
+    check_arguments(["audit", "--baseline", argument])
+
+
+@pytest.mark.parametrize("text", [",", "a,", ",a", "a,,b", " ", "a,b,a", "a, a"])
+def test_lists_of_names_hold_each_name_once_and_no_empty_one(text: str) -> None:
+    with pytest.raises(UserError, match=r"--variants .*(empty name|'a' twice)"):
+        names(text, "--variants")
+    assert names("a, b", "--variants") == ("a", "b")
+
+
+@pytest.mark.parametrize("verb", ["check", "map", "probe"])
+def test_every_verb_with_a_list_refuses_empty_names(verb: str) -> None:
+    option = "--against" if verb == "map" else "--variants"
+    line = [verb, "quadrotor" if verb == "probe" else TOY, option, "blind,,calibrated"]
+    if verb == "map":
+        line += ["--baseline", "calibrated", "--repair", "blind", "--fault", "gain"]
+    assert "empty name" in faultpath(*line).refused()
+
+
+LIMITS = ["1e308", "inf", "nan", "-1", "0", "-inf"]
+
+
+@pytest.mark.parametrize("value", LIMITS)
+def test_a_memory_limit_that_limits_nothing(value: str, tmp_path) -> None:
+    asked = {"memory-limit": value, "workers": 1, "out": tmp_path / "run"}
+    assert "the memory limit is" in audit(**asked).refused()
+
+
+@pytest.mark.parametrize("value", LIMITS[1:])
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_time_limit_that_limits_nothing(value: str, workers: int, tmp_path) -> None:
+    line = ["check", TOY, "--time-limit", value, "--workers", workers]
+    assert "the time limit is" in faultpath(*line).refused()
+
+
+def test_more_workers_than_any_machine_has_are_a_slip(tmp_path) -> None:
+    assert "at most" in audit(workers="9" * 30, out=tmp_path / "run").refused()
+
+
+@pytest.mark.parametrize("verb", ["check", "trace"])
+def test_a_seed_that_no_table_holds(verb: str) -> None:
+    assert "--seed" in faultpath(verb, TOY, "--seed", "9" * 30).refused()
