@@ -245,10 +245,8 @@ def _check_own(root: Root, folder: Path) -> None:
 
 @contextmanager
 def _undone_on_failure() -> Generator[None]:
-    """Put back what loading a system changed when it comes to nothing.
-
-    Modules of its own go too: whoever corrects one and loads again wants it as it then is.
-    """
+    """Put back what loading a system changed when it comes to nothing; modules of its own go too,
+    since whoever corrects one and loads again wants it as it then is."""
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
         yield
