@@ -21,7 +21,7 @@ BROKEN, LOOPS = f"{HERE / 'broken.py'}:create", f"{HERE / 'broken_loops.py'}:cre
 TOY, DOCK = f"{ROOT / 'examples/toy.py'}:create", f"{ROOT / 'examples/dock.py'}:create"
 
 
-def trace(name, variant, fault=None, library="any", **options):
+def trace(name, variant, fault=None, library="selection", **options):
     spec = SystemSpec(name=name, options=options)
     system = load_system(spec)
     struck = fault and parse_fault(fault, system.interface, {}, system.control_dt_s)
@@ -84,7 +84,7 @@ def test_a_privileged_read_without_permission_is_found():
     sources = tuple(secret if each.name == secret.name else each for each in interface.sources)
     system.interface = interface.model_copy(update={"sources": sources})
     vars(system).pop("_variants", None)
-    permitted = trace_system(system, SystemSpec(name=TOY), "calibrated", "any")
+    permitted = trace_system(system, SystemSpec(name=TOY), "calibrated", "carts")
     assert permitted.findings == ()
     assert [each.split(" reads")[0] for each in permitted.privileged] == [
         "observer.model",
