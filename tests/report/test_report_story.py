@@ -13,7 +13,8 @@ from faultpath.record import DecisionRecord, Path
 from faultpath.report.figures.fork import fork_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.story import Fork, fault_story, forks, isolation_words, out_of_reach
+from faultpath.report.story import Fork, Reader, fault_story, forks, isolation_words, out_of_reach
+from faultpath.report.svg import shortened
 from faultpath.trials import SystemSpec, library_of, load_system
 
 TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
@@ -49,6 +50,20 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
         told["Reconstruction only"].told
     )
     assert "wrong for all" in fork_panels(list(told.values()))[-1]
+
+
+@pytest.mark.parametrize("channel", ["gain", "mass", "clearance", "thrust_scale", "l" * 40])
+def test_what_a_module_gets_is_said_whole(channel: str) -> None:
+    one, other = frozenset({(channel, "a.b")}), frozenset({(channel, "a.c")})
+    told = {
+        Reader("a", taps, struck, changed).state
+        for taps in (frozenset[tuple[str, str]](), one, one | other)
+        for struck in (frozenset[tuple[str, str]](), one & taps)
+        for changed in (True, False)
+    }
+    assert len(told) == 5
+    for state in told:
+        assert shortened(state, 147 - 38 - 12, 11) == state
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:
@@ -109,7 +124,7 @@ def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
     assert not shared.everywhere
     assert states(shared) == [
         ["predictor: correct readings", "reconstruction: correct readings"],
-        ["predictor: unchanged by fault", "reconstruction: correct readings"],
+        ["predictor: gets it unchanged", "reconstruction: correct readings"],
     ]
     some = with_paths(one_seed, lambda p: p.model_copy(update={"struck": p.struck[:3]}))
     assert states(forks(some)[-1])[1][0] == "predictor: partly wrong"

@@ -16,6 +16,9 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.interface_layout import Tap
 from faultpath.trials import VariantShown
 
+_SHORT = 9
+"""Letters of a channel's name that still fit into the box of a module."""
+
 
 @dataclass(frozen=True)
 class Reader:
@@ -33,13 +36,15 @@ class Reader:
     def state(self) -> str:
         """Say what reaches the module."""
         names = {channel for channel, _ in self.taps}
-        what = _named(*names) if len(names) == 1 else "readings"
+        what = "readings" if len(names) > 1 else "reading"
+        if len(names) == 1 and len(min(names)) <= _SHORT:
+            what = _named(min(names))
         if not self.taps:
             return "does not read it"
         if not self.struck:
             return f"correct {what}"
         if not self.changed:
-            return "unchanged by fault"
+            return "gets it unchanged"
         return f"wrong {what}" if self.struck == self.taps else "partly wrong"
 
 
