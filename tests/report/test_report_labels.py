@@ -45,7 +45,7 @@ def _comparison(folder: Path) -> Path:
     return compare(runs).report(folder / "page.html")
 
 
-def test_a_goal_on_the_one_axis_is_drawn(
+def test_a_cart_has_its_goal_and_commands_their_folder(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     source = make(n_scenes=4, void=False)
@@ -54,10 +54,14 @@ def test_a_goal_on_the_one_axis_is_drawn(
     plans = dict.fromkeys(source.plans, rail)
     flat = replace(source, traces=Traces(line, 0.05), plans=plans)
     opened = browser.new_page()
-    opened.goto(write_report(flat, tmp_path)[0].as_uri())
+    folder = tmp_path / "my cart"
+    opened.goto(write_report(flat, folder)[0].as_uri())
     opened.wait_for_selector("#viewer[data-ready]")
     assert opened.locator(".v-goal").count() == len(source.record.paths)
     assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.paths)
+    scene = opened.evaluate("document.querySelector('#viewer-scene option:checked').textContent")
+    command = f"faultpath replay '{folder}' --scene {scene} --signals"
+    assert opened.locator("#viewer-unrecorded code").inner_text() == command
     opened.close()
 
 

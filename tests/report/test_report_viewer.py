@@ -95,12 +95,6 @@ def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> No
     assert [each["scene"] for each in data["scenes"]] == [scene]
 
 
-def test_commands_name_the_folder_of_the_run(one_seed: ReportInput) -> None:
-    page = report_page(replace(one_seed, folder="runs/my cart"))
-    assert 'data-run="&#39;runs/my cart&#39;"' in page
-    assert "replay RUN" not in page
-
-
 def test_what_is_zero_throughout_has_no_axes(one_seed: ReportInput) -> None:
     zero = np.zeros((5, 2), dtype=np.float32)
     one = np.tile(np.array((0.0, 1.0), np.float32), (5, 1))

@@ -68,7 +68,6 @@ def read_run(folder: Path) -> tuple[ReportInput, pa.Table]:
         traces=Traces(traces, shown.control_dt_s),
         plans=shown.plans,
         signals=heard,
-        folder=str(folder),
     )
     return read, read_table(held[OUTCOMES])
 

@@ -1,6 +1,5 @@
 """The report as one page that opens without a network, as a notebook's cell, and as files."""
 
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
@@ -60,7 +59,6 @@ def report_page(source: ReportInput) -> str:
         n_left_out=sum(pair.kind is Kind.LEFT_OUT for pair in pairs),
         effects=Markup(html(by_path(source.record, BEHIND, "What stands behind each effect"))),
         viewer=viewer,
-        folder=shlex.quote(source.folder),
         w=wording,
     )
 

@@ -39,5 +39,3 @@ class ReportInput:
     """By scene id; scenes without one are drawn without obstacles."""
     signals: Signals = field(default_factory=dict[TrialAddress, tuple[Signal, ...]])
     """Of the trials of which signals were recorded."""
-    folder: str = "RUN"
-    """The run's folder as the user names it, for the commands that a page suggests."""

@@ -21,6 +21,9 @@ if (document.getElementById("viewer-data")) {
     const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0 };
     // Along one axis the flight itself is a plot, and comes first.
     if (!spatial) state.plot = Math.max(0, data.plots.findIndex(({ title }) => title === "position"));
+    // The folder of the run is that of the page, unless somebody put the page on a server.
+    const here = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") : "";
+    const folder = /^[\w@%+=:,./-]*$/.test(here) ? here : `'${here.replaceAll("'", "'\\''")}'`;
     const current = () => Flight.open(data.scenes[state.scene], data);
     const pairOf = (path) => current().pairs.find((p) => p.path === path);
     const pair = () => pairOf(state.path) ?? current().pairs[0];
@@ -131,9 +134,8 @@ if (document.getElementById("viewer-data")) {
       const heard = (trial) => trial.struck.length || trial.attitude || trial.lines.length > (data.space === "line" ? 1 : 0);
       const note = get("unrecorded");
       if (note) {
-        note.hidden = scene.pairs.some((p) => Flight.flown(p).some((arm) => heard(p[arm])));
-        const code = note.querySelector("code");
-        code.textContent = `faultpath replay ${code.dataset.run} --scene ${scene.scene} --signals`;
+        note.hidden = !folder || scene.pairs.some((p) => Flight.flown(p).some((arm) => heard(p[arm])));
+        note.querySelector("code").textContent = `faultpath replay ${folder} --scene ${scene.scene} --signals`;
       }
       for (const { plot } of columns) { plot.replaceChildren(); plot.hidden = !has.length; }
       if (!has.length) { range = null; return; }
