@@ -73,7 +73,7 @@ def factorial(
     resamples = Resamples.draw(asked.library_hash, found.scenes, seed=resamples_seed)
     family: dict[tuple[FactorialOf, tuple[str, ...]], Contrast] = {
         (of, each): with_test(weighted_sum(_weights(each, paths.values()), contrasts), asked.rule)
-        for of, contrasts in _contrasts(arms, resamples, asked.generalise == "models").items()
+        for of, contrasts in _contrasts(arms, resamples, asked).items()
         for each in subsets(factors)
         if each
     }
@@ -98,7 +98,7 @@ def _weights(effect: tuple[str, ...], all_struck: Collection[tuple[str, ...]]) -
 
 
 def _contrasts(
-    arms: Mapping[str, Arms], resamples: Resamples, models: bool
+    arms: Mapping[str, Arms], resamples: Resamples, asked: Question
 ) -> dict[FactorialOf, list[Contrast]]:
     """Return for each outcome its contrasts, arm by arm.
 
@@ -110,7 +110,8 @@ def _contrasts(
     def against(of: FactorialOf, path: str) -> Contrast:
         first, second = arms[path]
         pair = {"baseline": (second, baseline), "repair": (first, repair)}.get(of, (first, second))
-        return success_effect(*pair, resamples, models=models)
+        models = asked.generalise == "models"
+        return success_effect(*pair, resamples, models=models, rule=asked.rule)
 
     return {of: [against(of, path) for path in arms] for of in OUTCOMES}
 

@@ -84,6 +84,7 @@ def decide_paths(
                 drawn,
                 models=models,
                 sequential=shares is not None,
+                rule=rule,
             ),
             rule,
         )

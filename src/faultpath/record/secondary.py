@@ -84,7 +84,11 @@ def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -
         baseline_percent=percent(baseline),
         repair_percent=percent(repair),
         difference=success_effect(
-            repair, baseline, resamples, sequential=asked.stop is not None
+            repair,
+            baseline,
+            resamples,
+            sequential=asked.stop is not None,
+            rule=asked.rule,
         ).estimate(),
     )
 

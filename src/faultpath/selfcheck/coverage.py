@@ -11,10 +11,12 @@ from faultpath.selfcheck.populations import RATES, Population, joint
 from faultpath.statistics import Resamples, success_effect
 from faultpath.statistics.distributions import multinomial_pmf
 from faultpath.statistics.inputs import Floats
+from faultpath.statistics.rules import IN_FORCE, RULES
 from faultpath.statistics.score import quantile, reach, rejects
 from faultpath.streams import generator
 
 Z = quantile(0.95)
+PRIOR = RULES[IN_FORCE].prior
 LEANS = (0.0, 0.5, 1.0)
 INTERVAL, BREAK_EVEN, MODELS = "interval", "break-even", "newly trained models"
 _SLACK = 1e-9
@@ -40,7 +42,7 @@ class IntervalCoverage:
             drawn = stream.multinomial(self.scenes, truth.chances(), size=self.runs)
             counts, times = np.unique(drawn.astype(np.float64), axis=0, return_counts=True)
             weight, runs = times / self.runs, self.runs
-        far = reach(sizes, counts, 1.0)
+        far = reach(sizes, counts, 1.0, PRIOR)
         covered = ~rejects(sizes, counts, truth.mean, far, Z)
         setting = {
             "scenes": self.scenes,
@@ -74,8 +76,8 @@ class BreakEvenCoverage:
         ).astype(np.float64)
         counts, times = np.unique(drawn, axis=0, return_counts=True)
         square = counts.reshape(-1, kinds, kinds)
-        far_0 = reach(first.sizes, square.sum(axis=2), 1.0)
-        far_f = reach(second.sizes, square.sum(axis=1), 1.0)
+        far_0 = reach(first.sizes, square.sum(axis=2), 1.0, PRIOR)
+        far_f = reach(second.sizes, square.sum(axis=1), 1.0, PRIOR)
         mixed = (1.0 - p) * first.sizes[:, np.newaxis] + p * second.sizes
         far = (1.0 - p) * far_0 + p * far_f
         covered = ~rejects(mixed.ravel().round(9), counts, 0.0, far, Z)

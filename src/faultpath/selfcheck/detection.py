@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 
-from faultpath.selfcheck.coverage import tables
+from faultpath.selfcheck.coverage import PRIOR, tables
 from faultpath.selfcheck.model import Measured
 from faultpath.selfcheck.populations import Population
 from faultpath.statistics import IN_FORCE, detectable
@@ -77,7 +77,7 @@ class DetectionAtTheReported:
                 true = self._at(least)
                 drawn = stream.multinomial(self.scenes, true.chances(), size=_AGAIN)
                 counts = drawn.astype(np.float64)
-                far = reach(true.sizes, counts, 1.0)
+                far = reach(true.sizes, counts, 1.0, PRIOR)
                 shares.append(float(detected(true.sizes, counts, far, self.alpha, IN_FORCE).mean()))
         mean = float(np.mean(shares))
         variance = float(np.var(shares)) / len(shares)

@@ -6,11 +6,11 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from faultpath.statistics import betting, unconditional
+from faultpath.statistics import betting, score, signflip, unconditional
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import sign_p_value, t_p_value
 from faultpath.statistics.estimate import ALPHA, SCENES_AND_SEEDS, Decision, PairedTest, Sign
-from faultpath.statistics.rules import EM, RuleName
+from faultpath.statistics.rules import EM, FLIPS, RuleName
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 
@@ -19,9 +19,10 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     """Return a contrast with its test: the one place where that is chosen.
 
     For given models and one seed: exact McNemar, or by the ``unconditional`` rule the E+M test.
-    Else the sign test on what scenes differ by. For newly trained ones: the t test of the seeds'
-    effects. For a sequential audit: bets on the mean (`betting`). ``ValueError`` for contrasts
-    that have no test, as means and medians of unbounded outcomes.
+    Else, of what scenes differ by: the sign test, or by that rule the larger p of sign flips and of
+    the score. For newly trained models: the t test of the seeds' effects. For a sequential audit:
+    bets on the mean (`betting`). ``ValueError`` for contrasts that have no test, as means and
+    medians of unbounded outcomes.
     """
     if contrast.estimand == SCENES_AND_SEEDS:
         return replace(contrast, test=_seed_test(contrast))
@@ -35,6 +36,11 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     if rule == "unconditional" and contrast.arms is not None and contrast.n_seeds == 1:
         p_value = unconditional.p_value(first, second, contrast.n_scenes)
         return replace(contrast, test=PairedTest(EM, p_value, _sign(first - second)))
+    if rule == "unconditional":
+        flipped = signflip.p_value(values, contrast.n_seeds)
+        scored = score.p_value(*contrast.scenes.kinds(), contrast.scenes.far)
+        test = PairedTest(FLIPS, max(flipped, scored), _sign(contrast.value))
+        return replace(contrast, test=test)
     name = "exact McNemar" if contrast.n_seeds == 1 else "sign test on scene means"
     if contrast.arms is None:
         name = "sign test on scene differences"

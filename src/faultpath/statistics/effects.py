@@ -16,6 +16,7 @@ from faultpath.statistics.inputs import (
     paired_binary,
 )
 from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.rules import RULES, RuleName
 from faultpath.statistics.score import SceneValues
 
 BETTING = "confidence sequence by betting on scene means"
@@ -28,16 +29,18 @@ def success_effect(
     *,
     models: bool = False,
     sequential: bool = False,
+    rule: RuleName = "exact",
 ) -> Contrast:
     """Return the difference in success in percentage points, from binary [scenes, seeds].
 
     ``models`` speaks of newly trained ones as well, of which each seed is one. ``sequential`` says
     that the number of scenes was not fixed beforehand: its interval and test hold at whatever scene
-    one stops.
+    one stops. A ``rule`` says how far the unseen may lie, of several seeds.
     """
     one, two = paired_binary(first, second)
     # Summed first, so that wins and losses of a scene cancel exactly.
-    scenes = SceneValues.paired((one - two).sum(axis=1) / one.shape[1], 1.0, 100.0, sequential)
+    values = (one - two).sum(axis=1) / one.shape[1]
+    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, RULES[rule].prior)
     found = _mean(one - two, resamples, "pp", scenes, models)
     return replace(found, arms=(one, two))
 

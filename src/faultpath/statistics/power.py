@@ -5,11 +5,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics import unconditional
+from faultpath.statistics import signflip, unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA
 from faultpath.statistics.inputs import Floats
-from faultpath.statistics.rules import RuleName
+from faultpath.statistics.rules import RULES, RuleName
 from faultpath.statistics.score import quantile, reach, rejects
 from faultpath.streams import generator
 
@@ -81,14 +81,14 @@ def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
 def simulated_power(
     n_scenes: int, values: Floats, chances: Floats, alpha: float, rule: RuleName
 ) -> float:
-    """Return the power of sign test and score interval, from `AUDITS` simulated audits.
+    """Return the power of several seeds' test and score interval, from `AUDITS` simulated audits.
 
     A scene has one of ``values`` [kinds], fractions of the largest possible one, with ``chances``
     [kinds]. The same stream serves every call, so that neighbouring powers can be compared.
     """
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    far = reach(values, counts, 1.0)
+    far = reach(values, counts, 1.0, RULES[rule].prior)
     return float(detected(values, counts, far, alpha, rule).mean())
 
 
@@ -115,8 +115,11 @@ def detected(
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)
     fewer = np.minimum(first, second)
+    if rule == "unconditional" and len(values) > _ONE_SEED:
+        z = quantile(max(LEVEL, 1.0 - alpha))
+        return (signflip.p_values(values, counts) <= alpha) & rejects(values, counts, 0.0, far, z)
     tested = 2.0 * binomial_cdf(fewer, first + second, 0.5) <= alpha
-    if rule == "unconditional" and len(values) == _ONE_SEED:
+    if rule == "unconditional":
         known = unconditional.critical(int(counts[0].sum()), alpha)
         tested = fewer <= known[(first + second).astype(np.int64)]
     same = np.sign(counts @ values) == np.sign(first - second)

@@ -12,6 +12,8 @@ class Rule(NamedTuple):
     """In words."""
     weighted: bool
     """Whether half of the error rate is the primary contrast's, and the others share the rest."""
+    prior: float
+    """Of `score.reach`: scenes of the largest possible difference that several seeds are given."""
     period: str
     """When audits took it unless told otherwise."""
 
@@ -22,9 +24,16 @@ class Rule(NamedTuple):
 
 
 RULES: dict[RuleName, Rule] = {
-    "exact": Rule("exact McNemar or sign test and Holm", False, "until 2026-11-22"),
-    "unconditional": Rule("E+M test and weighted Holm", True, "since 2026-11-23"),
+    "exact": Rule("exact McNemar or sign test and Holm", False, 3.0, "until 2026-11-22"),
+    "unconditional": Rule(
+        "E+M test (sign flips and score of several seeds and changes) and weighted Holm",
+        True,
+        12.0,
+        "since 2026-11-23",
+    ),
 }
 IN_FORCE: RuleName = "unconditional"
 EM = "E+M (Lloyd)"
 """Name of the test of one seed under the rule in force."""
+FLIPS = "sign flips and score of scenes"
+"""Name of that of several seeds, and of changes."""

@@ -18,14 +18,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import betting
-from faultpath.statistics.distributions import normal_quantile
+from faultpath.statistics.distributions import normal_p_value, normal_quantile
 from faultpath.statistics.inputs import Floats
 
 _HALVINGS = 44
 _DIGITS = 9
 """Of a combined value, so that values which cancel leave exactly 0."""
 PRIOR = 3.0
-"""Scenes of the largest possible difference that `reach` mixes to those which differed."""
+"""Scenes of the largest possible difference that `reach` adds by itself; a rule has its own."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,12 @@ class SceneValues:
 
     @classmethod
     def paired(
-        cls, values: Floats, bound: float, scale: float = 1.0, sequential: bool = False
+        cls,
+        values: Floats,
+        bound: float,
+        scale: float = 1.0,
+        sequential: bool = False,
+        prior: float = PRIOR,
     ) -> "SceneValues":
         """Return differences between two arms; what was not observed lies within `reach`.
 
@@ -57,7 +62,8 @@ class SceneValues:
         kinds, counts = np.unique(values, return_counts=True)
         often = counts.astype(np.float64)
         # Summed in both orders, since swapping the arms turns the order round.
-        far = max(reach(kinds, often, bound), reach(kinds[::-1], often[::-1], bound))
+        orders = ((kinds, often), (kinds[::-1], often[::-1]))
+        far = max(reach(*each, bound, prior) for each in orders)
         return cls(values=values, bound=bound, far=float(far), scale=scale)
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
@@ -93,18 +99,18 @@ def quantile(level: float) -> float:
     return normal_quantile((1.0 + level) / 2.0)
 
 
-def reach(values: Floats, counts: Floats, bound: Floats | float) -> Floats:
+def reach(values: Floats, counts: Floats, bound: Floats | float, prior: float = PRIOR) -> Floats:
     """Return [...]: how far from 0 a value that was not observed is taken to lie.
 
     ``values`` and ``counts`` are [..., values]. With one seed a scene differs wholly or not, and
     this is ``bound``. With several it lies nearer to the size of the differing scenes that were
     seen, never below the largest of them: the mean size, each scene weighted by its size, after
-    `PRIOR` scenes of the largest possible size.
+    ``prior`` scenes of the largest possible size.
     """
     size = np.abs(values)
     seen = (counts * size).sum(axis=-1)
     squares = (counts * size * size).sum(axis=-1)
-    shrunk = (squares + PRIOR * np.square(bound)) / (seen + PRIOR * np.asarray(bound))
+    shrunk = (squares + prior * np.square(bound)) / (seen + prior * np.asarray(bound))
     largest = np.where(counts > 0, size, 0.0).max(axis=-1)
     return np.asarray(np.clip(shrunk, largest, bound), dtype=np.float64)
 
@@ -129,6 +135,22 @@ def rejects(
     off = np.where(counts > 0, side[..., np.newaxis] * off, 0.0)
     inside = (share * off / (1.0 + tilt[..., np.newaxis] * off)).sum(axis=-1) > 0.0
     return np.asarray(beyond & inside, dtype=np.bool_)
+
+
+def p_value(values: Floats, counts: Floats, far: float) -> float:
+    """Return the least ``alpha`` at which the score rejects "the mean is 0", two-sided.
+
+    ``z^2 = n a |mean|`` for the greatest ``a`` that the most likely distribution may have.
+    """
+    total = float(counts.sum())
+    mean = float(counts @ values) / total
+    off = values if mean > 0.0 else -values
+    low, high = 0.0, 1.0 / far
+    for _ in range(_HALVINGS + 8):
+        tilt = 0.5 * (low + high)
+        further = float((counts * off / (1.0 + tilt * off)).sum()) > 0.0
+        low, high = (tilt, high) if further else (low, tilt)
+    return normal_p_value(float(np.sqrt(total * low * abs(mean))))
 
 
 def interval(values: Floats, counts: Floats, far: Floats, z: float) -> tuple[Floats, Floats]:
