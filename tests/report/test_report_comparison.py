@@ -12,6 +12,7 @@ from faultpath.record import Path as FaultPath
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.page import effects, markdown, page
 from faultpath.report.comparison.runs import Compared, titles
+from faultpath.report.comparison.sweep import together
 from faultpath.report.inputs import ReportInput
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_ \u202e'
@@ -37,7 +38,7 @@ def signed(one: Compared, path: str, sign: int, **more: object) -> Compared:
 
 @pytest.fixture
 def two(one_seed: ReportInput) -> Given:
-    return run(one_seed, 1), run(one_seed, 2, fault="calibration=-0.1")
+    return run(one_seed, 1), run(one_seed, 2, fault="mass=-0.1")
 
 
 def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
@@ -53,28 +54,37 @@ def test_detected_here_and_not_there_is_no_difference(two: Given) -> None:
     )
 
 
-def test_sizes_of_one_fault_are_drawn_over_the_size_and_their_number_is_counted(
+def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
     one_seed: ReportInput, browser: Browser, tmp_path: Path
 ) -> None:
     sizes = (-0.1, 0.1, 0.2)
-    three = tuple(run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1))
-    three = (*three[:2], signed(three[2], "shared", -1, adjusted_p_value=0.04))
+    apart = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1)]
+    apart = [signed(each, "shared", -1, p_value=1e-5) for each in apart]
+    three = together(apart)
     assert words.headline(three).startswith("3 sizes of calibration side by side")
     said = " ".join(words.sentences(three))
-    assert "over all 3 sizes that chance can reach 15 %" in said
+    assert "All 3 sizes are one family" in said
     assert "Correct inputs are the same trials at every size" in said
     assert "verdicts differ" not in said
-    mixed = (*three[:2], signed(three[2], "shared", 0))
+    assert "size alone" not in said
+    mixed = together([*apart[:2], signed(apart[2], "shared", -1, p_value=0.04)])
+    assert mixed[2].effect("shared").sign == 0, "its own audit decides it, all sizes do not"
     told = next(each for each in words.sentences(mixed) if "verdicts differ" in each)
     baseline = three[0].asked.baseline
     assert told.endswith(f"size: {baseline} ahead at −0.1 and 0.1; not decided at 0.2.")
-    kept = next(each for each in words.sentences(three) if "p-values times 3" in each)
     shared = titles(three)["shared"]
-    assert f"{shared}: for the baseline at −0.1 and 0.1" in kept
+    alone = next(each for each in words.sentences(mixed) if "size alone" in each)
+    assert f"{shared} at 0.2" in alone
+    assert mixed[2].headline.startswith("By itself, and not over all sizes: ")
+    assert mixed[2].headline in page(mixed)
+    bold = [line.entries[1].detected for line in effects(mixed).lines if len(line.entries) > 1]
+    assert bold[-3:] == [True, True, False]
     drawn = page(three)
     panel = next(each for each in drawn.split("<figure>")[1:] if shared in each)
     assert "size of calibration" in panel
     assert panel.count('class="dot baseline"') == 3
+    fallen = next(each for each in page(mixed).split("<figure>")[1:] if shared in each)
+    assert fallen.count('class="dot baseline"') == 2
     other = (*three[:2], run(one_seed, 3, fault="calibration=0.2", seeds=(7,)))
     assert "size of calibration" not in page(other), "not only the fault differs"
     assert "size of" not in page(three[:2])
@@ -171,7 +181,7 @@ def test_nothing_differs(one_seed: ReportInput) -> None:
 
 
 def test_a_label_tells_the_runs_apart(one_seed: ReportInput, two: Given) -> None:
-    assert facts.labels(two) == ("1  calibration=+0.1", "2  calibration=-0.1")
+    assert facts.labels(two) == ("1  calibration=+0.1", "2  mass=-0.1")
     tied = (*two, run(one_seed, 3, "elsewhere/third"))
     assert facts.labels(tied) == ("1  1", "2  2", "3  third")
 

@@ -6,13 +6,14 @@ import pytest
 
 from faultpath.report.comparison.page import page
 from faultpath.report.comparison.runs import Compared, titles
+from faultpath.report.comparison.sweep import together
 from faultpath.report.comparison.turning import turning
 from faultpath.report.inputs import ReportInput
 
 SIZES = (-0.2, -0.1, 0.1, 0.2, 0.4)
 Decided = tuple[int, float, float]
 """Sign, adjusted p-value and estimate."""
-WON, LOST, OPEN = (1, 0.001, 20.0), (-1, 0.001, -20.0), (0, 1.0, -2.0)
+WON, LOST, OPEN = (1, 1e-5, 20.0), (-1, 1e-5, -20.0), (0, 1.0, -2.0)
 
 
 def sized(source: ReportInput, fault: str, correct: Decided, shared: Decided) -> Compared:
@@ -20,7 +21,7 @@ def sized(source: ReportInput, fault: str, correct: Decided, shared: Decided) ->
     for effect in source.record.effects:
         sign, p, value = {"correct": correct, "shared": shared}.get(effect.path, OPEN)
         success = effect.success.model_copy(update={"value": value})
-        changed = {"sign": sign, "adjusted_p_value": p, "success": success}
+        changed = {"sign": sign, "p_value": p, "adjusted_p_value": p, "success": success}
         told.append(effect.model_copy(update=changed))
     question = source.record.question.model_copy(update={"fault": fault})
     record = source.record.model_copy(update={"effects": tuple(told), "question": question})
@@ -30,10 +31,10 @@ def sized(source: ReportInput, fault: str, correct: Decided, shared: Decided) ->
 def shown(source: ReportInput, correct: Decided, *shared: Decided, fault: str = "calibration"):
     """The entries of the shared path above and below the size that is no fault."""
     runs = [
-        sized(source, f"{fault}={size}", correct, each)
-        for size, each in zip(SIZES, shared, strict=True)
+        replace(sized(source, f"{fault}={size}", correct, each), number=number)
+        for number, (size, each) in enumerate(zip(SIZES, shared, strict=True), 1)
     ]
-    table = turning(runs)
+    table = turning(together(runs))
     assert table is not None
     found = {each.label: tuple(e.text for e in each.entries) for each in table.lines}
     title = titles(runs)["shared"]

@@ -73,7 +73,6 @@ def found(first, second):
     return with_test(
         success_effect(first, second, Resamples.draw("t", max(1, len(first)), n_resamples=1)),
         "exact",
-        "exact",
     )
 
 

@@ -25,6 +25,7 @@ from faultpath.text import one_line
 if TYPE_CHECKING:
     from faultpath.door.display import SafeConsole
     from faultpath.door.run import Run
+    from faultpath.report.comparison.runs import Compared
 
 Json = Annotated[
     bool,
@@ -197,8 +198,21 @@ def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -
 
 
 def tell_json(runs: "Sequence[Run]") -> None:
-    """Print the folder and the record of each run."""
-    typer.echo(json.dumps([folder_and_record(run.folder) for run in runs], indent=1))
+    """Print the folder and the record of each run, of sizes with what stands over all of them."""
+    from faultpath.door.comparing import compare
+
+    told = [folder_and_record(run.folder) for run in runs]
+    for found, size in zip(told, compare(runs).runs if len(runs) > 1 else (), strict=False):
+        found |= over_sizes(size)
+    typer.echo(json.dumps(told, indent=1))
+
+
+def over_sizes(run: "Compared") -> dict[str, object]:
+    """Return what is decided of a size over all of them together; empty for other runs."""
+    if run.family is None:
+        return {}
+    found = {path: {"sign": sign, "adjusted_p_value": p} for path, (sign, p) in run.family.items()}
+    return {"over_all_sizes": found}
 
 
 def folder_and_record(folder: Path) -> dict[str, object]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.audit import folder_and_record
+from faultpath.cli.audit import folder_and_record, over_sizes
 from faultpath.cli.options import path
 
 if TYPE_CHECKING:
@@ -52,5 +52,5 @@ def _told(compared: "Comparison") -> dict[str, object]:
         "headline": compared.headline,
         "sentences": words.sentences(runs),
         "differs": {fact.title: fact.values for fact in facts.differing(runs)},
-        "runs": [folder_and_record(Path(run.folder)) for run in runs],
+        "runs": [folder_and_record(Path(run.folder)) | over_sizes(run) for run in runs],
     }

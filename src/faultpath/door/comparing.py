@@ -51,7 +51,8 @@ class Comparison:
 def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
     """Set finished audits side by side: effects path by path, what differs, who disagrees.
 
-    Nothing is tested between them: each keeps the verdict that it reached by itself.
+    Nothing is tested between them: each keeps the verdict that it reached by itself. Sizes of one
+    fault are one family, and only what stands over all of them is called decided.
 
     Args:
         runs: Two or more finished audits, or their folders; each once.
@@ -62,6 +63,7 @@ def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
     """
     from faultpath.door.run import Run, open_run
     from faultpath.report.comparison.runs import Compared
+    from faultpath.report.comparison.sweep import together
 
     if isinstance(runs, str | PathLike) or len(runs) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
@@ -75,4 +77,4 @@ def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
         found.append(Compared(number, str(run.folder), run.record, run.provenance))
-    return Comparison(tuple(found))
+    return Comparison(together(found))

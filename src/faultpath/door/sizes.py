@@ -24,8 +24,8 @@ def audits(
     """Audit a repair under each size of a fault.
 
     The arms that the sizes have in common, those under correct inputs for one, fly once. Each size
-    is an audit with a record of its own: what is decided holds within a size, and no correction is
-    made for their number.
+    is an audit with a record of its own, which holds within a size; `compare` decides all of them
+    as one family.
 
     Args:
         system: As for `audit`.

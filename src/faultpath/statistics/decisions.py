@@ -73,7 +73,7 @@ def decide_family(
     tests = {name: each.test for name, each in contrasts.items() if each.test is not None}
     p_values = {name: tests[name].p_value for name in contrasts}
     weighs = {name: 1.0 if weights is None else weights[name] for name in contrasts}
-    adjusted = _holm(p_values, weighs)
+    adjusted = holm(p_values, weighs)
     if shares is not None:
         adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
     decided: dict[str, Contrast] = {}
@@ -85,7 +85,8 @@ def decide_family(
     return decided
 
 
-def _holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[str, float]:
+def holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[str, float]:
+    """Return p-values adjusted by Holm's weighted procedure; any positive weights."""
     ordered = sorted(p_values, key=lambda name: p_values[name] / weights[name])
     adjusted: dict[str, float] = {}
     largest = 0.0

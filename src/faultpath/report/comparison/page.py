@@ -11,7 +11,7 @@ from rich.text import Text
 from faultpath.report import wording
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.runs import Compared, titles
-from faultpath.report.comparison.sweep import swept
+from faultpath.report.comparison.sweep import COURSE, swept
 from faultpath.report.comparison.turning import turning
 from faultpath.report.figures.effects import EffectRow, effect_rows
 from faultpath.report.figures.multiples import Rows, multiple, shared_axis
@@ -32,7 +32,7 @@ def effects(runs: Sequence[Compared]) -> Table:
     levels = {f"{100 * e.success.level:g} % interval" for run in runs for e in run.record.effects}
     interval = levels.pop() if len(levels) == 1 else "interval"
     return Table(
-        title="Each run by itself; bold is decided",
+        title=f"{'All sizes together' if swept(runs) else 'Each run by itself'}; bold is decided",
         corner="Run",
         columns=("Baseline → repair, %", f"Difference, pp [{interval}]", "Decided for"),
         lines=tuple(
@@ -58,7 +58,7 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     found = facts.differing(runs)
     parts: list[RenderableType] = [Text(words.headline(runs), style="bold"), Text("")]
     for run in runs:
-        verdict = Padding.indent(Text(run.record.verdict.headline), 3)
+        verdict = Padding.indent(Text(run.headline), 3)
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
     parts += [Text(""), drawn(effects(runs)), Text("")]
     parts += [drawn(facts.table(runs, found))] if found else [Text(words.same(runs))]
@@ -80,6 +80,7 @@ def page(runs: Sequence[Compared]) -> str:
     found, panels = facts.differing(runs), _panels(runs)
     axis = shared_axis([rows for _, rows in panels])
     sizes, turns = swept(runs), turning(runs)
+    drawn_over = sizes if len(runs) >= COURSE else None
     return render(
         "comparison.html.j2",
         ("tokens.css", "svg.css", "page.css", "comparison.css"),
@@ -89,7 +90,11 @@ def page(runs: Sequence[Compared]) -> str:
         sentences=words.sentences(runs),
         runs=runs,
         panels=[
-            Markup(over_sizes(title, sizes, rows, axis) if sizes else multiple(title, rows, axis))
+            Markup(
+                over_sizes(title, drawn_over, rows, axis)
+                if drawn_over
+                else multiple(title, rows, axis)
+            )
             for title, rows in panels
         ],
         effects=Markup(html(effects(runs))),
@@ -115,5 +120,9 @@ def _row(run: Compared, path: str) -> EffectRow | str:
     effect = run.effect(path)
     if effect is None:
         return run.absent(path)
-    row = effect_rows(run.record)[run.record.effects.index(effect)]
-    return replace(row, note=wording.reservation(effect))
+    row = next(
+        row
+        for row, own in zip(effect_rows(run.record), run.record.effects, strict=True)
+        if own.path == path
+    )
+    return replace(row, note=wording.reservation(effect), sign=effect.sign)

@@ -1,11 +1,12 @@
 """The audits that are set side by side, and how each is called."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import DecisionRecord, Effect, Question
 from faultpath.record.provenance import RunProvenance
+from faultpath.statistics import Sign
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +18,9 @@ class Compared:
     folder: str
     record: DecisionRecord
     provenance: RunProvenance
+    family: Mapping[str, tuple[Sign, float]] | None = None
+    """Of a sweep over sizes: for each path the side that is decided over all of them together, and
+    the adjusted p. `None` where every audit stands by itself."""
 
     @property
     def asked(self) -> Question:
@@ -24,8 +28,23 @@ class Compared:
         return self.record.question
 
     def effect(self, path: str) -> Effect | None:
-        """Return its effect on a path; `None` where it has none."""
-        return next((each for each in self.record.effects if each.path == path), None)
+        """Return its effect on a path, as decided beside the others; `None` where it has none."""
+        found = next((each for each in self.record.effects if each.path == path), None)
+        if found is None or self.family is None or path not in self.family:
+            return found
+        sign, p = self.family[path]
+        return found.model_copy(update={"sign": sign, "adjusted_p_value": p})
+
+    @property
+    def headline(self) -> str:
+        """Its own headline, qualified where not all that it decided stands over all sizes."""
+        own = self.record.verdict.headline
+        fallen = any(
+            effect.sign and not self.family[effect.path][0]
+            for effect in (self.record.effects if self.family else ())
+            if self.family and effect.path in self.family
+        )
+        return f"By itself, and not over all sizes: {own}" if fallen else own
 
     def absent(self, path: str) -> str:
         """Say why it has no effect on a path."""

@@ -2,15 +2,19 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from faultpath.record.family import ALPHA, CORRECT
+from faultpath.record.family import ALPHA, CORRECT, alpha_shares
+from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report.comparison import facts
 from faultpath.report.comparison.runs import Compared, joined, titles
 from faultpath.report.scale import tick_label
+from faultpath.statistics import RULES, Sign
+from faultpath.statistics.decisions import holm
 
-_LEAST = 3
-"""Fewer runs are listed: two points show no course."""
+COURSE = 3
+"""Sizes that show a course: two points do not."""
+_LEAST = 2
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
 _MAY_DIFFER = ("Fault", "Scenes flown", "Scenes compared")
 
@@ -39,18 +43,64 @@ def swept(runs: Sequence[Compared]) -> Swept | None:
     return Swept(f"{name}{rest}", sizes)
 
 
+def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
+    """Return runs of which sizes of one fault are decided as one family; others as they are.
+
+    Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
+    is decided then holds with an error of at most 5 % for all sizes together. Correct inputs that
+    are the same trials at every size are one contrast. A size decides no more than by itself.
+    """
+    if swept(runs) is None:
+        return tuple(runs)
+    once = {f"effect/{CORRECT}"} if list(_same(runs)) else set[str]()
+    p_values: dict[str, float] = {}
+    weights: dict[str, float] = {}
+    for run in runs:
+        for name, (p, weight) in contrasts(run.record).items():
+            key = name if name in once else f"{run.number}/{name}"
+            p_values[key], weights[key] = p, weight
+    adjusted = holm(p_values, weights)
+
+    def decided(run: Compared, effect: Effect) -> tuple[Sign, float]:
+        name = f"effect/{effect.path}"
+        p = adjusted[name if name in once else f"{run.number}/{name}"]
+        return (effect.sign if p <= ALPHA else 0), p
+
+    return tuple(
+        replace(
+            run,
+            family={
+                effect.path: decided(run, effect)
+                for effect in run.record.effects
+                if effect.adjusted_p_value is not None
+            },
+        )
+        for run in runs
+    )
+
+
+def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
+    """Return p and weight of every contrast that a record tested, by its name."""
+    tested = [effect for effect in record.effects if effect.adjusted_p_value is not None]
+    found = {f"effect/{effect.path}": effect.p_value for effect in tested}
+    found |= {f"change/{change.isolated}": change.p_value for change in record.changes}
+    asked = record.question
+    parts = alpha_shares([effect.path for effect in tested], asked.primary)
+    weighted = RULES[asked.rule].weighted or asked.stop is not None
+    return {name: (p, parts[name] if weighted else 1.0) for name, p in found.items()}
+
+
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     """Return what the number of sizes does to what was decided; nothing for other runs."""
     sizes = swept(runs)
     if sizes is None:
         return ()
-    together = min(100.0, 100 * ALPHA * len(runs))
     return (
         *_differ(runs, sizes),
         *_same(runs),
-        f"Each size is decided by itself, with a chance of at most {100 * ALPHA:g} % of a wrong "
-        f"decision; over all {len(runs)} sizes that chance can reach {together:g} %.",
-        *_strict(runs, sizes),
+        f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
+        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm).",
+        *_fallen(runs, sizes),
     )
 
 
@@ -78,25 +128,17 @@ def _same(runs: Sequence[Compared]) -> Iterator[str]:
         )
 
 
-def _strict(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
-    """Say what stays decided where the error is to hold for all sizes together."""
-    known = [effect for run in runs for effect in run.record.effects if effect.sign]
-    if not known or any(effect.adjusted_p_value is None for effect in known):
-        return
+def _fallen(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
+    """Name what an audit decided by itself and all sizes together do not."""
     told: list[str] = []
     for path, title in titles(runs).items():
-        for sign, ahead in ((1, "repair"), (-1, "baseline")):
-            at = [
-                tick_label(size)
-                for run, size in zip(runs, sizes.sizes, strict=True)
-                if (effect := run.effect(path))
-                and effect.sign == sign
-                and (effect.adjusted_p_value or 0.0) * len(runs) <= ALPHA
-            ]
-            if at and not (path == CORRECT and list(_same(runs))):
-                told.append(f"{title}: for the {ahead} at {joined(at)}")
-    kept = "; ".join(told) or "none on any path that the fault strikes"
-    yield (
-        f"Decisions that stand where {100 * ALPHA:g} % has to do for all sizes together "
-        f"(p-values times {len(runs)}): {kept}."
-    )
+        at = [
+            tick_label(size)
+            for run, size in zip(runs, sizes.sizes, strict=True)
+            if (effect := run.effect(path)) and not effect.sign
+            if any(own.sign for own in run.record.effects if own.path == path)
+        ]
+        if at:
+            told.append(f"{title} at {joined(at)}")
+    if told:
+        yield f"Decided in the record of its size alone, and not here: {'; '.join(told)}."

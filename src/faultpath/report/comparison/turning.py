@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from faultpath.record.family import ALPHA, CORRECT
 from faultpath.record.model import Effect
 from faultpath.report.comparison.runs import Compared, titles
-from faultpath.report.comparison.sweep import swept
+from faultpath.report.comparison.sweep import COURSE, swept
 from faultpath.report.scale import tick_label
 from faultpath.tables import MISSING, Line, Table, line
 
@@ -19,11 +19,11 @@ _NO_FAULT = {"scale": 1.0, **dict.fromkeys(_ZERO, 0.0)}
 def turning(runs: Sequence[Compared]) -> Table | None:
     """Return who is decided to be ahead up to which size and from which on, path by path.
 
-    What is decided here holds for all sizes together. `None` for runs that are no sizes of one
-    fault, where no size says what no fault is, and for sequential audits.
+    What is decided holds for all sizes together (`sweep.together`). `None` for runs that are no
+    sizes of one fault, where no size says what no fault is, and for sequential audits.
     """
     sizes = swept(runs)
-    if sizes is None or any(run.record.stopped for run in runs):
+    if sizes is None or len(runs) < COURSE or any(run.record.stopped for run in runs):
         return None
     kind = re.split("[,@]", sizes.name)[0].partition(":")[2]
     if kind not in _NO_FAULT:
@@ -36,7 +36,7 @@ def turning(runs: Sequence[Compared]) -> Table | None:
         if (each := [(size, run) for size, run in known if (size - none) * sign > 0.0])
     ]
     rows = [
-        _row(f"{title}, {word} {none:g}", path, each, len(runs))
+        _row(f"{title}, {word} {none:g}", path, each)
         for path, title in titles(runs).items()
         if path != CORRECT
         for word, each in sides
@@ -55,12 +55,12 @@ def turning(runs: Sequence[Compared]) -> Table | None:
     )
 
 
-def _row(label: str, path: str, known: Sequence[Sized], several: int) -> Line:
-    """Return what is decided from the smallest size on, where `several` are decided together."""
+def _row(label: str, path: str, known: Sequence[Sized]) -> Line:
+    """Return what is decided from the smallest size on."""
     first = known[0][1].effect(CORRECT)
-    start = _sign(first, several) if first else 0
+    start = first.sign if first else 0
     effects = [(size, run.effect(path)) for size, run in known]
-    signs = [(size, _sign(effect, several)) for size, effect in effects]
+    signs = [(size, effect.sign if effect else 0) for size, effect in effects]
     kept = _until(signs, start) if start else None
     turned = next(((size, sign) for size, sign in signs if sign and sign != start), None)
     ahead = {1: known[0][1].asked.repair, -1: known[0][1].asked.baseline}
@@ -70,13 +70,6 @@ def _row(label: str, path: str, known: Sequence[Sized], several: int) -> Line:
         f"{ahead[turned[1]]}, {tick_label(turned[0])}" if turned else MISSING,
     )
     return line(label, *texts)
-
-
-def _sign(effect: Effect | None, several: int) -> int:
-    """Return the side that is decided for all sizes together."""
-    if effect is None or effect.adjusted_p_value is None:
-        return 0
-    return effect.sign if effect.adjusted_p_value * several <= ALPHA else 0
 
 
 def _until(signs: Sequence[tuple[float, int]], start: int) -> float | None:

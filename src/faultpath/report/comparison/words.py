@@ -7,10 +7,12 @@ from faultpath.report import wording
 from faultpath.report.comparison import sweep
 from faultpath.report.comparison.runs import Compared, joined, numbers, titles
 
-CAVEAT = (
-    "Each audit was decided by itself, and setting verdicts side by side is no test between the "
-    "audits: where one detects a difference and another does not, the two are not shown to differ."
+_NO_TEST = (
+    "etting verdicts side by side is no test between the audits: where one detects a difference "
+    "and another does not, the two are not shown to differ."
 )
+CAVEAT = f"Each audit was decided by itself, and s{_NO_TEST}"
+"""Of audits that are no sizes of one fault."""
 
 
 def headline(runs: Sequence[Compared]) -> str:
@@ -41,7 +43,8 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     if not told and len({_arms(run) for run in runs}) == len(runs):
         told = ["No two of these audits compare the same arms, so none can contradict another."]
     none = ["No two audits of the same arms are decided in opposite directions on any path."]
-    return (CAVEAT, *sweep.sentences(runs), *(told or none), *_qualified(runs))
+    caveat = f"S{_NO_TEST}" if sweep.swept(runs) else CAVEAT
+    return (caveat, *sweep.sentences(runs), *(told or none), *_qualified(runs))
 
 
 def _opposite(runs: Sequence[Compared], path: str) -> Iterator[str]:

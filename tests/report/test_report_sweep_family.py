@@ -1,0 +1,67 @@
+"""A sweep over sizes announces seldom what is not there, however many sizes it has."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from faultpath.record.family import CORRECT
+from faultpath.report.comparison.runs import Compared
+from faultpath.report.comparison.sweep import contrasts, together
+from faultpath.report.inputs import ReportInput
+
+
+def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Compared]:
+    """Return sizes of which no arm differs, each detected by itself where its p is low enough."""
+    runs: list[Compared] = []
+    correct = float(rng.random())
+    for number in range(1, sizes + 1):
+        told = []
+        for effect in source.record.effects:
+            p = correct if effect.path == CORRECT else float(rng.random())
+            own = min(1.0, len(contrasts(source.record)) * p)
+            sign = (1 if rng.random() < 0.5 else -1) if own <= 0.05 else 0
+            changed = {"p_value": p, "adjusted_p_value": own, "sign": sign}
+            told.append(effect.model_copy(update=changed))
+        question = source.record.question.model_copy(update={"fault": f"calibration={number}"})
+        changed = {"effects": tuple(told), "question": question}
+        record = source.record.model_copy(update=changed)
+        runs.append(Compared(number, f"runs/{number}", record, source.provenance))
+    return runs
+
+
+@pytest.mark.parametrize("sizes", [2, 9])
+def test_the_family_is_that_of_all_sizes(one_seed: ReportInput, sizes: int) -> None:
+    rng, sweeps, alone, family = np.random.default_rng(sizes), 150, 0, 0
+    for _ in range(sweeps):
+        runs = together(drawn(one_seed, rng, sizes))
+        alone += any(effect.sign for run in runs for effect in run.record.effects)
+        family += any(sign for run in runs for sign, _ in (run.family or {}).values())
+    assert family <= (0.05 + 3 * np.sqrt(0.05 * 0.95 / sweeps)) * sweeps
+    assert sizes < 9 or alone > 0.08 * sweeps
+
+
+def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInput) -> None:
+    runs = drawn(one_seed, np.random.default_rng(0), 3)
+    own = len(contrasts(runs[0].record))
+    lowest = 1e-30
+
+    def low(run: Compared) -> Compared:
+        told = tuple(
+            each.model_copy(update={"p_value": lowest} if each.path == CORRECT else {})
+            for each in run.record.effects
+        )
+        return replace(run, record=run.record.model_copy(update={"effects": told}))
+
+    first = together([low(run) for run in runs])[0].family
+    assert first is not None
+    assert first[CORRECT][1] == pytest.approx((3 * own - 2) * lowest)
+
+
+def test_audits_that_are_no_sizes_stand_by_themselves(one_seed: ReportInput) -> None:
+    runs = drawn(one_seed, np.random.default_rng(0), 2)
+    other = runs[1].asked.model_copy(update={"seeds": (7,)})
+    record = runs[1].record.model_copy(update={"question": other})
+    assert [run.family for run in together([runs[0], replace(runs[1], record=record)])] == [
+        None
+    ] * 2
