@@ -33,17 +33,21 @@ def headline(record: MapRecord) -> str:
         return (
             f"{_winner(asked, regions[0].sign)} does better at every correlation of the two errors."
         )
-    said = "; ".join(f"{_winner(asked, each.sign)} does better {_range(each)}" for each in regions)
-    return f"{said}; elsewhere it is not decided."
+    first, *others = regions
+    said = [f"{_winner(asked, first.sign)} does better with an error correlation {_range(first)}"]
+    said += [f"{_winner(asked, each.sign)} {_range(each)}" for each in others]
+    # Beside three regions it would be more than twenty words.
+    said += ["elsewhere nothing is decided"] if len(regions) < 3 else []
+    return f"{'; '.join(said)}."
 
 
 def _range(region: CorrelationRegion) -> str:
     low, high = math.ceil(100 * region.low - 1e-6) / 100, math.floor(100 * region.high + 1e-6) / 100
     if region.low == -1.0:
-        return f"with a correlation of the two errors up to {high:g}"
+        return f"up to {high:g}"
     if region.high == 1.0:
-        return f"with a correlation of the two errors from {low:g} on"
-    return f"with a correlation of the two errors from {low:g} to {high:g}"
+        return f"from {low:g} on"
+    return f"from {low:g} to {high:g}"
 
 
 def sentences(record: MapRecord) -> tuple[str, ...]:
@@ -113,7 +117,7 @@ def _reversals(record: MapRecord) -> Iterable[str]:
             found = [size for size, (point, _) in turned.items() if point.sign == sign]
             if found:
                 yield (
-                    f"Sharing the error reverses the verdict at {_listed(asked, found)}: with the "
+                    f"Sharing the error reverses the ranking at {_listed(asked, found)}: with the "
                     f"{module} alone wrong {_winner(asked, sign)} is ahead, with both wrong alike "
                     f"{_winner(asked, -sign)}."
                 )

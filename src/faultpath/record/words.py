@@ -168,13 +168,13 @@ def _extreme(effect: Effect) -> str:
 
 
 def change_words(about: About, isolated: Effect, shared: Effect, change: Change) -> str:
-    """Say whether sharing the fault reverses the verdict, changes the difference, or neither."""
+    """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     from_to = f"{points(isolated.success.value)} pp to {points(shared.success.value)} pp"
     shown = f"{from_to}; change {numbers(about, change)}"
     alone = where(isolated.path)
     if change.turn == "reversal":
         words = (
-            f"Sharing the fault reverses the verdict: {alone}, {about.winner(isolated.sign)} "
+            f"Sharing the fault reverses the ranking: {alone}, {about.winner(isolated.sign)} "
             f"succeeds more often; {where(shared.path)}, {about.winner(shared.sign)} does "
             f"({shown})."
         )
