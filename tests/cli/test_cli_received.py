@@ -107,7 +107,40 @@ def test_a_missing_file_is_named(name: str, run: Path) -> None:
 def test_what_is_no_file_is_not_read(name: str, run: Path) -> None:
     (run / name).unlink()
     os.mkfifo(run / name)
-    assert f"{name} is not a file" in faultpath("report", run).refused()
+    assert f"{name} cannot be read (it is a pipe" in faultpath("report", run).refused()
+
+
+def _cell(name: str, value: object) -> Callable[[pa.Table], pa.Table]:
+    """Return what puts a value into the first row of a column."""
+
+    def change(table: pa.Table) -> pa.Table:
+        column = pa.array([value, *table[name].to_pylist()[1:]], type=table[name].type)
+        return table.set_column(table.column_names.index(name), name, column)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (_cell("time_s", float("nan")), "time_s is nan"),
+        (_cell("time_s", float("inf")), "time_s is inf"),
+        (_cell("time_s", -1.0), "time_s is -1.0"),
+        (_cell("time_s", None), "time_s is None"),
+        (_cell("terminal_distance_m", float("nan")), "terminal_distance_m is nan"),
+        (_cell("struck_steps", -1), "steps is below 0"),
+        (_cell("status", "won"), "won"),
+        (_cell("initial_hash", ""), "initial_hash is empty"),
+        (lambda table: table.drop_columns(["terminal_distance_m"]), "no such column"),
+    ],
+)
+def test_outcomes_that_no_trial_leaves_are_refused(
+    run: Path, change: Callable[[pa.Table], pa.Table], says: str
+) -> None:
+    path = run / "outcomes.parquet"
+    pq.write_table(change(pq.read_table(path)), path)
+    _sign(run)
+    assert says in faultpath("report", run).refused()
 
 
 @pytest.mark.parametrize("name", ["../../etc/passwd", "/etc/passwd", "a b", "x\ny.json"])

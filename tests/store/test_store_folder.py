@@ -95,7 +95,9 @@ def test_a_damaged_shard_is_named_and_removed(folder, damage):
 def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
     (before,) = folder.shards.iterdir()
     data = before.read_bytes()
-    sound = Shard(tuple(replace(o, status=Status.CRASH) for o in _outcomes()), TAPS)
+    hashes = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), "none")
+    ended = {"status": Status.CRASH, "time_s": 1.0, **hashes}
+    sound = Shard(tuple(replace(outcome, **ended) for outcome in _outcomes()), TAPS)
     folder.save_shard("k", sound)
     (after,) = folder.shards.iterdir()
     assert after != before

@@ -114,6 +114,10 @@ def _doubts(
         return "the record and the outcomes have different arms"
     if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
         return "the record and the outcomes count different successes"
+    measured = {name for row in outcomes.rows for name in row.outcome.metrics}
+    for effect in record.effects:
+        if lost := sorted(set(effect.metrics) - measured):
+            return f"the record tells of '{lost[0]}', and the outcomes have no such column"
     effects = [effect.path for effect in record.effects]
     others = [each.path for each in record.break_even]
     if not paths.issuperset(effects + others):

@@ -72,6 +72,8 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
         if len({len(column) for column in columns}) != 1:
             raise Unreadable("the components of a signal differ in length")
         address, name, topic, unit = key
+        if any(np.isinf(column).any() for column in columns):
+            raise Unreadable(f"the signal '{name}' is infinite")
         named = tuple(filter(None, (part.get("part") for part in parts)))
         signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
         found.setdefault(address, []).append(signal)

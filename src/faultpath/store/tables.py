@@ -25,7 +25,7 @@ from faultpath.store.parquet import (
 )
 from faultpath.taps import TapCount
 from faultpath.trials.metrics import VEHICLE
-from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.outcome import Outcome, Status, checked
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 Trace = NDArray[np.float32]
@@ -185,7 +185,12 @@ def _trace(row: Row) -> Trace | None:
     present = [row[axis] for axis in _TRACE if row[axis] is not None]
     if len({len(axis) for axis in present}) > 1:
         raise Unreadable("the axes of a trace differ in length")
-    return np.stack(present, axis=1) if len(present) == len(_TRACE) else None
+    if len(present) < len(_TRACE):
+        return None
+    trace = np.stack(present, axis=1)
+    if not np.isfinite(trace).all():
+        raise Unreadable(f"the trace of scene '{row['scene']}' is not finite")
+    return trace
 
 
 def _outcome(row: Mapping[str, Any], trace: Trace | None, metrics: Iterable[str]) -> Outcome:
@@ -195,4 +200,19 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, metrics: Iterable[str]
         status = Status(fields.pop("status"))
     except ValueError as error:
         raise Unreadable(str(error)) from error
-    return Outcome(scene=row["scene"], status=status, trace=trace, metrics=found, **fields)
+    outcome = Outcome(scene=row["scene"], status=status, trace=trace, metrics=found, **fields)
+    _check(outcome)
+    return outcome
+
+
+def _check(outcome: Outcome) -> None:
+    """Refuse what no trial leaves behind: whoever wrote it may have been anybody."""
+    steps = (outcome.struck_steps, outcome.altered_steps)
+    wrong = "a count of steps is below 0" if min(steps) < 0 else ""
+    if not outcome.failed:
+        found = checked(outcome, outcome.metrics)
+        wrong = wrong or (found.error or "") * found.failed
+    elif outcome.time_s is not None and not np.isfinite(outcome.time_s):  # pyright: ignore[reportUnnecessaryComparison]
+        wrong = wrong or "time_s is not finite"
+    if wrong:
+        raise Unreadable(f"scene '{outcome.scene}': {wrong}")
