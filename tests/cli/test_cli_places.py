@@ -7,12 +7,14 @@ from typing import get_args, get_type_hints
 
 import pytest
 import typer
-from cli_runs import TOY, audit, faultpath
+from cli_runs import ROOT, TOY, audit, faultpath
 from typer.models import OptionInfo
 
 from faultpath.cli.app import build
 from faultpath.cli.options import path
 from faultpath.interface import read_interface
+from faultpath.selfcheck.model import Report
+from faultpath.store.outputs import DRAWING, NUMBERS, PAGE
 
 
 @pytest.fixture(autouse=True)
@@ -69,6 +71,59 @@ def test_a_drawing_replaces_nothing_but_a_file(what: str, option: str, tmp_path:
     assert f"it is {what}" in faultpath("interface", TOY, option, place).refused()
     assert place.lstat().st_mode == before
     assert os.listdir(tmp_path) == ["place"]
+
+
+REFERENCE = ROOT / "docs" / "reference"
+OUTPUTS = {
+    "interface --svg": ["interface", TOY, "--svg"],
+    "interface --yaml": ["interface", TOY, "--yaml"],
+    "interface --schema": ["interface", TOY, "--schema"],
+    "trace --svg": ["trace", TOY, "--steps", 1, "--library", "carts", "--svg"],
+    "compare --out": ["compare", REFERENCE / "toy", REFERENCE / "dock", "--out"],
+    "selfcheck statistics --out": ["selfcheck", "statistics", "--quick", "--out"],
+    "selfcheck map --out": ["selfcheck", "map", "--quick", "--out"],
+    "scenes generate": ["scenes", "generate", "--seed", 1, "--count", 1],
+    "plan --out": ["plan", TOY, "--baseline=calibrated", "--repair=blind", "--out"],
+    "replay --out": ["replay", REFERENCE / "toy", "--out"],
+}
+"""Every option that takes the name of a file to write, and a command that ends with it."""
+ENDINGS = {"svg": "svg", "yaml": "yaml", "schema": "json", "compare": "html", "selfcheck": "json"}
+
+
+@pytest.mark.parametrize("option", OUTPUTS)
+@pytest.mark.parametrize("name", ["mine.py", "__init__.py", "mine.right"])
+def test_a_file_that_faultpath_did_not_write_is_not_replaced(
+    option: str, name: str, tmp_path: Path
+):
+    ending = next((e for word, e in ENDINGS.items() if word in option), "json")
+    place = tmp_path / name.replace("right", "gif" if "replay" in option else ending)
+    place.write_text("" if name == "__init__.py" else "mine = 1\n")
+    before = place.read_bytes()
+    assert place.name in faultpath(*OUTPUTS[option], place).refused()
+    assert place.read_bytes() == before
+    assert os.listdir(tmp_path) == [place.name]
+
+
+@pytest.mark.parametrize("option", ["interface --svg", "interface --yaml", "interface --schema"])
+def test_what_faultpath_wrote_is_replaced(option: str, tmp_path: Path):
+    place = tmp_path / f"mine.{ENDINGS[option.split('--')[1]]}"
+    place.touch()
+    for _ in range(2):
+        ended = faultpath(*OUTPUTS[option], place)
+        assert (ended.status, ended.err) == (0, "")
+        assert place.stat().st_size > 100
+
+
+def test_what_faultpath_writes_is_known_again():
+    assert NUMBERS.begins(Report(profile="quick", seconds=1.0, sections=()).text().encode())
+    assert PAGE.begins((REFERENCE / "toy" / "report.html").read_bytes()[:4096])
+    assert DRAWING.begins((ROOT / "docs" / "images" / "dock-interface.svg").read_bytes())
+
+
+def test_an_interface_with_comments_is_not_replaced(tmp_path: Path):
+    place = tmp_path / "mine.yaml"
+    place.write_text("name: toy  # of mine\n")
+    assert "without comments" in faultpath("interface", TOY, "--yaml", place).refused()
 
 
 @pytest.mark.parametrize("what", THINGS)

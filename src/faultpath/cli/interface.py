@@ -30,14 +30,18 @@ def command(
     from faultpath.interface import Interface, interface_yaml
     from faultpath.patience import patience
     from faultpath.report.terminal import interface_table
-    from faultpath.store import write_text
+    from faultpath.store.outputs import DRAWING, INTERFACE, SCHEMA, check_output, write_output
     from faultpath.trials import SystemSpec, load_system
 
+    asked = ((svg, DRAWING), (yaml, INTERFACE), (schema, SCHEMA))
     places = [place.resolve() for place in (svg, yaml, schema) if place is not None]
     if len(set(places)) < len(places):
         raise UserError(
             "--svg, --yaml and --schema write three files: give each a path of its own."
         )
+    for place, kind in asked:
+        if place is not None:
+            check_output(place, kind)
     options = settings(set_ or [])
     if system == _QUADROTOR and not options and not places:
         from faultpath.quadrotor.interface import quadrotor_interface
@@ -53,11 +57,15 @@ def command(
 
     from faultpath.report.interface_drawing import draw_interface
 
-    for place, text in (
-        (svg, lambda: draw_interface(found)),
-        (yaml, lambda: interface_yaml(found)),
-        (schema, lambda: json.dumps(Interface.model_json_schema(), indent=2) + "\n"),
+    for (place, kind), text in zip(
+        asked,
+        (
+            lambda: draw_interface(found),
+            lambda: interface_yaml(found),
+            lambda: json.dumps(Interface.model_json_schema(), indent=2) + "\n",
+        ),
+        strict=True,
     ):
         if place is not None:
-            write_text(place, text())
+            write_output(place, text(), kind)
             console.print(f"Written: {place}", markup=False, soft_wrap=True)

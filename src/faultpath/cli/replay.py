@@ -57,9 +57,11 @@ def command(
     if out is not None:
         from faultpath.report.film import film
         from faultpath.report.rerun_export import export
+        from faultpath.store.outputs import FILM, check_output
 
         if signals:
             raise UserError("--out flies nothing, so there is nothing to hear: leave one out.")
+        check_output(out, FILM)
         if out.suffix == ".rrd":
             export(held, scenes[0], seed, out)
         else:

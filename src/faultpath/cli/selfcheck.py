@@ -54,10 +54,10 @@ def _checked(
     from faultpath.door.display import Display, Now, SafeConsole
     from faultpath.selfcheck import failures
     from faultpath.selfcheck.pages import show
-    from faultpath.store import check_writable, write_text
+    from faultpath.store.outputs import NUMBERS, check_output, write_output
 
     if out is not None:
-        check_writable(out)
+        check_output(out, NUMBERS)
     console = SafeConsole()
     with Display(console).progress("Simulating") as simulating:
 
@@ -67,7 +67,7 @@ def _checked(
         report = check("quick" if quick else "full", processes or os.cpu_count() or 1, note)
     show(report, console)
     if out is not None:
-        write_text(out, report.text())
+        write_output(out, report.text(), NUMBERS)
     broken = failures(report)
     for line in broken:
         console.print(f"Not kept: {line}", markup=False, soft_wrap=True)

@@ -35,9 +35,11 @@ def command(
     from faultpath.door.systems import choose
     from faultpath.patience import patience
     from faultpath.report.interface_trace import draw_trace, trace_table
-    from faultpath.store import write_text
+    from faultpath.store.outputs import DRAWING, check_output, write_output
     from faultpath.tables.terminal import STYLES, Parted
 
+    if svg is not None:
+        check_output(svg, DRAWING)
     with patience(system, None):
         chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
     trace = traced(chosen, variant, library, scene, steps, seed, fault)
@@ -55,7 +57,7 @@ def command(
         if not trace.findings:
             console.print("What ran is what is declared.", style=STYLES["good"])
     if svg is not None:
-        write_text(svg, draw_trace(chosen.system.interface, trace))
+        write_output(svg, draw_trace(chosen.system.interface, trace), DRAWING)
         if not as_json:
             console.print(f"Written: {svg}", markup=False, soft_wrap=True)
     return FOUND if trace.findings else 0

@@ -33,9 +33,9 @@ class Comparison:
         `UserError` where it cannot be written.
         """
         from faultpath.report.comparison.page import page
-        from faultpath.store import write_text
+        from faultpath.store.outputs import PAGE, write_output
 
-        write_text(Path(path), page(self.runs))
+        write_output(Path(path), page(self.runs), PAGE)
         return Path(path)
 
     def __repr__(self) -> str:
