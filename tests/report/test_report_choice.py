@@ -10,7 +10,9 @@ from faultpath.record import DecisionRecord
 from faultpath.report import film
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
+from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import captions, choose
+from faultpath.report.viewer_packing import unpack
 from faultpath.trials import Status
 
 PATHS = ("correct", "predictor", "reconstruction", "shared")
@@ -74,6 +76,19 @@ def test_a_reversal_is_shown_by_a_scene_that_has_both_sides(one_seed: ReportInpu
     record = announcing(one_seed, reconstruction=1, shared=-1, correct=-1)
     pairs = scenes(one_seed, "lbbl", "lbbl", "bbrb", "bbrl", "nnrl", "lbrr", "bbbl")
     assert begun(one_seed, record, pairs)[0] == 3
+
+
+@pytest.mark.parametrize(
+    ("signs", "path"),
+    [({"reconstruction": 1}, "reconstruction"), ({"reconstruction": 1, "shared": -1}, "shared")],
+)
+def test_the_path_that_is_shown_first_was_announced(
+    one_seed: ReportInput, signs: dict[str, int], path: str
+) -> None:
+    record, pairs = announcing(one_seed, **signs), scenes(one_seed, "bbrb", "bbrl", "bbbb")
+    viewer = viewer_data(record, one_seed.traces, one_seed.plans, pairs)
+    assert viewer is not None
+    assert unpack(viewer.packed)[0]["path"] == path
 
 
 def test_the_other_side_of_what_was_announced_comes_last(one_seed: ReportInput) -> None:

@@ -22,7 +22,7 @@ def outcome_bars(title: str, cells: Sequence[Cell], names: Mapping[str, str]) ->
         f"{c.variant}: " + ", ".join(f"{getattr(c, s)} {word}" for s, word in said.items())
         for c in cells
     )
-    svg = Svg(_WIDTH, 34 + 50 * len(cells), f"{title}: how the trials ended", told)
+    svg = Svg(_WIDTH, 18 + 50 * len(cells), f"{title}: how the trials ended", told)
     hatch = svg.hatch("crash", "crash-line")
     svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
     for i, cell in enumerate(cells):
