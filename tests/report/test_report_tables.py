@@ -14,7 +14,7 @@ from faultpath.record.model import Effect
 from faultpath.report import wording
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import by_path, latex_table, markdown_table
+from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table
 from faultpath.report.terminal import decision, interface_table
 
 
@@ -188,3 +188,18 @@ def test_a_folder_that_is_a_file_is_a_users_mistake(one_seed: ReportInput, tmp_p
     (tmp_path / "taken").write_text("")
     with pytest.raises(UserError, match="cannot make the folder"):
         write_report(one_seed, tmp_path / "taken")
+
+
+def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(
+    one_seed: ReportInput,
+) -> None:
+    record = one_seed.record
+    open_ = record.effects[-1].model_copy(update={"sign": 0, "adjusted_p_value": 0.25})
+    made = record.model_copy(update={"effects": (*record.effects[:-1], open_)})
+    assert "0.250" in decided_for(made.question, open_).aside
+    assert "the interval by itself leaves out 0" in markdown_table(made)
+    console = Console(file=io.StringIO(), width=120)
+    console.print(decision(made))
+    shown = console.file.getvalue()
+    assert "the interval by itself leaves out 0, but p = 0.250" in " ".join(shown.split())
+    assert "by itself leaves out 0" not in markdown_table(record)

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.record.model import DecisionRecord, Effect, Question
+from faultpath.record.plain import not_standing
+from faultpath.record.words import adjusted, only_alone
 from faultpath.report import wording
 from faultpath.report.factorial import by_factors
 from faultpath.report.thresholds import by_threshold
@@ -55,11 +57,13 @@ class _Of:
 
 
 def decided_for(asked: Question, effect: Effect) -> Entry:
-    """Return the arm that the family decides for, with what keeps it out of a headline."""
+    """Return the arm that the family decides for, with what keeps it out of a headline, or the
+    p-value that keeps it from being decided where the interval alone leaves out 0."""
     if not effect.acted:
         return Entry(text="not tested")
     arm = {1: asked.repair, -1: asked.baseline}.get(effect.sign, MISSING)
-    return Entry(text=arm, aside=effect.extreme or "")
+    p = adjusted(asked, effect) if only_alone(effect) else ""
+    return Entry(text=arm, aside=", ".join(filter(None, (effect.extreme, p))))
 
 
 DIFFERENCE = ("difference", "interval", "won")
@@ -140,6 +144,7 @@ def whole_table(record: DecisionRecord) -> Table:
         "ahead.",
         f"Primary contrast: {asked.primary}. {_corrected(record)} Intervals and tests speak of "
         f"{record.estimand}.",
+        *not_standing(record),
         record.verdict.headline,
     )
     table = by_quantity(record, ALL, title, notes)
