@@ -6,6 +6,7 @@ decides.
 """
 
 import os
+import re
 import sys
 import sysconfig
 import traceback
@@ -22,6 +23,12 @@ _STANDARD = tuple(
     os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
 )
 _PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
+
+_OLD_METRIC = re.compile(
+    r"\b(Outcome|Progress)\.__init__\(\) got an unexpected keyword argument "
+    r"'(terminal_distance_m|min_clearance_m)'"
+)
+"""A call that an earlier version took."""
 
 _systems: set[str] = set()
 """Folders of systems that are loaded, for those that are installed packages themselves."""
@@ -55,6 +62,12 @@ def described(error: BaseException) -> str:
         said = error.msg if isinstance(error, SyntaxError) else str(error)
     except Exception:  # an error of the system's own may fail even at that
         said = ""
+    if isinstance(error, TypeError) and (old := _OLD_METRIC.search(said)):
+        holder, name = old.groups()
+        said += (
+            f" (since version 0.2 a measure is a metric: give {holder} metrics={{'{name}': ...}}, "
+            "and name it in the system's `metrics`)"
+        )
     return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
 
 

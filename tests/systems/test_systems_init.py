@@ -1,11 +1,13 @@
 """What `faultpath init` writes flies, and its own test passes."""
 
 import os
+import shlex
 import subprocess
 import sys
 
 import pytest
 
+import faultpath
 from faultpath.errors import UserError
 from faultpath.systems.init import TEMPLATES, write_system
 
@@ -24,6 +26,19 @@ def test_a_new_system_passes_its_own_test(kind, tmp_path):
     )
     assert done.returncode == 0, done.stdout
     assert "3 passed" in done.stdout
+
+
+def test_the_audit_that_the_template_with_gymnasium_suggests_shows_a_reversal(tmp_path):
+    """Once every cell of it said 100 %."""
+    system, _ = write_system("my_swing", "gymnasium", tmp_path)
+    line = next(each for each in system.read_text().splitlines() if "faultpath audit" in each)
+    words = shlex.split(line)[3:]
+    asked = dict(zip((word.removeprefix("--") for word in words[::2]), words[1::2], strict=True))
+    run = faultpath.audit(
+        system, **asked, scenes=16, workers=0, folder=tmp_path / "run", progress=False
+    )
+    decided = {each.path: each.sign for each in run.record.effects}
+    assert decided["observer"] > 0 > decided["shared"]
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ TEMPLATES = {
         "calibrated", "typical", "gain", ("correct", "controller", "observer", "shared")
     ),
     "gymnasium": _Template(
-        "told", "typical", "pole_length", ("correct", "controller", "predictor", "shared")
+        "told", "typical", "mass", ("correct", "controller", "observer", "shared")
     ),
 }
 """By what the system is written with."""
