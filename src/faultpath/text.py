@@ -53,6 +53,11 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
     return f"unknown {what} '{name}'; {hint}known: {listed(told)}{more}"
 
 
+def extra(name: str) -> str:
+    """Say how to install what an extra of faultpath names: it comes from its checkout."""
+    return f"in the checkout of faultpath, pip install '.[{name}]'"
+
+
 def _escaped(character: str) -> str:
     return character.encode("unicode_escape").decode("ascii")
 

@@ -28,7 +28,7 @@ def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, says, tmp_
 def test_a_missing_extra_is_a_sentence(tmp_path):
     with patch.dict(sys.modules, {"ray": None}):
         ended = audit(executor="ray", workers=1, out=tmp_path / "run")
-    assert "pip install 'faultpath[ray]'" in ended.refused()
+    assert "pip install '.[ray]'" in ended.refused()
 
 
 def test_another_version_on_the_cluster_is_a_sentence(tmp_path):

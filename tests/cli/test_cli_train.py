@@ -175,7 +175,7 @@ def test_tensorboard_that_is_missing_is_said_before_the_work(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "torch.utils.tensorboard", None)
-    assert "faultpath[tensorboard]" in _train("one", "--tensorboard", "board").refused()
+    assert "'.[tensorboard]'" in _train("one", "--tensorboard", "board").refused()
     assert list(tmp_path.iterdir()) == []
 
 

@@ -1,6 +1,7 @@
 """The package's declarations agree with each other."""
 
 import importlib.metadata
+import re
 import tomllib
 from itertools import chain
 from pathlib import Path
@@ -11,6 +12,7 @@ from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
 import faultpath
+from faultpath.trials.registry import _EXTRAS
 
 
 @pytest.fixture(scope="module")
@@ -71,3 +73,16 @@ def test_every_package_but_the_quadrotor_is_checked_strictly(
     strict = set(declared["tool"]["pyright"]["strict"])
     assert packages - strict == {"src/faultpath/quadrotor", "src/faultpath/repairs"} & packages
     assert "src/faultpath/*.py" in strict
+
+
+def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) -> None:
+    """No index has faultpath: hints name its checkout, and extras that it has."""
+    extras = set(declared["project"]["optional-dependencies"])
+    named: set[str] = set()
+    for file in (*(root / "src").rglob("*.py"), *(root / "docs").glob("*.md"), root / "README.md"):
+        text = file.read_text("utf-8")
+        assert not re.search(r"pip install '?faultpath", text), file
+        found = re.findall(r"pip install '(?:\.|/faultpath)\[([\w,]+)\]'|\bextra\(['\"](\w+)", text)
+        named |= {each for pair in found for one in pair for each in one.split(",") if each}
+    assert {"quadrotor", "torch", "pandas", "ray", "film"} <= named
+    assert named | set(_EXTRAS.values()) <= extras

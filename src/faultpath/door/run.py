@@ -15,6 +15,7 @@ from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.html import notebook_view, write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.text import extra
 from faultpath.trials import Status
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ class Run:
             return self.table().to_pandas()
         except ModuleNotFoundError:
             raise UserError(
-                "a DataFrame needs pandas, not installed here: pip install 'faultpath[pandas]', "
+                f"a DataFrame needs pandas, not installed here: {extra('pandas')}, "
                 "or take the same as an Arrow table from table()."
             ) from None
 

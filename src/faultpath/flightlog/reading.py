@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
 from faultpath.flightlog.columns import TIME_UNITS, ColumnMap
-from faultpath.text import one_line, unknown
+from faultpath.text import extra, one_line, unknown
 
 Floats: TypeAlias = NDArray[np.float64]
 _LONGEST_S = 1e12
@@ -84,7 +84,7 @@ def _ulog(path: Path, columns: ColumnMap) -> dict[str, tuple[Floats, Floats]]:
         from pyulog import ULog  # pyright: ignore[reportMissingTypeStubs]
     except ImportError:
         raise UserError(
-            "reading .ulg files needs pyulog, not installed here: pip install 'faultpath[ulog]'"
+            f"reading .ulg files needs pyulog, not installed here: {extra('ulog')}"
         ) from None
     topics = sorted({name.partition(".")[0] for name in columns.names})
     try:

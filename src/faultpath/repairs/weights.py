@@ -13,6 +13,7 @@ from faultpath.files.opening import contents
 from faultpath.repairs.code import code_sha256, name_of, plain_fields
 from faultpath.repairs.record import Architecture, FitRecord, Machine, read_record
 from faultpath.store.atomic import make_folder, write_file, write_text
+from faultpath.text import extra
 from faultpath.version import __version__
 
 if TYPE_CHECKING:
@@ -100,6 +101,6 @@ def _safetensors() -> Any:
         import safetensors.torch
     except ModuleNotFoundError as error:
         raise UserError(
-            "fits are kept as safetensors, which is not installed: pip install 'faultpath[torch]'"
+            f"fits are kept as safetensors, which is not installed: {extra('torch')}"
         ) from error
     return safetensors.torch

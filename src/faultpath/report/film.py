@@ -16,6 +16,7 @@ from faultpath.report.pairing import Pair, by_scene, read_pairs
 from faultpath.report.svg import wrapped
 from faultpath.report.viewer_choice import Track, captions, choose, track_of
 from faultpath.report.viewer_hits import hit
+from faultpath.text import extra
 from faultpath.trials import FloorPlan, Outcome, Status
 
 _Pixels: TypeAlias = tuple[float, float]
@@ -125,9 +126,7 @@ class _Film:
         try:
             from PIL import Image, ImageDraw, ImageFont
         except ModuleNotFoundError:
-            raise UserError(
-                "a film needs pillow, not installed here: pip install 'faultpath[film]'."
-            ) from None
+            raise UserError(f"a film needs pillow, not installed here: {extra('film')}.") from None
         self._draw: Any = ImageDraw.Draw
         self._font: Any = ImageFont.load_default
         self._tiles, self._dt_s, self._smaller = tiles, held.traces.dt_s, Image.Resampling.LANCZOS

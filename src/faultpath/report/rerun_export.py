@@ -11,6 +11,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import track_of
 from faultpath.store import TrialAddress
+from faultpath.text import extra
 from faultpath.trials import FloorPlan
 
 
@@ -23,9 +24,7 @@ def export(held: ReportInput, scene: str, seed: int | None, out: Path) -> None:
     try:
         rr: Any = import_module("rerun")
     except ModuleNotFoundError:
-        raise UserError(
-            "an .rrd needs rerun, not installed here: pip install 'faultpath[rerun]'."
-        ) from None
+        raise UserError(f"an .rrd needs rerun, not installed here: {extra('rerun')}.") from None
     asked = held.record.question
     drawn = asked.seeds[0] if seed is None else seed
     pairs = by_scene(read_pairs(held.outcomes, held.record)).get((scene, drawn))

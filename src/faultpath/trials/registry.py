@@ -23,6 +23,7 @@ from faultpath.blame import place as where
 from faultpath.code import Root, shadowed
 from faultpath.code.places import Kind, kind_of
 from faultpath.errors import SystemMistake, UserError
+from faultpath.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import Factory, Option, call, options_of
@@ -291,8 +292,8 @@ def _needing(name: str) -> Generator[None]:
         yield
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
-        extra = _EXTRAS.get(package)
-        hint = f"pip install 'faultpath[{extra}]'" if extra else f"install {package!r}"
+        named = _EXTRAS.get(package)
+        hint = extra(named) if named else f"install {package!r}"
         said = f"{name!r} needs the package {package!r}, not installed here: {hint}"
         mistake = SystemMistake(said)
         mistake.place = where(error)

@@ -16,6 +16,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.errors import Notice, UserError
+from faultpath.text import extra
 from faultpath.version import __version__
 from faultpath.work.executor import Call, End, Executor, Lost, Told, ignore
 from faultpath.work.processes import KEEP_MEMORY
@@ -187,7 +188,7 @@ class RayWorkers(Executor):
             if self._false_starts > _FALSE_STARTS:
                 raise UserError(
                     f"workers do not start on the Ray cluster ({_last_line(error)}): every node "
-                    "needs the same Python with faultpath[ray]"
+                    "needs the same Python, and faultpath with its extra ray"
                 ) from error
             self._replace(number)
             return
@@ -216,8 +217,7 @@ def _ray() -> Any:
         import ray
     except ModuleNotFoundError as error:
         raise UserError(
-            f"--executor ray needs the package {error.name!r}, not installed here: "
-            "pip install 'faultpath[ray]'"
+            f"--executor ray needs the package {error.name!r}, not installed here: {extra('ray')}"
         ) from None
     return ray
 

@@ -33,6 +33,7 @@ from faultpath.quadrotor.training.journal import (
 from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.store import make_folder
 from faultpath.streams import generator
+from faultpath.text import extra
 from faultpath.version import __version__
 
 _SAME_LOSS = 1e-3
@@ -271,6 +272,6 @@ def tensorboard_writer() -> Any:
     except ModuleNotFoundError as error:
         raise UserError(
             "--tensorboard needs the tensorboard package, which is not installed: "
-            "pip install 'faultpath[tensorboard]'."
+            f"{extra('tensorboard')}."
         ) from error
     return SummaryWriter
