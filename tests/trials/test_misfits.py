@@ -43,8 +43,8 @@ def misfit(model: type, given: object) -> Misfit:
         ({"thrust": {"column": "x", "newton_per_unit": "fot"}}, "must be a number or 'fit'"),
         ({"thrust": {}}, "thrust.column: is missing: add it"),
         ({"thrust": 3}, "thrust: is 3, and must be a group of fields"),
-        ({"mass_kg": 0}, "mass_kg: is 0, and must be a number above 0"),
-        ({"mass_kg": float("inf")}, "a finite number"),
+        ({"mass_kg": 0}, "mass_kg: is 0, and must be a number"),
+        ({"mass_kg": float("nan")}, "mass_kg: is nan, and must be a"),
         ({"drag_kgps": [1, 2, -1]}, "drag_kgps[2]: is -1"),
     ],
 )
