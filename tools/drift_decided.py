@@ -60,7 +60,7 @@ def _decided(table: OutcomeTable, law: str) -> Law:
     found = compared(asked.repair, asked.baseline, rows, table)
     if found.void:
         raise Wrong(f"no pair is left at {', '.join(found.void)}: fly the study again")
-    found = Compared({rows[name]: each for name, each in found.trials.items()}, (), ())
+    found = Compared({rows[name]: each for name, each in found.trials.items()}, (), (), {})
     arms = {name: each.arms for name, each in found.trials.items()}
     return Law(found, decide_paths(arms, rule="exact"))  # by which its design was frozen
 

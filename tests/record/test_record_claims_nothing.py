@@ -118,7 +118,8 @@ def run(
                 if how == "void" and variant == REPAIR and path == over[-1]:
                     ends[0] = Status.FAILED
                 out += rows(variant, path, ends, seed=seed, altered=0 if idle else None)
-    asked = question(n, seeds).model_copy(update={"trained": trained})
+    decided_by = "exact" if trained else "unconditional"
+    asked = question(n, seeds).model_copy(update={"trained": trained, "rule": decided_by})
     if rule:
         when, margin, most = RULES[rule]
         update = {"stop": stop_rule(when, margin), "n_scenes": most or n}
@@ -133,11 +134,16 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
     yield from plain_words(made).values()
 
 
-def holm(p_values: list[float]) -> list[float]:
-    order = sorted(range(len(p_values)), key=lambda i: p_values[i])
-    adjusted, worst = [0.0] * len(p_values), 0.0
+def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+    """Return p-values by Holm's procedure, weighted where the rule is."""
+    primary = [isinstance(e, Effect) and e.path == made.question.primary for e in tested]
+    weighted = made.question.rule == "unconditional" and any(primary)
+    weights = [max(1, len(tested) - 1) if weighted and it else 1 for it in primary]
+    order = sorted(range(len(tested)), key=lambda i: tested[i].p_value / weights[i])
+    adjusted, worst = [0.0] * len(tested), 0.0
     for rank, i in enumerate(order):
-        worst = max(worst, min(1.0, (len(p_values) - rank) * p_values[i]))
+        left = sum(weights[j] for j in order[rank:])
+        worst = max(worst, min(1.0, left / weights[i] * tested[i].p_value))
         adjusted[i] = worst
     return adjusted
 
@@ -159,11 +165,12 @@ def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
     tested: list[Effect | Change] = [e for e in made.effects if e.acted]
     tested += made.changes
     signs: list[int] = []
-    adjusted = shared_out(made, tested) if made.stopped else holm([e.p_value for e in tested])
+    adjusted = shared_out(made, tested) if made.stopped else holm(made, tested)
     for each, p in zip(tested, adjusted, strict=True):
         shown = each.success if isinstance(each, Effect) else each.change
         low, high = shown.low or 0.0, shown.high or 0.0
-        signs.append((low > 0) - (high < 0) if p <= 0.05 else 0)
+        signs.append((low > 0) - (high < 0) if p <= 0.05 and not each.unsettled else 0)
+        assert not each.unsettled or any(effect.failed for effect in made.effects)
     of = {e.path: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
     turned = dict(zip([c.isolated for c in made.changes], signs[len(of) :], strict=True))
     return of, turned
@@ -214,7 +221,10 @@ def check(made: DecisionRecord) -> None:
     for effect in made.effects:
         short = decided_words(known, effect)
         low, high = effect.success.low or 0.0, effect.success.high or 0.0
-        if (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
+        if effect.unsettled:
+            assert "failed" in effect.words
+            assert "failed" in short
+        elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
             assert "interval alone decides nothing" in effect.words
             assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
         for who, side in SIDES:

@@ -9,8 +9,9 @@ from outcome_tables import BASELINE, REPAIR, record
 
 from faultpath.record import CORRECT, SHARED, DecisionRecord
 from faultpath.record.headline import MOST_WORDS, headline
-from faultpath.record.model import Change, Effect, StopRule
+from faultpath.record.model import Change, Effect
 from faultpath.record.plain import about, decided_words, not_standing, plain_words
+from faultpath.record.question import StopRule
 from faultpath.record.words import effect_words, where
 
 State = tuple[int, str]

@@ -3,7 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from faultpath.record.model import Effect, PathBreakEven, Question
+from faultpath.record.model import Effect, PathBreakEven
+from faultpath.record.question import Question
 from faultpath.record.words import where
 from faultpath.statistics import Region
 

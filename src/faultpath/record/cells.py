@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from statistics import median
 
 from faultpath.record.family import CORRECT
-from faultpath.record.model import Cell, Path, Question
+from faultpath.record.model import Cell, Path
+from faultpath.record.question import Question
 from faultpath.trials.outcome import Status
 from faultpath.trials.table import OutcomeTable
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from faultpath.errors import UserError
-from faultpath.record.family import CORRECT, Arms
+from faultpath.record.family import CORRECT
+from faultpath.record.voids import Arms, Voids
 from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
@@ -27,6 +28,8 @@ class Compared:
     void: tuple[str, ...]
     """Paths of which no pair is left beside the others."""
     mismatches: tuple[Mismatch, ...]
+    voids: Mapping[str, Voids]
+    """By path, where a trial failed on any of them; else nothing."""
 
     @property
     def scenes(self) -> int:
@@ -56,7 +59,8 @@ def compared(
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
     left = _comparable(pairs, mismatches)
     void = tuple(name for name in pairs if name not in left)
-    return Compared(_trials(left, distinct), void, mismatches)
+    trials, seeds = _trials(left, distinct)
+    return Compared(trials, void, mismatches, _voids(left, seeds))
 
 
 def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
@@ -83,7 +87,9 @@ def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
     return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
 
 
-def _trials(pairs: Mapping[str, Pairs], distinct: bool) -> dict[str, PathTrials]:
+def _trials(
+    pairs: Mapping[str, Pairs], distinct: bool
+) -> tuple[dict[str, PathTrials], Sequence[int]]:
     """Cut all paths to the scenes that every one has, and success to the seeds that differ.
 
     A sequential audit keeps all seeds: which of them differ is only seen later, and the value of a
@@ -93,10 +99,34 @@ def _trials(pairs: Mapping[str, Pairs], distinct: bool) -> dict[str, PathTrials]
     cut = {name: each.only(kept) for name, each in pairs.items()}
     arms = [arm.success for each in cut.values() for arm in (each.first, each.second)]
     seeds = _distinct(arms) if distinct else list(range(arms[0].shape[1]))
-    return {
+    trials = {
         name: PathTrials(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
         for name, each in cut.items()
     }
+    return trials, seeds
+
+
+def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]:
+    """Return what failed trials leave open on every path; nothing where no trial failed."""
+    if not any(side.failed.any() for each in pairs.values() for side in each.ended):
+        return {}
+    unlike = {mismatch.scene for each in pairs.values() for mismatch in each.mismatches}
+    scenes = next(iter(pairs.values())).all_scenes
+    keep = np.array([scene not in unlike for scene in scenes])
+    found: dict[str, Voids] = {}
+    for name, each in pairs.items():
+        first, second = each.ended
+        repair, baseline = (side.success[keep][:, seeds] for side in each.ended)
+        alone = first.failed & ~second.failed, second.failed & ~first.failed
+        ours, theirs = (side[keep][:, seeds] for side in alone)
+        found[name] = Voids(
+            failed=(int(first.failed.sum()), int(second.failed.sum())),
+            alone=(int(alone[0].sum()), int(alone[1].sum())),
+            as_failures=(repair, baseline),
+            against=(repair, baseline | theirs),
+            favour=(repair | ours, baseline),
+        )
+    return found
 
 
 def _distinct(arms: Sequence[Bools]) -> list[int]:

@@ -1,15 +1,14 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from faultpath.errors import UserError
-from faultpath.record import breakeven_words, sequential, words
+from faultpath.record import breakeven_words, sequential, void_words, words
 from faultpath.record.cells import arms_shown, untested_paths
 from faultpath.record.compared import Compared, PathTrials, compared
 from faultpath.record.family import (
     CORRECT,
     SHARED,
-    Arms,
     Family,
     alpha_shares,
     decide_paths,
@@ -17,16 +16,10 @@ from faultpath.record.family import (
     percent,
 )
 from faultpath.record.headline import headline
-from faultpath.record.model import (
-    Change,
-    DecisionRecord,
-    Effect,
-    Path,
-    PathBreakEven,
-    Question,
-    Verdict,
-)
+from faultpath.record.model import Change, DecisionRecord, Effect, Path, PathBreakEven, Verdict
+from faultpath.record.question import Question
 from faultpath.record.secondary import secondary
+from faultpath.record.voids import Arms, Voids, filled
 from faultpath.statistics import (
     Contrast,
     Estimate,
@@ -77,7 +70,8 @@ def decide(
         asked, n_scenes, family.scenes_needed, frozenset(stopped.small if stopped else ())
     )
     effects = tuple(
-        _effect(about, name, each, family, resamples, untested) for name, each in trials.items()
+        _effect(about, name, each, family, resamples, untested, found.voids)
+        for name, each in trials.items()
     )
     changes = tuple(_change(about, name, family, effects) for name in family.changes)
     breaks = tuple(
@@ -113,10 +107,16 @@ def decide(
             ),
         ),
         stopped=stopped,
-        findings=(
-            *words.void_paths(found.void),
-            *mismatch_words(found.mismatches),
-            *findings,
+        # Those of a record that is decided anew are given, and among them what is found again.
+        findings=tuple(
+            dict.fromkeys(
+                (
+                    *void_words.void_paths(found.void),
+                    *void_words.failed_trials(about, effects),
+                    *mismatch_words(found.mismatches),
+                    *findings,
+                )
+            )
         ),
     )
 
@@ -155,6 +155,7 @@ def _family(
         models=question.generalise == "models",
         untested=untested,
         shares=None if question.stop is None else shares,
+        voids=found.voids,
     )
 
 
@@ -183,6 +184,7 @@ def _effect(
     family: Family,
     resamples: Resamples,
     untested: Collection[str],
+    voids: Mapping[str, Voids],
 ) -> Effect:
     repair, baseline = trials.arms
     found = family.effects[path]
@@ -203,6 +205,7 @@ def _effect(
         else None,
         scenes=len(trials.pairs.scenes),
         void_pairs=trials.pairs.void,
+        failed=filled(voids, family.fills, path, f"effect/{path}" in family.unsettled),
         wins=tuple(count.first_only for count in counts),
         losses=tuple(count.second_only for count in counts),
         baseline_percent=percent(baseline),
@@ -252,6 +255,7 @@ def _change(about: words.About, path: str, family: Family, effects: Sequence[Eff
         test=found.test.name,
         p_value=found.test.p_value,
         adjusted_p_value=found.decision.adjusted_p,
+        unsettled=f"change/{path}" in family.unsettled,
         turn=family.turns[path],
         words="",
     )

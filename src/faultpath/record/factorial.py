@@ -15,7 +15,7 @@ from faultpath.record import words
 from faultpath.record.compared import compared
 from faultpath.record.factors import OUTCOMES, Factorial, FactorialEffect, FactorialOf
 from faultpath.record.family import ALPHA, CORRECT, SHARED, Arms
-from faultpath.record.model import Question
+from faultpath.record.question import Question
 from faultpath.statistics import (
     Contrast,
     Resamples,

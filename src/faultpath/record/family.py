@@ -3,10 +3,8 @@
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
 from faultpath.record.model import Extreme
+from faultpath.record.voids import Arms, Bools, Fills, Voids, nearest, open_again
 from faultpath.statistics import (
     RULES,
     Contrast,
@@ -27,10 +25,6 @@ SHARED = "shared"
 ALPHA = 0.05
 FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
-Bools = NDArray[np.bool_]
-Arms = tuple[Bools, Bools]
-"""Success of the repair and of the baseline, each `[scenes, seeds]`."""
-
 
 @dataclass(frozen=True)
 class Family:
@@ -45,6 +39,11 @@ class Family:
     """By path: where both arms are at the floor or at the ceiling."""
     hypotheses: int
     scenes_needed: int
+    fills: Mapping[str, Fills]
+    """By path, where trials failed: what their outcomes could make of the effect."""
+    unsettled: Collection[str]
+    """Isolated paths whose change, and paths whose effect, would be decided but for those trials;
+    by the names of `alpha_shares`."""
 
     @property
     def announces(self) -> bool:
@@ -62,6 +61,7 @@ def decide_paths(
     untested: Collection[str] = (),
     alpha: float = ALPHA,
     shares: Mapping[str, float] | None = None,
+    voids: Mapping[str, Voids] | None = None,
 ) -> Family:
     """Return what is decided of all paths, from paired successes `[scenes, seeds]` alone.
 
@@ -72,33 +72,53 @@ def decide_paths(
     `untested` (the fault never acted there) take no part. `models` speaks of newly trained models
     as well. `resamples` are drawn where they are not given. `shares` of `alpha`, by the names of
     `alpha_shares`, say that the audit was sequential: what is decided then holds at whatever scene
-    it stopped, each contrast at its own share.
+    it stopped, each contrast at its own share. Where `voids` say that a trial of one arm alone
+    failed, what is decided has to be so too with all open outcomes against it.
     """
-    n_scenes = len(next(iter(success.values()))[0])
-    drawn = resamples or Resamples.draw("family", n_scenes, n_resamples=1)  # nothing rests on them
-    effects = {
-        path: with_test(
-            success_effect(
-                repair,
-                baseline,
-                drawn,
-                models=models,
-                sequential=shares is not None,
-                rule=rule,
-            ),
-            rule,
-        )
-        for path, (repair, baseline) in success.items()
-    }
-    isolated = _isolated([path for path in effects if path not in untested])
-    changes = {path: with_test(change(effects[path], effects[SHARED]), rule) for path in isolated}
-    family = {_effect(path): e for path, e in effects.items() if path not in untested}
-    family |= {_change(path): c for path, c in changes.items()}
-    parts = alpha_shares([path for path in effects if path not in untested], led(primary, effects))
+
+    def shown(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
+        sequential, scenes = shares is not None, len(next(iter(arms.values()))[0])
+        drawn = drawn or Resamples.draw("family", scenes, n_resamples=1)  # nothing rests on them
+        return {
+            path: success_effect(*pair, drawn, models=models, sequential=sequential, rule=rule)
+            for path, pair in arms.items()
+        }
+
+    effects, tested = shown(success, resamples), [path for path in success if path not in untested]
+    isolated = _isolated(tested)
+    family = {_effect(path): with_test(effects[path], rule) for path in tested}
+    family |= {_change(p): with_test(change(effects[p], effects[SHARED]), rule) for p in isolated}
+    parts = alpha_shares(tested, led(primary, success))
     weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
     made = decide_family(family, alpha, shares, weights)
-    effects = {path: made.get(_effect(path), effect) for path, effect in effects.items()}
-    changes = {path: made[_change(path)] for path in changes}
+    fills, unsettled = dict[str, Fills](), list[str]()
+    if voids:
+        low, high, as_failures = (
+            shown({path: getattr(each, which) for path, each in voids.items()})
+            for which in ("against", "favour", "as_failures")
+        )
+        fills = {path: Fills(as_failures[path], low[path], high[path]) for path in voids}
+        # What is open is taken each time as it is nearest to showing nothing, or the contrary.
+        ends = {_effect(path): (low[path], high[path]) for path in tested}
+        ends |= {
+            _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
+            for path in isolated
+        }
+        if any(sum(each.alone) for each in voids.values()):
+            least = {name: nearest(*pair, rule) for name, pair in ends.items()}
+            stands = decide_family(least, alpha, shares, weights)
+            unsettled = [name for name in made if made[name].sign not in (0, stands[name].sign)]
+    for name in unsettled:
+        made[name] = open_again(made[name])
+    effects = {path: made.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
+    changes = {path: made[_change(path)] for path in isolated}
+    uneven = {path for path, each in (voids or {}).items() if each.uneven}
+
+    def told(path: str, moved: Contrast) -> Turn:
+        if uneven & {path, SHARED}:  # no reversal rests on it
+            return "interaction" if moved.sign else "none"
+        return turn(effects[path], effects[SHARED], moved)
+
     largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
     needed = fewest_scenes(alpha * largest)
     if shares is not None:
@@ -106,10 +126,12 @@ def decide_paths(
     return Family(
         effects=effects,
         changes=changes,
-        turns={path: turn(effects[path], effects[SHARED], c) for path, c in changes.items()},
+        turns={path: told(path, each) for path, each in changes.items()},
         extremes={path: _extreme(*arms) for path, arms in success.items()},
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
+        fills=fills,
+        unsettled=tuple(unsettled),
     )
 
 

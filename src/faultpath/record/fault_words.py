@@ -8,7 +8,7 @@ from faultpath.errors import UserError
 from faultpath.faults import Fault, parse_fault
 from faultpath.faults.base import number
 from faultpath.interface import Interface
-from faultpath.record.model import Question
+from faultpath.record.question import Question
 from faultpath.record.words import capital
 
 

@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import Change, Effect
-from faultpath.record.words import About, capital, margin, no_pair, series, where
+from faultpath.record.void_words import no_pair
+from faultpath.record.words import About, capital, margin, series, where
 
 MOST_WORDS = 20
 """Of a headline, with the names of modules and variants as one word each."""
@@ -116,7 +117,8 @@ def _ahead(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[st
 
 def _open(effects: Sequence[Effect]) -> bool:
     """Return whether the shared fault was tested, could show a difference, and none is detected."""
-    return any(e.path == SHARED and e.acted and not (e.sign or e.extreme) for e in effects)
+    shared = (effect for effect in effects if effect.path == SHARED and effect.acted)
+    return any(not (each.sign or each.extreme or each.unsettled) for each in shared)
 
 
 def _undecided(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[str]:
@@ -129,14 +131,14 @@ def _undecided(about: About, main: Effect, effects: Sequence[Effect]) -> Iterato
         if any(effect.sign == sign for effect in others)
     }
     said = f"no difference between {about.both} is detected"
-    if main.extreme:
-        said = f"{about.both} {briefly}"
+    if main.extreme or _marred(main):
+        said = f"{about.both} {briefly}" if main.extreme else briefly
     elif main.path in about.small:
         said = briefly
     if not others:
         if main.extreme:
             said += ": no choice can rest on it"
-        elif len(effects) > 1 and main.path not in about.small:
+        elif len(effects) > 1 and main.path not in about.small and not any(map(_marred, effects)):
             extreme = any(effect.extreme for effect in effects if effect.acted)
             place = "away from the floor and the ceiling" if extreme else "on any path"
             tested = "" if all(effect.acted for effect in effects) else " that was tested"
@@ -148,7 +150,7 @@ def _undecided(about: About, main: Effect, effects: Sequence[Effect]) -> Iterato
     more = (f"{who} on {len(at)}" for who, at in rest)
     counted = ", ".join([f"{first} is ahead on {_paths(at)}", *more])
     if main.path != SHARED and _open(effects):
-        if main.extreme or main.path in about.small:
+        if main.extreme or main.path in about.small or _marred(main):
             yield f"{place}, {briefly}{_UNSEEN}."
             return
         place = capital(places([main, *(e for e in effects if e.path == SHARED)]))
@@ -163,9 +165,16 @@ def _briefly(about: About, main: Effect) -> str:
     """Say in at most six words that the primary contrast is open."""
     if main.extreme:
         return f"both nearly always {'fail' if main.extreme == 'floor' else 'succeed'}"
+    if _marred(main):
+        return "trials that failed leave it open"
     if main.path in about.small and about.question.stop:
         return f"the difference is below {margin(about.question.stop)}"
     return "no difference is detected"
+
+
+def _marred(effect: Effect) -> bool:
+    """Return whether failed trials keep a headline from it."""
+    return effect.uneven or effect.unsettled
 
 
 def _paths(effects: Sequence[Effect], other: str = "") -> str:

@@ -2,83 +2,18 @@
 
 from typing import Any, Literal, cast
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
-from faultpath.faults import Fault
 from faultpath.frozen import Frozen
 from faultpath.record.earlier import EarlierLook
 from faultpath.record.factors import Factorial
-from faultpath.statistics import RULES, BreakEven, Estimate, RuleName, Sign, Turn
-from faultpath.trials.metrics import VEHICLE, Metric, MetricName
+from faultpath.record.question import Question
+from faultpath.record.voids import FailedTrials
+from faultpath.statistics import BreakEven, Estimate, Sign, Turn
+from faultpath.trials.metrics import VEHICLE
 
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
-Generalise = Literal["scenes", "models"]
-StopWhen = Literal["decided", "all-decided"]
-
-
-class StopRule(Frozen):
-    """When a sequential audit stops."""
-
-    when: StopWhen
-    """`decided`: the primary contrast is; `all-decided`: the effect on every path is."""
-    margin_pp: float | None = None
-    """A difference that is shown to be smaller than this counts as decided too."""
-    order: tuple[str, ...]
-    """The scenes in the order in which they are flown, drawn before the first trial."""
-    order_seed: int
-    """Of the draw, with the hash of the library."""
-    look: int
-    """Scenes from one look at the results to the next."""
-    trials: int
-    """That a scene takes: distinct arms."""
-
-
-class Question(Frozen):
-    """What the audit asked."""
-
-    system: str
-    options: dict[str, str]
-    baseline: str
-    repair: str
-    fault: str
-    """The fault in words, as given on the command line."""
-    faults: tuple[Fault, ...] = ()
-    """The same spelled out, channel by channel, at every consumer that it names; empty in records
-    that do not say."""
-    library: str
-    library_hash: str
-    n_scenes: int
-    seeds: tuple[int, ...]
-    primary: str = ""
-    """Path of the primary contrast, which leads the headline; empty for the default."""
-    generalise: Generalise = "scenes"
-    """What the intervals and tests speak of: new scenes, or newly trained models too."""
-    trained: bool = False
-    """Whether the variants hold trained models."""
-    ends: dict[str, str] = Field(default_factory=dict)
-    """What the system calls its ends, where it is not the status itself."""
-    metrics: dict[MetricName, Metric] = VEHICLE
-    """What its trials measure. Records that do not say speak of a vehicle."""
-    metric: str = ""
-    """The metric to tell beside success; empty for none."""
-    thresholds: tuple[float, ...] = ()
-    """Of that metric: at which success is told anew."""
-    stop: StopRule | None = None
-    """Of a sequential audit, of which `n_scenes` is the most that it takes."""
-    rule: RuleName = "exact"
-    """By which it is decided, then and ever after; records that do not say were by the first. A
-    sequential audit is decided by bets, whatever the rule."""
-
-    @property
-    def family(self) -> str:
-        """How p-values were adjusted, as part of a sentence."""
-        return "after Holm" if self.stop is None else "within the family"
-
-    @property
-    def ruled(self) -> str:
-        """The rule in words, with the time it is of; empty for a sequential audit."""
-        return "" if self.stop else RULES[self.rule].words
 
 
 class StruckTap(Frozen):
@@ -156,6 +91,8 @@ class Effect(Frozen):
     """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
     void_pairs: int
     """Pairs of trials, seed by seed, that count for nothing."""
+    failed: FailedTrials | None = None
+    """What failed trials leave open, where some did on any path."""
     wins: tuple[int, ...]
     """Scenes where only the repair succeeded, one count for each seed that differs."""
     losses: tuple[int, ...]
@@ -196,8 +133,19 @@ class Effect(Frozen):
 
     @property
     def leads(self) -> bool:
-        """Whether a headline may rest on it: decided, and away from floor and ceiling."""
-        return self.sign != 0 and self.extreme is None
+        """Whether a headline may rest on it: decided, away from floor and ceiling, and not among
+        trials that one arm survived."""
+        return self.sign != 0 and self.extreme is None and not self.uneven
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one arm's trials failed more often than chance explains."""
+        return self.failed is not None and self.failed.uneven
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether it would be decided, if failed trials could not undo that."""
+        return self.failed is not None and self.failed.unsettled
 
 
 class PathBreakEven(Frozen):
@@ -223,6 +171,8 @@ class Change(Frozen):
     test: str
     p_value: float
     adjusted_p_value: float
+    unsettled: bool = False
+    """Whether it would be decided, if failed trials could not undo that."""
     turn: Turn
     """`reversal`: both effects are decided, with opposite signs. `interaction`: the change alone
     is decided."""

@@ -58,7 +58,10 @@ def decided_words(known: About, effect: Effect | None) -> str:
         return "the fault never acted: not tested"
     if effect.detected:
         at = f", but at the {effect.extreme}" if effect.extreme else ""
+        at = at or (", but trials failed unevenly" if effect.uneven else "")
         return f"{known.winner(effect.sign)} succeeds more often{at}"
+    if effect.unsettled:
+        return "open: trials that failed could decide it"
     if known.few:
         return "too few scenes to decide"
     p = f" ({adjusted(known.question, effect)})" if only_alone(effect) else ""
@@ -83,7 +86,9 @@ def _follows(known: About, record: DecisionRecord) -> Iterator[str]:
     tested = [effect for effect in record.effects if effect.acted]
     leading = [effect for effect in tested if effect.leads]
     if not leading:
-        if any(effect.detected for effect in tested):
+        if any(effect.detected and effect.uneven for effect in tested):
+            yield "No choice can rest on what is decided: one arm's trials failed more often."
+        elif any(effect.detected for effect in tested):
             yield "What is decided lies at the floor or ceiling, where no choice can rest on it."
         else:
             yield "Nothing that was tested gives a reason to prefer either."
@@ -121,7 +126,9 @@ def _faulty(known: About, tested: Sequence[Effect]) -> Iterator[str]:
     if shared:
         seen, missed = missed, seen
     unseen = alone if shared else _shared(tested)
-    open_ = bool(decided and unseen) and not any(e.detected or e.extreme for e in unseen)
+    open_ = bool(decided and unseen) and not any(
+        e.detected or e.extreme or e.unsettled for e in unseen
+    )
     if open_ and len(signs) == 1:
         yield f"The {'gain' if signs == [1] else 'loss'} seen {seen} is not seen {missed}."
     else:
@@ -182,12 +189,16 @@ def _left_open(known: About, record: DecisionRecord) -> Iterator[str]:
     undecided = [
         effect
         for effect in record.effects
-        if effect.acted and not effect.detected and effect.path not in known.small
+        if effect.acted
+        and not (effect.detected or effect.unsettled)
+        and effect.path not in known.small
     ]
+    if unsettled := [where(effect.path) for effect in record.effects if effect.unsettled]:
+        yield f"Who is ahead {series(unsettled)} hangs on trials that failed."
     if undecided:
         yield f"No difference is detected {series(_missed(undecided))}."
     yield from not_standing(record)
-    same = [change.isolated for change in record.changes if change.turn == "none"]
+    same = [each.isolated for each in record.changes if each.turn == "none" and not each.unsettled]
     if same:
         places = " or the ".join(same)
         yield f"No change is detected from the fault at the {places} alone to the shared fault."

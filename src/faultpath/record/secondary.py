@@ -3,7 +3,8 @@
 from typing import NamedTuple
 
 from faultpath.record.family import percent
-from faultpath.record.model import AtThreshold, Question
+from faultpath.record.model import AtThreshold
+from faultpath.record.question import Question
 from faultpath.statistics import (
     Estimate,
     Resamples,

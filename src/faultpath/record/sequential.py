@@ -1,7 +1,8 @@
 """When a sequential audit stops, and what is said of that."""
 
 from faultpath.record.family import Family
-from faultpath.record.model import Question, Stopped
+from faultpath.record.model import Stopped
+from faultpath.record.question import Question
 from faultpath.record.words import margin
 
 
@@ -25,8 +26,12 @@ def _within(family: Family, path: str, margin_pp: float) -> bool:
     effect = family.effects[path]
     if effect.decision is None or effect.n_scenes < family.scenes_needed:
         return False
-    low, high = effect.ends(1.0 - effect.decision.critical_p) or (-100.0, 100.0)
-    return -margin_pp < low and high < margin_pp
+    level = 1.0 - effect.decision.critical_p
+    for each in (effect, *family.fills.get(path, ())):  # whatever failed trials would have been
+        low, high = each.ends(level) or (-100.0, 100.0)
+        if low <= -margin_pp or high >= margin_pp:
+            return False
+    return True
 
 
 def sentences(question: Question, held: Stopped | None) -> tuple[str, ...]:

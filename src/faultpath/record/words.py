@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import Cell, Change, Effect, Path, Question, StopRule
+from faultpath.record.model import Cell, Change, Effect, Path
+from faultpath.record.question import Question, StopRule
 
 FEW_TRAININGS = 10
 """With fewer, an interval for newly trained models rests on how trainings are distributed: see
@@ -108,7 +109,7 @@ def numbers(about: About, of: Effect | Change) -> str:
     estimate = of.success if isinstance(of, Effect) else of.change
     text = f"{points(estimate.value)} pp"
     if estimate.low is not None and estimate.high is not None:
-        text += f" [{_plain(estimate.low)}, {_plain(estimate.high)}]"
+        text += f" [{plain(estimate.low)}, {plain(estimate.high)}]"
     if of.adjusted_p_value is None:
         return text
     text += f", {adjusted(about.question, of)}"
@@ -124,7 +125,13 @@ def adjusted(question: Question, of: Effect | Change) -> str:
 def only_alone(of: Effect | Change) -> bool:
     """Return whether the interval by itself leaves out 0 and yet nothing is detected."""
     estimate = of.success if isinstance(of, Effect) else of.change
-    if of.sign or of.adjusted_p_value is None or estimate.low is None or estimate.high is None:
+    if (
+        of.sign
+        or of.unsettled
+        or of.adjusted_p_value is None
+        or estimate.low is None
+        or estimate.high is None
+    ):
         return False
     return estimate.low > 0 or estimate.high < 0
 
@@ -138,11 +145,10 @@ def effect_words(about: About, effect: Effect) -> str:
         return f"{place}, the fault never acted on this path: nothing was tested."
     if effect.detected:
         words = f"{place}, {about.winner(effect.sign)} succeeds more often ({shown})"
-        return (
-            f"{words}; {_extreme(effect)}, so this carries no headline."
-            if effect.extreme
-            else (f"{words}.")
-        )
+        why = _extreme(effect) if effect.extreme else _uneven(about, effect)
+        return f"{words}{f'; {why}, so this carries no headline' if why else ''}."
+    if effect.unsettled:
+        return f"{place}, nothing is decided ({shown}): trials that failed could undo it."
     if about.few:
         return f"{place}, nothing is decided ({shown}): the scenes are too few."
     if not any((*effect.wins, *effect.losses)):
@@ -161,9 +167,18 @@ def effect_words(about: About, effect: Effect) -> str:
     return f"{words}; a true one of {least} pp would be found with 80 % power."
 
 
+def _uneven(about: About, effect: Effect) -> str:
+    if effect.failed is None or not effect.uneven:
+        return ""
+    return (
+        f"{effect.failed.repair} trials of {about.question.repair} and {effect.failed.baseline} "
+        f"of {about.question.baseline} failed"
+    )
+
+
 def _extreme(effect: Effect) -> str:
     ends = "fail" if effect.extreme == "floor" else "succeed"
-    rates = f"{_plain(effect.baseline_percent)} and {_plain(effect.repair_percent)} % success"
+    rates = f"{plain(effect.baseline_percent)} and {plain(effect.repair_percent)} % success"
     return f"both arms nearly always {ends} there ({rates})"
 
 
@@ -189,22 +204,14 @@ def change_words(about: About, isolated: Effect, shared: Effect, change: Change)
     between = f"between the effect {alone} and that {where(shared.path)}"
     if about.few:
         return f"Nothing is decided {between} ({shown})."
+    if change.unsettled:
+        return f"Nothing is decided {between} ({shown}): trials that failed could undo it."
     return f"No change is detected {between} ({shown})."
 
 
 def margin(rule: StopRule) -> str:
     """Return the margin below which a difference counts as small."""
     return f"{rule.margin_pp or 0.0:g} pp"
-
-
-def void_paths(paths: Sequence[str]) -> tuple[str, ...]:
-    """Name the paths on which no pair of trials could be compared."""
-    return tuple(f"{capital(no_pair(path))}: the table shows what failed." for path in paths)
-
-
-def no_pair(path: str) -> str:
-    """Say that a path has no pair of trials to compare."""
-    return f"{where(path)}, no pair of trials is left to compare and nothing is decided"
 
 
 def barely_acted(
@@ -279,7 +286,8 @@ def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
     return (*lines, ANOTHER)
 
 
-def _plain(value: float) -> str:
+def plain(value: float) -> str:
+    """Return a number with one digit; zero has no sign."""
     text = f"{value:.1f}"
     return "0.0" if float(text) == 0 else text
 

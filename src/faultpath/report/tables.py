@@ -3,8 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from faultpath.record.model import DecisionRecord, Effect, Question
+from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.plain import not_standing
+from faultpath.record.question import Question
 from faultpath.record.words import adjusted, only_alone
 from faultpath.report import wording
 from faultpath.report.factorial import by_factors
@@ -22,11 +23,10 @@ class _Of:
     effect: Effect
 
     def rate(self, variant: str) -> Entry:
-        """Return the success of a variant, percent."""
-        for cell in self.record.cells:
-            if (cell.variant, cell.path) == (variant, self.effect.path):
-                return Entry(text=wording.plain(cell.success_percent))
-        return Entry(text=MISSING)
+        """Return the success of a variant over the scenes compared, percent."""
+        baseline = variant == self.record.question.baseline
+        rate = self.effect.baseline_percent if baseline else self.effect.repair_percent
+        return Entry(text=wording.plain(rate))
 
     def difference(self) -> Entry:
         """Return the difference; bold is decided."""

@@ -3,7 +3,8 @@
 import re
 
 from faultpath.record.breakeven_words import first, last
-from faultpath.record.model import Effect, Question
+from faultpath.record.model import Effect
+from faultpath.record.question import Question
 from faultpath.statistics import BreakEven, Estimate
 
 MINUS = "−"
@@ -77,10 +78,10 @@ def adjusted(effect: Effect) -> str:
 
 
 def reservation(effect: Effect) -> str:
-    """Return why an effect makes no headline: the fault never acted, floor or ceiling."""
+    """Return why an effect makes no headline: the fault never acted, floor, ceiling, failures."""
     if not effect.acted:
         return "fault never acted"
-    return {"floor": "floor", "ceiling": "ceiling"}.get(effect.extreme or "", "")
+    return effect.extreme or ("failed trials" if effect.uneven or effect.unsettled else "")
 
 
 def ended(question: Question, status: str) -> str:

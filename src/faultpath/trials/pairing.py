@@ -90,6 +90,14 @@ def mismatch_words(mismatches: Iterable[Mismatch]) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True)
+class Ended:
+    """How all trials of one side ended, void pairs included; every array is `[scenes, seeds]`."""
+
+    success: Bools
+    failed: Bools
+
+
+@dataclass(frozen=True)
 class Pairs:
     """Paired trials without the void ones.
 
@@ -106,6 +114,9 @@ class Pairs:
     second: Trials
     void: int
     void_scenes: tuple[str, ...]
+    all_scenes: tuple[str, ...]
+    ended: tuple[Ended, Ended]
+    """Of both sides, over `all_scenes`."""
     mismatches: tuple[Mismatch, ...] = ()
     """The pairs that are void because their trials met different conditions."""
 
@@ -171,7 +182,13 @@ def pair(
             row.outcome.scene for row, stays in zip(ones[0], keep, strict=True) if not stays
         ),
         mismatches=tuple(mismatches),
+        all_scenes=tuple(row.outcome.scene for row in ones[0]),
+        ended=(_ended(ones), _ended(twos)),
     )
+
+
+def _ended(arms: Sequence[Sequence[TrialRow]]) -> Ended:
+    return Ended(_flags(arms, Status.SUCCESS), _flags(arms, Status.FAILED))
 
 
 def _arm(table: OutcomeTable, side: Side, seed: int) -> tuple[TrialRow, ...]:

@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import DecisionRecord, Effect, Question
+from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.provenance import RunProvenance
+from faultpath.record.question import Question
 from faultpath.statistics import Sign
 
 

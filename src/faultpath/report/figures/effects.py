@@ -32,14 +32,13 @@ class EffectRow:
 def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
     """Return the rows of the forest plot in the order of the record's paths."""
     titles = {path.name: path.title for path in record.paths}
-    rate = {(cell.variant, cell.path): cell.success_percent for cell in record.cells}
     asked = record.question
     primary = {effect.path: "" for effect in record.effects} | {asked.primary: "primary"}
     return tuple(
         EffectRow(
             label=titles.get(effect.path, effect.path),
-            baseline_percent=rate[asked.baseline, effect.path],
-            repair_percent=rate[asked.repair, effect.path],
+            baseline_percent=effect.baseline_percent,
+            repair_percent=effect.repair_percent,
             effect=effect.success,
             wins_losses=wording.wins_losses(effect.wins, effect.losses),
             sign=effect.sign,
