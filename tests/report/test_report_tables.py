@@ -28,10 +28,8 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         return wording.break_even(breaks[path])
 
     return {
-        "gru (baseline)": [f"{c.success_percent:.1f}" for c in record.cells if c.variant == "gru"],
-        "gru-dcc (repair)": [
-            f"{c.success_percent:.1f}" for c in record.cells if c.variant == "gru-dcc"
-        ],
+        "gru (baseline)": [f"{e.baseline_percent:.1f}" for e in effects],
+        "gru-dcc (repair)": [f"{e.repair_percent:.1f}" for e in effects],
         "Difference, pp": [f"{e.success.value:+.1f}" for e in effects],
         "95 % interval": [f"[{e.success.low:.1f}, {e.success.high:.1f}]" for e in effects],
         "Won:lost": [
@@ -138,8 +136,8 @@ def test_terminal_shows_the_numbers_and_takes_names_literally(one_seed: ReportIn
     assert "[red]Shared[/]" in text
     for effect in record.effects:
         assert f"{effect.success.value:+.1f} [{effect.success.low:.1f}" in text
-    for cell in record.cells:
-        assert f"{cell.success_percent:.1f}" in text
+        assert f"{effect.baseline_percent:.1f}" in text
+        assert f"{effect.repair_percent:.1f}" in text
     assert "What would change this" not in text
     with console.capture() as captured:
         console.print(decision(record, details=True))
