@@ -11,6 +11,7 @@ from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen
 from faultpath.record.headline import MOST_WORDS
 from faultpath.record.model import Change, Effect
 from faultpath.record.plain import about, decided_words, plain_words
+from faultpath.report import wording
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
@@ -233,6 +234,10 @@ def check(made: DecisionRecord) -> None:
         ends = {effects.get(CORRECT, 0), effects.get(item.path, 0)} - {0}
         for who, sign in ((REPAIR, 1), (BASELINE, -1)):
             assert not claimed(item.words, who) or sign in ends
+        shown = wording.break_even(item.result)
+        part = " is ahead where the fault is " in item.words
+        assert (shown == "any") == (not item.words or part), (shown, item.words)
+        assert item.result.level >= 0.95 - 1e-12
     if made.question.primary not in {e.path for e in made.effects}:
         assert "no pair of trials is left" in made.verdict.headline
     elif made.scenes < made.scenes_needed:

@@ -8,6 +8,7 @@ from faultpath.record.question import Question
 from faultpath.record.words import where
 from faultpath.statistics import Region
 
+_WHOLE = 100
 _SLACK = 1e-6
 """On a percentage that is a whole number but for rounding."""
 
@@ -39,6 +40,19 @@ def clause(question: Question, regions: Sequence[Region], correct: Effect, fault
         elif low and last(region.high) > 0:
             said.append(f"{winner} is ahead up to {last(region.high)} %")
     return ", ".join(said)
+
+
+def borne_out(regions: Sequence[Region], correct: Effect, faulty: Effect) -> list[Region]:
+    """Return the regions that effects bear out to the end: what a table and a picture show."""
+    kept: list[Region] = []
+    for region in regions:
+        low = region.low > 0.0 or (correct.leads and region.sign == correct.sign)
+        high = region.high < 1.0 or (faulty.leads and region.sign == faulty.sign)
+        inner = region.low > 0.0 and region.high < 1.0
+        shown = last(region.high) > 0 and first(region.low) < _WHOLE
+        if low and high and not inner and shown:
+            kept.append(region)
+    return kept
 
 
 def first(frequency: float) -> int:

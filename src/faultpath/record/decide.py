@@ -27,6 +27,7 @@ from faultpath.statistics import (
     break_even,
     detectable,
     mixture_curve,
+    only,
 )
 from faultpath.statistics.distributions import sign_mid_p_value, sign_p_value
 from faultpath.statistics.estimate import Discordant
@@ -266,8 +267,12 @@ def _change(about: words.About, path: str, family: Family, effects: Sequence[Eff
 def _break_even(
     about: words.About, path: str, family: Family, effects: Sequence[Effect]
 ) -> PathBreakEven:
+    """Return the set at the level that the family leaves to both ends."""
     ends = family.effects[CORRECT], family.effects[path]
-    result = break_even(*ends)
+    level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
+    found = break_even(*ends, level=level)
     of = {effect.path: effect for effect in effects}
-    said = breakeven_words.clause(about.question, result.regions, of[CORRECT], of[path])
-    return PathBreakEven(path=path, result=result, curve=mixture_curve(*ends), words=said)
+    said = breakeven_words.clause(about.question, found.regions, of[CORRECT], of[path])
+    result = only(found, breakeven_words.borne_out(found.regions, of[CORRECT], of[path]))
+    curve = mixture_curve(*ends, level=level)
+    return PathBreakEven(path=path, result=result, curve=curve, words=said)

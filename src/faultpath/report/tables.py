@@ -141,7 +141,7 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
-        "ahead.",
+        "ahead, with the estimate in front; any: none is decided from which on one of them is.",
         f"Primary contrast: {asked.primary}. {_corrected(record)} Intervals and tests speak of "
         f"{record.estimand}.",
         *not_standing(record),

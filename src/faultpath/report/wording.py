@@ -57,12 +57,13 @@ def break_even(result: BreakEven) -> str:
     """Return the frequencies at which nobody is decided to be ahead, in percent.
 
     `59 % [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
-    pieces; `any [0, 100]`; `none` where one arm is ahead throughout. Ends are rounded outwards.
+    pieces; `none` where one arm is ahead throughout; `any` where at no frequency it is decided who
+    is. Ends are rounded outwards.
     """
     if result.kind == "empty":
         return "none"
     if result.kind == "whole":
-        return "any [0, 100]"
+        return "any"
     pieces = " and ".join(f"[{last(low)}, {first(high)}]" for low, high in result.pieces)
     return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} % {pieces}"
 

@@ -1,6 +1,6 @@
 """Outcome arrays in, estimates and intervals out; no plots and no files."""
 
-from faultpath.statistics.breakeven import break_even, mixture_curve
+from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.clustered import WindowQuantiles
 from faultpath.statistics.contrast import Contrast, change, percentile_interval, weighted_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
@@ -32,6 +32,7 @@ __all__ = [
     "mean_effect",
     "median_effect",
     "mixture_curve",
+    "only",
     "percentile_interval",
     "success_effect",
     "success_rate",

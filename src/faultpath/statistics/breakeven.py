@@ -5,7 +5,7 @@ In a mixture that meets the fault with probability p the expected difference is
 set for the break-even frequency (Fieller, Journal of the Royal Statistical Society B 16:175, 1954).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import Literal
 
@@ -48,21 +48,38 @@ def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> Brea
     p_star = break_even_point(correct.value, faulty.value)
     pieces = _pieces(mixture, p_star)
     regions = _regions(pieces, mixture)
-    kind: Literal["interval", "empty", "whole", "two pieces"] = "interval"
-    if len(pieces) != 1:
-        kind = "two pieces" if pieces else "empty"
-    elif not regions:
-        kind = "whole"
     return BreakEven(
         p_star=p_star,
         pieces=pieces,
-        kind=kind,
+        kind=_kind(pieces),
         regions=regions,
         level=level,
         words=_words(regions),
         method=f"inverted {correct.method}, mixture of both conditions",
         estimand=correct.estimand,
     )
+
+
+def only(found: BreakEven, regions: Sequence[Region]) -> BreakEven:
+    """Return what is left where of all regions only some are decided."""
+    edges = [0.0, *(end for each in regions for end in (each.low, each.high)), 1.0]
+    spans = zip(edges[::2], edges[1::2], strict=True)
+    # A set that begins or ends in a single frequency keeps it.
+    pieces = tuple(span for span in spans if span[0] < span[1] or span in found.pieces)
+    return found.model_copy(
+        update={
+            "pieces": pieces,
+            "kind": _kind(pieces),
+            "regions": tuple(regions),
+            "words": _words(tuple(regions)),
+        }
+    )
+
+
+def _kind(pieces: Sequence[Piece]) -> Literal["interval", "empty", "whole", "two pieces"]:
+    if len(pieces) != 1:
+        return "two pieces" if pieces else "empty"
+    return "whole" if pieces[0] == (0.0, 1.0) else "interval"
 
 
 def mixture_curve(

@@ -19,9 +19,10 @@ def shared_range(paths: Sequence[PathBreakEven]) -> Axis:
 def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     """Return the expected success difference over the fault frequency for one path.
 
-    The band is the score interval at each frequency. The thick line on zero is the set of
-    frequencies at which nobody is decided to be ahead, the ring the estimate of the crossing. The
-    curve has the colour of an arm where that arm is decided to be ahead.
+    The band is the interval at each frequency, at the level that the family leaves. The thick line
+    on zero is the set of frequencies at which nobody is decided to be ahead, the ring the estimate
+    of the crossing, where any frequency is decided. The curve has the colour of an arm where that
+    arm is decided to be ahead.
     """
     shown = wording.break_even(path.result)
     words = f"{path.words or 'No frequency is decided'}."
@@ -41,7 +42,8 @@ def frequency_panel(path: PathBreakEven, title: str, vertical: Axis) -> str:
     lower = [(x(p), y(low)) for p, _, low, _ in path.curve]
     svg.polygon([*upper, *reversed(lower)], "fan")
     _curve(svg, path, x, y)
-    _set(svg, path, x, y, f"not decided at {shown}")
+    tip = "no frequency is decided" if shown == "any" else f"not decided at {shown}"
+    _set(svg, path, x, y, tip)
     if y(0) - y.end > _ROOM:
         svg.text(x.start + 6, y.end + 12, "repair better", "small repair halo")
     if y.start - y(0) > _ROOM:
@@ -70,5 +72,5 @@ def _set(svg: Svg, path: PathBreakEven, x: Axis, y: Axis, tip: str) -> None:
     result = path.result
     for low, high in result.pieces:
         svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
-    if result.p_star is not None:
+    if result.p_star is not None and result.regions:
         svg.circle((x(result.p_star), y(0)), 5, "star", tip=tip)
