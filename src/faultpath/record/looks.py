@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Sequence
 
 from faultpath.record.earlier import EarlierLook
-from faultpath.record.model import DecisionRecord, Question
+from faultpath.record.model import DecisionRecord
+from faultpath.record.question import Question
 from faultpath.record.words import series
 
 
