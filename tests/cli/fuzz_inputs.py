@@ -11,7 +11,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import typer
 from cli_runs import TOY, Ended, faultpath
+
+from faultpath.cli.app import build
 
 JUNK = (
     *("", " ", "-", "--", ".", "..", "/", "nan", "inf", "-1", "0", "1e999", "true", "None", "[]"),
@@ -31,8 +34,10 @@ JUNK = (
     ),
     *("'", '"', "\\", "a,b", ",", "=", "a=", "=b", "a=b=c", "@", "a@", "a:b", ":", "a:", ":b"),
     *("text.txt", "folder", "binary", "loop", "nowhere/x", "text.txt/x"),
-    *("/dev/null", "/dev/zero"),
+    *("/dev/null", "/dev/zero", "1e308", "1e-320", "-inf", "0,٣", "a,,b", "a,a"),
 )
+STEERING = ("\x1b[31m", "\x9b2J", "\x07", "\u202e", "\u2066", "\n", "\r", "[red]", "[/b]", "\ud800")
+"""Parts of names and messages that must not reach a terminal as they are."""
 
 SYSTEMS = (
     TOY,
@@ -47,6 +52,8 @@ SYSTEMS = (
     "nowhere.py:create",
     f"{TOY}x",
     "binary.py:create",
+    *("builtins:dict", "builtins:exit", "builtins:object", "sys:exit", "sys:intern", "json", "os"),
+    "mute.py:create",
 )
 FAULTS = (
     "gain:scale=0.6",
@@ -185,11 +192,34 @@ The self-check may be given what is right, since the test leaves next to nothing
 `None` stands for the value of an option that takes none."""
 
 NO_VERB = "fly"
+ELSEWHERE = ("--share", "--executor", "--traceback")
+"""Options whose right values write outside, take minutes, or ask for a traceback."""
+
+
+def flags(command: Any) -> dict[str, bool]:
+    """Return the options of a verb, and whether each takes a value."""
+    return {
+        flag: not each.is_flag
+        for each in command.params
+        if each.param_type_name == "option"
+        for flag in (*each.opts, *each.secondary_opts)
+        if flag.startswith("--") and flag not in (*ELSEWHERE, "--help")
+    }
+
+
+def leaves(command: Any, *names: str) -> Iterator[tuple[str, Any]]:
+    """Yield each verb with what parses it."""
+    below = getattr(command, "commands", None)
+    if below is None:
+        yield " ".join(names), command
+    for name, each in (below or {}).items():
+        yield from leaves(each, *names, name)
 
 
 def commands(seed: int, count: int) -> Iterator[list[str]]:
     """Yield command lines, near to right ones and far from them."""
     rng = random.Random(seed)
+    verbs = dict(leaves(typer.main.get_command(build())))
     for _ in range(count):
         verb = rng.choice([*VERBS, NO_VERB])
         positional, options = VERBS.get(verb, ([], {}))
@@ -203,7 +233,10 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
             if name == "system" and words:
                 words[0] = rng.choice(SYSTEMS if verb in OF_SYSTEMS else JUNK)
             elif name == "more":
-                given[rng.choice(("--set", "--wind", "--device", "--nothing"))] = rng.choice(JUNK)
+                known = flags(verbs[verb]) if verb in verbs else {}
+                others = {each: known[each] for each in known if each not in options}
+                flag = rng.choice(("--set", "--wind", "--device", "--nothing", *others, *others))
+                given[flag] = rng.choice(JUNK) if others.get(flag, True) else None
             elif name == "less":
                 given.pop(rng.choice(sorted(options)), None)
             elif name not in fixed:
@@ -299,8 +332,11 @@ def _places(value: Any) -> Iterator[tuple[Any, Any]]:
             yield from _places(each)
 
 
-def wrong(line: list[str], here: Path, seconds: float = 60.0) -> str:
-    """Run a command and say what is wrong with how it ended; nothing where all is right."""
+def wrong(line: list[str], here: Path, seconds: float = 60.0, prints: bool = False) -> str:
+    """Run a command and say what is wrong with how it ended; nothing where all is right.
+
+    With `prints`, and with `--json`, something may be said before the sentence.
+    """
     try:
         with _in_time(seconds), _writes_outside(here) as outside:
             ended = faultpath(*line)
@@ -308,21 +344,24 @@ def wrong(line: list[str], here: Path, seconds: float = 60.0) -> str:
         if isinstance(error, KeyboardInterrupt):
             raise
         return f"{line!r:.300}: {type(error).__name__}: {error!s:.300}"
-    fault = _misbehaved(ended) or (f"wrote to {outside[0]}" if outside else "")
+    fault = _misbehaved(ended, prints or "--json" in line) or (
+        f"wrote to {outside[0]}" if outside else ""
+    )
     return f"{line!r:.300}: {fault}" if fault else ""
 
 
-def _misbehaved(ended: Ended) -> str:
+def _misbehaved(ended: Ended, prints: bool) -> str:
     if "Traceback" in ended.out + ended.err:
         return f"a traceback: {ended.err[-300:]}"
     if ended.status not in (0, 1, 2):
         return f"status {ended.status}"
+    for line in (ended.out + ended.err).splitlines():
+        if not line.isprintable():
+            return f"characters that are not to be seen: {line!r:.400}"
     if ended.status == 2 and "Usage" not in ended.out:
-        lines = ended.err.splitlines()
+        lines = ended.err.splitlines()[-1 if prints else 0 :]
         if len(lines) != 1 or not lines[0].startswith("faultpath: "):
             return f"not one sentence: {ended.err!r:.400}"
-        if not lines[0].isprintable():
-            return f"characters that are not to be seen: {lines[0]!r:.400}"
     return ""
 
 

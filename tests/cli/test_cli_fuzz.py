@@ -7,13 +7,22 @@ import random
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import typer
-from cli_runs import TOY, audit
-from fuzz_inputs import JUNK, VERBS, commands, documents, texts, wrong
+from cli_runs import ROOT, TOY, audit
+from fuzz_inputs import (
+    JUNK,
+    STEERING,
+    VERBS,
+    commands,
+    documents,
+    flags,
+    leaves,
+    texts,
+    wrong,
+)
 
 from faultpath import plan
 from faultpath.cli.app import build
@@ -25,6 +34,39 @@ from faultpath.selfcheck.run import Profile, Task
 
 pytestmark = pytest.mark.fuzz
 CHUNKS, EACH = 4, 70
+
+
+MUTE = """
+class Mute(Exception):
+    def __str__(self):
+        raise RuntimeError("no words")
+    __repr__ = __str__
+def create():
+    raise Mute
+"""
+NAMED = """
+import sys
+sys.path.insert(0, {examples!r})
+from toy import *
+from faultpath.trials import Metric
+class Named(Toy):
+    name = {name!r}
+    ends = {{Status.TIMEOUT: {end!r}}}
+    distance = Metric(unit={unit!r}, better="less", words={words!r}, title={title!r})
+    metrics = {{"terminal_distance_m": distance}}
+    wirings = {{"calibrated": Wiring({first!r}), {variant!r}: Wiring({second!r})}}
+    def library(self, name):
+        scenes = (SceneRef(f"{{i}}" + {scene!r}, i, {kind!r}) for i in range(4))
+        return Library(name, tuple(scenes), "h")
+    def run(self, variant, scenes, taps, seed):
+        if {fails} and seed:
+            raise ValueError({said!r})
+        return super().run(variant, scenes, taps, seed)
+def create():
+    print({printed!r})
+    return Named()
+"""
+NAMES = ("name", "end", "unit", "words", "title", "first", "second", "variant", "scene", "kind")
 
 
 class OneOfEach(Profile):
@@ -43,6 +85,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (place / "text.txt").write_text("text\n")
     (place / "mine.json").write_text("{}")
     (place / "broken.py").write_text("def create():\n    return 1 / 0\n")
+    (place / "mute.py").write_text(MUTE)
     for name in ("binary", "binary.py"):
         (place / name).write_bytes(random.Random(0).randbytes(400))
     (place / "loop").symlink_to("loop")
@@ -61,14 +104,28 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_no_verb_is_left_out() -> None:
-    def leaves(command: object, *names: str) -> Iterator[str]:
-        below = getattr(command, "commands", None)
-        if below is None:
-            yield " ".join(names)
-        for name, each in (below or {}).items():
-            yield from leaves(each, *names, name)
+    verbs = dict(leaves(typer.main.get_command(build())))
+    assert set(VERBS) == set(verbs)
+    for verb, (_, options) in VERBS.items():
+        assert set(options) <= set(flags(verbs[verb])), verb
 
-    assert set(VERBS) == set(leaves(typer.main.get_command(build())))
+
+@pytest.mark.parametrize("draw", range(2))
+def test_names_and_messages_of_a_system(draw: int, here: Path, fuzz_seed: int) -> None:
+    rng = random.Random(f"{fuzz_seed} {draw}")
+    odd = set(rng.sample(NAMES, rng.randint(1, 3)))
+    given = {each: each + (rng.choice(STEERING) if each in odd else "") for each in NAMES}
+    more = {"said": "".join(STEERING), "printed": "".join(STEERING), "fails": draw % 2}
+    text = NAMED.format(examples=str(ROOT / "examples"), **given, **more)
+    (here / "named.py").write_text(text)
+    asked = ["--baseline", "calibrated", "--repair", given["variant"], "--fault", "gain:scale=0.6"]
+    lines = (
+        ["interface", "named.py:create"],
+        ["trace", "named.py:create"],
+        ["audit", "named.py:create", *asked, "--seeds", "0,1", "--workers", "0", "--out", "r"],
+    )
+    found = [fault for line in lines if (fault := wrong(line, here, prints=True))]
+    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
 
 
 @pytest.mark.parametrize("chunk", range(CHUNKS))
@@ -87,8 +144,6 @@ def test_junk_in_the_place_of_every_word(here: Path, fuzz_seed: int) -> None:
 
 def test_interface_texts(fuzz_seed: int) -> None:
     rng = random.Random(fuzz_seed)
-    from cli_runs import ROOT
-
     sys.path.append(str(ROOT / "examples"))
     try:
         from toy import Toy

@@ -9,6 +9,8 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
+from faultpath.quadrotor import world
+from faultpath.quadrotor.scenes import soundness
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import (
     FROZEN_SEEDS,
@@ -105,6 +107,9 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "no height": ({"cylinders": (FLAT,)}, r"cylinders\.0: low_m 2 is not below high_m 2"),
     "crowded": ({"boxes": (PEBBLE,) * (MOST_OBSTACLES + 1)}, "257 obstacles are too many"),
     "heavy": ({"vehicle": VEHICLE.model_copy(update={"mass_kg": 1e4})}, "cannot lift itself"),
+    "weightless": ({"vehicle": VEHICLE.model_copy(update={"mass_kg": 1e-9})}, "mass_kg: 1e-09"),
+    "no drag": ({"vehicle": VEHICLE.model_copy(update={"drag_kgps": (1e-9,) * 3})}, "drag_kgps"),
+    "there already": ({"goal_m": BASE[1].start_m}, "goal_m: within 0.5 m of start_m"),
     "no body": (
         {"vehicle": VEHICLE.model_copy(update={"inertia_kgm2": (1.0, 0.1, 0.1)})},
         "vehicle.inertia_kgm2",
@@ -114,6 +119,10 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
     "another's library": ({"library": "other"}, "field library"),
     "another place": ({"index": 7}, "field index"),
 }
+
+
+def test_a_goal_is_reached_where_flights_end() -> None:
+    assert soundness.GOAL_RADIUS_M == world.GOAL_RADIUS_M
 
 
 @pytest.mark.parametrize(("changed", "says"), UNSOUND.values(), ids=UNSOUND)
