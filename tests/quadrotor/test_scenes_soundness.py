@@ -150,8 +150,7 @@ def test_a_number_that_is_none_is_refused(tmp_path: Path, number: str, field: st
     with pytest.raises(UserError, match="cannot be read as a library") as told:
         load_library(file)
     if len(number) < 100:
-        assert "scene 1" in str(told.value)
-        assert field in str(told.value)
+        assert number in str(told.value)
 
 
 @pytest.mark.parametrize("name", ["", " ", "../up", "a/b", "-x", "a" * 65, "a\nb", "a\x1b[2J"])
