@@ -18,6 +18,7 @@ from faultpath.interface import read_interface
 from faultpath.proposal.study import read_study
 from faultpath.repairs.record import read_record
 from faultpath.store import RunFolder, read_evidence, read_outcomes, read_traces
+from faultpath.store.lock import locked
 from faultpath.store.manifest import read_manifest
 from faultpath.store.parquet import Unreadable, rows_in
 from faultpath.store.sealed import read_regular
@@ -118,6 +119,15 @@ def test_what_is_no_file_is_refused_in_one_sentence(
 def test_rechecks_that_are_no_file_are_as_good_as_none(thing: str, tmp_path: Path) -> None:
     THINGS[thing](tmp_path / "rechecks.json")
     assert Rechecks((), RunFolder(tmp_path), "").flown() == ()
+
+
+def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / ".lock")
+    with (
+        pytest.raises(UserError, match=r"\.lock is a pipe"),
+        locked(tmp_path, lambda said: None),
+    ):
+        raise AssertionError("it is locked")
 
 
 def test_a_file_is_read_up_to_a_size(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from faultpath.errors import UserError
+from faultpath.files.opening import unlike_file
 
 Say = Callable[[str], None]
 
@@ -26,6 +27,8 @@ def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to"
         ) from error
     try:
+        if kind := unlike_file(os.fstat(descriptor).st_mode):
+            raise UserError(f"{path} is {kind}, not a file: remove it, or choose another folder")
         _acquire(descriptor, folder, notice)
         os.truncate(descriptor, 0)
         os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
