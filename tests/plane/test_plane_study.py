@@ -132,6 +132,7 @@ def test_readers_that_get_it_without_error_are_named() -> None:
         ({"fault": "gain@observer"}, "name the modules with --against"),
         ({"fault": "gain:noise"}, "errors of both signs"),
         ({"fault": "gian"}, "did you mean 'gain'"),
+        ({"points": 9 * 10**400}, "takes at most 10000"),
         ({"against": ("controller",)}, "--against needs two modules"),
         ({"against": ("controller", "controller")}, "--against needs two modules"),
         ({"against": ("controller", "controller.inverse")}, "share no place"),

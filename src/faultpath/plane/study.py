@@ -26,6 +26,9 @@ from faultpath.trials import (
 
 COARSE_POINTS = len(lattice(COARSE))
 
+_MOST_POINTS = 10_000
+"""A hundred errors of each module."""
+
 
 @dataclass(frozen=True)
 class MapPlan:
@@ -137,9 +140,10 @@ def plan_map(
     for end in (-largest, largest):
         sized.at(end)
     modules, others = places(system.interface, sized.at(largest), against, variants)
-    if points < COARSE_POINTS:
+    if not COARSE_POINTS <= points <= _MOST_POINTS:
         raise UserError(
-            f"--points {points}: a map begins with {COARSE_POINTS}, give as many or more."
+            f"--points {points}: a map begins with {COARSE_POINTS} and takes at most "
+            f"{_MOST_POINTS}, give a number between them."
         )
     chosen = scenes_of(library, scenes)
     middle, spread = _distribution(means, spreads, correlation, largest, sized)
