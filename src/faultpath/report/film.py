@@ -202,7 +202,11 @@ class _Film:
             pen.polygon([self._at(tile, corner) for corner in prism.corners], fill=fill(number))
         for number, pillar in enumerate(plan.pillars, len(plan.prisms)):
             self._ring(pen, tile, (pillar.x, pillar.y), pillar.radius, fill=fill(number))
-        self._ring(pen, tile, plan.goal, 0.5, outline=_INK["ink"], width=_FINE)
+        if plan.low[1] < plan.high[1]:
+            self._ring(pen, tile, plan.goal, 0.5, outline=_INK["ink"], width=_FINE)
+        else:  # along a line the goal is a place on it
+            (x, y), half = self._at(tile, plan.goal), 16 * _FINE
+            pen.line(((x, y - half), (x, y + half)), fill=_INK["ink"], width=_FINE)
         self._ring(pen, tile, plan.start, 3 / self._scale, fill=_INK["ink"])
 
     def _ring(self, pen: Any, tile: _Tile, at: Sequence[float], radius: float, **look: Any) -> None:
