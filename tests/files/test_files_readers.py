@@ -1,5 +1,7 @@
 """Every reader of files that somebody names, against what is no file and what is no plain data."""
 
+import copy
+import json
 import os
 import signal
 import socket
@@ -197,3 +199,93 @@ def test_what_is_written_reads_back() -> None:
         "n": [1e-7, 2],
     }
     assert read_yaml(yaml_text(data).encode()).data == data
+
+
+COLUMNS = {
+    "time": {"column": "t", "unit": "s"},
+    "attitude": {"columns": ["a", "b", "c", "d"], "order": "wxyz"},
+    "velocity": {"columns": ["x", "y", "z"]},
+    "thrust": {"column": "f", "newton_per_unit": 1.0},
+    "frame": "ENU",
+    "mass_kg": 1.5,
+    "drag_kgps": [0.3, 0.3, 0.6],
+    "motor_time_constant_s": 0.1,
+}
+INTERFACE = {
+    "name": "toy",
+    "sources": [
+        {
+            "name": "mass",
+            "unit": "kg",
+            "provenance": "measured",
+            "shape": [3],
+            "latency_s": 0.1,
+            "rate_hz": 10.0,
+            "scale": 2.0,
+            "uncertainty": {"std": 0.1},
+        }
+    ],
+    "channels": [{"name": "mass", "sources": ["mass"], "consumers": ["a.b"]}],
+}
+STUDY = {
+    "system": "toy.py",
+    "baseline": "a",
+    "repair": "b",
+    "library": "carts",
+    "library_hash": "0",
+    "scenes": 2,
+    "seeds": [0, 1],
+    "audits": [
+        {
+            "name": "one",
+            "fault": "gain",
+            "arms": [{"path": "correct", "role": "correct"}, {"path": "shared", "role": "shared"}],
+        }
+    ],
+}
+DOCUMENTS: dict[str, tuple[Any, Read]] = {
+    "columns of a log": (COLUMNS, lambda path: read_columns(str(path))),
+    "interface": (INTERFACE, read_interface),
+    "study": (STUDY, read_study),
+}
+"""Every YAML file that a user writes, with a number in each field that takes one."""
+
+
+def _numbers(value: Any) -> Iterator[tuple[Any, Any]]:
+    items = value.items() if isinstance(value, dict) else enumerate(value)
+    for key, each in list(items):
+        if isinstance(each, (dict, list)):
+            yield from _numbers(each)
+        elif isinstance(each, (int, float)):
+            yield value, key
+
+
+@pytest.mark.parametrize("kind", DOCUMENTS)
+def test_no_number_of_a_file_is_out_of_range_or_something_else(kind: str, tmp_path: Path) -> None:
+    document, read = DOCUMENTS[kind]
+    path = tmp_path / "file.yaml"
+    path.write_text(json.dumps(document))
+    read(path)
+    changed = copy.deepcopy(document)
+    for box, key in _numbers(changed):
+        right = box[key]
+        for wrong in (
+            "true",
+            "'2'",
+            "٣",
+            "0x10",
+            "1_0",
+            "1e999",
+            "-1e400",
+            "9" * 400,
+            ".nan",
+            "-7",
+        ):
+            box[key] = "HERE"
+            path.write_text(json.dumps(changed).replace('"HERE"', wrong))
+            if wrong == "-7" and key == "newton_per_unit":
+                continue
+            with pytest.raises(UserError) as caught:
+                read(path)
+            assert "\n" not in str(caught.value), (key, wrong)
+        box[key] = right
