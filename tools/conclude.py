@@ -155,7 +155,7 @@ def _paper(folder: Path, target: Path) -> list[str]:
     (target / "reproduction.html").write_text(page, "utf-8")
     (target / "tables.tex").write_text(latex.document(tables), "utf-8")
     (target / "tables.md").write_text("\n\n".join(map(markdown.block, tables)) + "\n", "utf-8")
-    (target / "ledger.md").write_text(ledger_markdown(found.ledger), "utf-8")
+    (target / "ledger.md").write_text(ledger_markdown(found.ledger, found.profile), "utf-8")
     answers = {claim.id: claim.verdict for claim in was.claims}
     return [
         f"{claim.id}: {answers.get(claim.id, 'not answered')} -> {claim.verdict}"

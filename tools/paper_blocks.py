@@ -179,7 +179,7 @@ KIND: dict[str, Callable[..., str]] = {
     name: partial(_part, fill)
     for name, fill in {
         "counts": _counts,
-        "ledger": lambda found, origin: ledger_markdown(found.ledger),
+        "ledger": lambda found, origin: ledger_markdown(found.ledger, found.profile),
         "claim": _claim,
         "table": _table,
         "origin": _origin,

@@ -296,7 +296,7 @@ def test_view_shows_only_the_faces_turned_to_it(turn: int) -> None:
 def test_terminal_cuts_nothing_of_a_claim() -> None:
     console = Console(width=72)
     with console.capture() as captured:
-        console.print(ledger_view(ledger()))
+        console.print(ledger_view(ledger(), "paper"))
     lines = captured.get().splitlines()
     for claim in ledger().claims:
         (line,) = (line for line in lines if line.startswith(claim.id))
@@ -306,7 +306,9 @@ def test_terminal_cuts_nothing_of_a_claim() -> None:
 
 
 def test_markdown_has_one_row_a_claim_and_escapes() -> None:
-    rows = [line for line in ledger_markdown(ledger()).splitlines() if line.startswith("|")]
+    rows = [
+        line for line in ledger_markdown(ledger(), "paper").splitlines() if line.startswith("|")
+    ]
     assert len(rows) == 2 + len(ledger().claims)
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 1
     assert "<script>" not in "".join(rows)

@@ -88,11 +88,13 @@ def test_sizes_are_counted_in_a_sentence(claims: list[tuple[str, ...]], said: st
 
 def test_sizes_stand_beside_the_verdict_everywhere(toy: ReproductionInput) -> None:
     found = ledger().model_copy(update={"claims": (sized(SAME, "compatible"),)})
-    row = next(line for line in ledger_markdown(found).splitlines() if line.startswith("| C01"))
+    row = next(
+        line for line in ledger_markdown(found, "paper").splitlines() if line.startswith("| C01")
+    )
     assert f"| {SAME}, 1 of 2 |" in row
     console = Console(width=100)
     with console.capture() as captured:
-        console.print(ledger_view(found))
+        console.print(ledger_view(found, "paper"))
     assert "right sign only" in captured.get()
     reproduced = toy.reproduction.model_copy(update={"ledger": found})
     html = reproduction_page(replace(toy, reproduction=reproduced))

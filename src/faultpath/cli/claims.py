@@ -85,23 +85,23 @@ def _show(run: Path | None, platform: str | None, as_json: bool) -> int:
     they are those of the code that is here."""
     from faultpath.studies.shipped import shipped_ledger
 
-    answers = shipped_ledger(platform) if run is None else _answered(run)
+    answers, profile = (shipped_ledger(platform), "paper") if run is None else _answered(run)
     if as_json:
         _print(answers)
         return 0
     from faultpath.door.display import SafeConsole
     from faultpath.report.reproduction.terminal import ledger_view
 
-    SafeConsole().print(ledger_view(answers))
+    SafeConsole().print(ledger_view(answers, profile))
     return 0
 
 
-def _answered(run: Path) -> "Ledger":
+def _answered(run: Path) -> tuple["Ledger", str]:
     from faultpath.studies.claims import again
     from faultpath.studies.run import read_results
 
     results, found = read_results(run)
-    return again(results, found.ledger)
+    return again(results, found.ledger), found.profile
 
 
 def _print(answers: "Ledger") -> None:

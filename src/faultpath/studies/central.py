@@ -48,15 +48,15 @@ def of_run(found: Reproduction, place: str) -> Line | None:
     return line(place, *shown, DECIDED if claim.parts[0].answer == "confirmed" else OPEN)
 
 
-def state(ledger: Ledger) -> str:
+def state(ledger: Ledger, run: str = "this run") -> str:
     """Say what became of the claim in a run, and by which of its parts."""
     claim = next((each for each in ledger.claims if each.id == CLAIM), None)
     if claim is None:
-        return f"This run is not about {CLAIM}."
+        return f"{CLAIM} is not asked of {run}."
     part = next(each for each in claim.parts if each.answer == claim.verdict)
     by = "" if claim.verdict == "confirmed" else f" by this part: {part.words}"
     figure = f" ({words.estimate(part)})" if words.estimate(part) else ""
-    return f"As stated, {CLAIM} is {claim.verdict} on this run{by}{figure}."
+    return f"As stated, {CLAIM} is {claim.verdict} on {run}{by}{figure}."
 
 
 def central(lines: Iterable[Line]) -> Table:

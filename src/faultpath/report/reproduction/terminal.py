@@ -58,7 +58,7 @@ def _table(ledger: Ledger) -> Table:
     return Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts)
 
 
-def ledger_view(ledger: Ledger, profile: str = "paper") -> RenderableType:
+def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
     """Return headline, the claims, each with its words below what came of it, and counts.
 
     A quick run has neither counts nor sizes.
@@ -97,7 +97,7 @@ def _shown(claim: ClaimVerdict) -> Iterable[Text]:
         yield Text(entry) if isinstance(entry, str) else Text(entry.text, STYLES[entry.tone])
 
 
-def ledger_markdown(ledger: Ledger, profile: str = "paper") -> str:
+def ledger_markdown(ledger: Ledger, profile: str) -> str:
     """Return the ledger as a Markdown table, the counts above it."""
     about = " ".join([f"{_about(ledger)}.", *words.notes(ledger)])
     table = grid(_table(ledger))
