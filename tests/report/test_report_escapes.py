@@ -94,7 +94,7 @@ def test_markdown_tables_hold_no_markup_of_a_user(name: str, one_seed: ReportInp
     for text in (
         markdown_table(record.model_copy(update={"question": question, "paths": paths})),
         table_markdown(table),
-        ledger_markdown(claimed),
+        ledger_markdown(claimed, "paper"),
     ):
         kinds = {
             child.type
