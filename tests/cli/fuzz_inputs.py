@@ -56,20 +56,10 @@ SYSTEMS = (
     "mute.py:create",
 )
 FAULTS = (
-    "gain:scale=0.6",
-    "gain:scale=",
-    "gain:",
-    "gain:delay=1e99",
-    "gain:delay=99999999999",
-    "gain:noise=-1",
-    "gain:scale=0.6@",
-    "gain:scale=0.6@observer,onset=1e30",
-    "gain:offset=1/2",
-    "gain:scale=0.6,0.8",
-    "gain:erase,0.8",
-    "velocity:freeze,for=0",
-    "gain:erase",
-    "gain:scale=0.6,for=1,recover=-1",
+    *("gain:scale=0.6", "gain:scale=", "gain:", "gain:delay=1e99", "gain:delay=99999999999"),
+    *("gain:noise=-1", "gain:scale=0.6@", "gain:scale=0.6@observer,onset=1e30"),
+    *("gain:offset=1/2", "gain:scale=0.6,0.8", "gain:erase,0.8", "velocity:freeze,for=0"),
+    *("gain:erase", "gain:scale=0.6,for=1,recover=-1"),
 )
 
 OF_SYSTEMS = ("audit", "check", "interface", "map", "plan", "trace")
@@ -251,28 +241,9 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
 def texts(rng: random.Random, text: str, count: int) -> Iterator[str]:
     """Yield text with some of its characters, words and lines out of place."""
     tokens = (
-        "&a",
-        "*a",
-        "!!bool",
-        "? ",
-        "- ",
-        "{",
-        "[",
-        "'",
-        '"',
-        "|",
-        "\t",
-        "\0",
-        "\x85",
-        "\ud800",
-        "9" * 5000,
-        "[" * 500,
-        "!!python/name:os.system ",
-        "<<: ",
-        "2001-99-99",
-        "\x1b",
-        "#",
-        ":",
+        *("&a", "*a", "!!bool", "? ", "- ", "{", "[", "'", '"', "|", "\t", "\0", "\x85"),
+        *("\ud800", "9" * 5000, "[" * 500, "!!python/name:os.system ", "<<: ", "2001-99-99"),
+        *("\x1b", "#", ":"),
     )
     for _ in range(count):
         now = text
@@ -286,22 +257,8 @@ def texts(rng: random.Random, text: str, count: int) -> Iterator[str]:
 def documents(rng: random.Random, document: Any, count: int) -> Iterator[str]:
     """Yield JSON with some of its values changed, or cut short, or nested without end."""
     values: tuple[Any, ...] = (
-        None,
-        "",
-        "\ud800",
-        "\x1b[2J",
-        -1,
-        2**64,
-        10**400,
-        1e308,
-        float("nan"),
-        [],
-        {},
-        [[]],
-        True,
-        "x" * 5000,
-        "../../outside",
-        "__class__",
+        *(None, "", "\ud800", "\x1b[2J", -1, 2**64, 10**400, 1e308, float("nan"), [], {}, [[]]),
+        *(True, "x" * 5000, "../../outside", "__class__"),
     )
     for _ in range(count):
         changed = copy.deepcopy(document)
