@@ -29,6 +29,24 @@ def _elsewhere(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text(MINE)
 
 
+@pytest.mark.parametrize(
+    ("line", "meant"),
+    [
+        (("audit", TOY, "--sceens", "3"), "--scenes"),
+        (("audit", "quadrotor", "--plnner", "cem"), "--planner"),
+        (("check", "quadrotor", "--seeed", "1"), "--seed"),
+        (("audit", "mine.py:create", "--geer", "low"), "--gear"),
+        (("runs", "--jsn"), "--json"),
+        (("audit", "--study", "x.yaml", "--worker", "1"), "--workers"),
+        (("train", "quadrotor", "--plattform", "x"), "--platform"),
+    ],
+)
+def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):
+    said = faultpath(*line).refused()
+    assert f"did you mean {meant}?" in said
+    assert "Possible" not in said
+
+
 @pytest.mark.parametrize("verb", ["audit", "interface", "probe"])
 def test_help_shows_the_options_of_the_system_that_is_named(verb):
     shown = faultpath(verb, "quadrotor", "--help").out

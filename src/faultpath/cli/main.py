@@ -6,6 +6,7 @@ It imports next to nothing itself, so that Ctrl-C while the rest loads ends in a
 import faulthandler
 import math
 import os
+import re
 import signal
 import sys
 import time
@@ -171,6 +172,7 @@ def _misread(error: "TyperException") -> str:
     said = error.format_message().strip().rstrip(".").replace(". ", ": ")
     if not said:
         return ""
+    said = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", said)
     command = getattr(getattr(error, "ctx", None), "command_path", "faultpath")
     return f"{said[0].lower()}{said[1:]}; `{command} --help` shows what there is."
 

@@ -7,6 +7,7 @@ holds a flag that the verb itself has not got.
 
 import inspect
 from collections.abc import Callable, Iterable, Sequence
+from difflib import get_close_matches
 from functools import wraps
 from typing import Annotated, Any, Protocol
 
@@ -50,17 +51,25 @@ def with_system_flags(
         return verb
     options = [each for each in _options(system, _HELP in arguments) if _flag(each) not in own]
     if _HELP not in arguments:
-        _check(asked, name, system, options)
+        _check(asked, name, system, options, own)
     return _extended(verb, system, options)
 
 
-def _check(asked: Iterable[str], verb: str, system: str, options: Sequence[_Option]) -> None:
+def _check(
+    asked: Iterable[str],
+    verb: str,
+    system: str,
+    options: Sequence[_Option],
+    own: Iterable[str],
+) -> None:
     known = [_flag(option) for option in options]
     for flag in sorted(asked):
         if flag not in known:
+            close = get_close_matches(flag, [*own, *known], n=1)
+            hint = f"did you mean {close[0]}? " if close else ""
             raise UserError(
-                f"there is no option {flag}: `faultpath {verb} --help` shows those of the command, "
-                f"and system {system!r} takes {', '.join(known) or 'none of its own'}."
+                f"there is no option {flag}: {hint}`faultpath {verb} --help` shows those of the "
+                f"command, and system {system!r} takes {', '.join(known) or 'none of its own'}."
             )
 
 

@@ -32,6 +32,9 @@ class MapRun:
         """Return folder and headline."""
         return f"<MapRun in {self.folder}: {self.record.headline}>"
 
+    def _repr_html_(self) -> str:
+        return self.record.as_html()
+
 
 def read_map(folder: Path) -> MapRun:
     """Read a finished map, every file compared with its digest in `provenance.json`.

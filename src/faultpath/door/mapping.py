@@ -29,7 +29,7 @@ def reversal_map(
     baseline: str,
     repair: str,
     fault: str,
-    against: Sequence[str],
+    against: str | Sequence[str],
     up_to: float | None = None,
     points: int = 81,
     mean: float | Sequence[float] = 0.0,
@@ -54,7 +54,7 @@ def reversal_map(
         repair: Variant that is meant to help.
         fault: Without its size: a preset (`calibration`), a channel (`gain`, relative errors) or
             `CHANNEL:offset`; options may follow (`gain:scale,onset=20`).
-        against: The two modules.
+        against: The two modules, as a list or as the text of the command (`"controller,observer"`).
         up_to: Largest error, of either sign; default three of the spreads that the interface
             declares.
         points: Pairs of errors to fly at most, but for those that bisect the paths of the fault.
@@ -79,6 +79,8 @@ def reversal_map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
+    against = against.split(",") if isinstance(against, str) else against
+    against = tuple(each.strip() for each in against)
     given = dict(locals())
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
@@ -93,7 +95,7 @@ def reversal_map(
         baseline=baseline,
         repair=repair,
         fault=fault,
-        against=tuple(against),
+        against=against,
         library=scenes_from,
         up_to=up_to,
         points=points,

@@ -60,14 +60,20 @@ class Planned:
         names = ", ".join(each.name for each in self.plan.study.audits)
         return f"<Plan of {names}: {self.sentences[0]}>"
 
+    def _repr_html_(self) -> str:
+        from faultpath.report.proposal import by_audit, by_rank
+        from faultpath.tables.html import html
+
+        return "".join(html(table) for table in (by_rank(self.plan), by_audit(self.plan)))
+
 
 def plan(
     system: str | PathLike[str] | System,
     *,
     baseline: str,
     repair: str,
-    faults: str | Sequence[str] = (),
-    modules: str | Sequence[str] = (),
+    fault: str | Sequence[str] = (),
+    module: str | Sequence[str] = (),
     factorial: bool = False,
     library: str = "held-out",
     scenes: int | None = None,
@@ -75,6 +81,8 @@ def plan(
     options: Mapping[str, object] | None = None,
     workers: int | None = None,
     progress: bool | Display = True,
+    faults: str | Sequence[str] = (),
+    modules: str | Sequence[str] = (),
 ) -> Planned:
     """Rank the uncertain sources of a system, and propose the audits of a repair.
 
@@ -85,9 +93,9 @@ def plan(
         system: As for `audit`, but by name: a study file has to build it again.
         baseline: Variant to compare with.
         repair: Variant that is meant to help.
-        faults: Expected errors, as faults of one size (`gain:scale=1.1`): for sources that declare
+        fault: Expected errors, as faults of one size (`gain:scale=1.1`): for sources that declare
             none, and in place of what others declare.
-        modules: Modules that the repair changes, where what the variants read does not tell.
+        module: Modules that the repair changes, where what the variants read does not tell.
         factorial: Strike every subset of the modules that read the first source.
         library: Library of scenes.
         scenes: How many of its first scenes; `None` for all.
@@ -95,12 +103,16 @@ def plan(
         options: The system's own options.
         workers: Worker processes that the time is told for.
         progress: As for `audit`.
+        faults: As `fault`, which it was called before.
+        modules: As `module`, likewise.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    given = dict(locals())
+    given = {name: value for name, value in locals().items() if name not in ("faults", "modules")}
     checked_texts(baseline=baseline, repair=repair, library=library)
+    given |= {"fault": (*_several(fault), *_several(faults))}
+    given |= {"module": (*_several(module), *_several(modules))}
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
     called = isinstance(progress, Display) and progress.is_command
     with patience(str(system), None) if called else nullcontext():
@@ -121,8 +133,8 @@ def plan(
         scenes_from,
         count,
         drawn,
-        (faults,) if isinstance(faults, str) else tuple(faults),
-        (modules,) if isinstance(modules, str) else tuple(modules),
+        given["fault"],
+        given["module"],
         factorial,
     )
     with told.progress("Planning") as show:
@@ -131,6 +143,10 @@ def plan(
             show(Now(done, total, f"{done} of {total} flights"))
 
         return Planned(asked.make(hands(chosen.system, chosen.workers).count, note))
+
+
+def _several(given: str | Sequence[str]) -> tuple[str, ...]:
+    return (given,) if isinstance(given, str) else tuple(given)
 
 
 def check_new(file: Path) -> None:

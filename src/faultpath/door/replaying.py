@@ -1,7 +1,7 @@
 """Flying trials of a finished run again: whether they come out as they did, and what was heard."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -39,7 +39,7 @@ class Replayed:
     """Of the run."""
     differs: str
     """How the second flight differs; empty where it is the same to the bit."""
-    signals: tuple[Signal, ...] = ()
+    signals: tuple[Signal, ...] = field(default=(), repr=False)
 
 
 def chosen_scenes(

@@ -2,12 +2,12 @@
 
 from pydantic import Field
 
-from faultpath.frozen import Frozen
 from faultpath.plane.asked import MapQuestion
+from faultpath.results import Result
 from faultpath.statistics import Sign
 
 
-class MapPoint(Frozen, allow_inf_nan=False):
+class MapPoint(Result, allow_inf_nan=False):
     """A pair of errors that was flown; differences are repair minus baseline, pp."""
 
     errors: tuple[float, float]
@@ -24,7 +24,7 @@ class MapPoint(Frozen, allow_inf_nan=False):
     """Scenes that go to the repair and to the baseline, over the seeds."""
 
 
-class MapSurface(Frozen, allow_inf_nan=False):
+class MapSurface(Result, allow_inf_nan=False):
     """The surface on an even lattice: rows upward, by the error at the second module."""
 
     sizes: tuple[float, ...]
@@ -33,7 +33,7 @@ class MapSurface(Frozen, allow_inf_nan=False):
     """Where it is decided who is ahead; the zero contour lies where it is not."""
 
 
-class Flip(Frozen, allow_inf_nan=False):
+class Flip(Result, allow_inf_nan=False):
     """On one path, in one direction of the error: how large an error changes the verdict."""
 
     path: str
@@ -51,7 +51,7 @@ class Flip(Frozen, allow_inf_nan=False):
     last: float | None
 
 
-class Expectation(Frozen, allow_inf_nan=False):
+class Expectation(Result, allow_inf_nan=False):
     """The expected difference at one correlation, pp."""
 
     correlation: float
@@ -61,7 +61,7 @@ class Expectation(Frozen, allow_inf_nan=False):
     sign: Sign
 
 
-class CorrelationRegion(Frozen, allow_inf_nan=False):
+class CorrelationRegion(Result, allow_inf_nan=False):
     """Correlations at which it is decided who is ahead."""
 
     low: float
@@ -69,7 +69,7 @@ class CorrelationRegion(Frozen, allow_inf_nan=False):
     sign: Sign
 
 
-class JointErrors(Frozen, allow_inf_nan=False):
+class JointErrors(Result, allow_inf_nan=False):
     """The expected difference under the joint distribution, over all correlations."""
 
     curve: tuple[Expectation, ...]
@@ -85,7 +85,7 @@ class JointErrors(Frozen, allow_inf_nan=False):
     critical: float
 
 
-class MapRecord(Frozen, allow_inf_nan=False):
+class MapRecord(Result, allow_inf_nan=False):
     """A map, decided."""
 
     format: int = 1

@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Raised, Wrong, attempt
-from faultpath.frozen import Frozen
 from faultpath.planning import Audit, plan_audit, variant_of
 from faultpath.proposal.order import makers, ranked, recursion, repaired_modules
 from faultpath.proposal.probing import command_responses
 from faultpath.proposal.sources import Candidate, candidates, parsed
 from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
+from faultpath.results import Result
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
 
 PROBED_SCENES = 5
@@ -21,7 +21,7 @@ Note = Callable[[int, int], None]
 """Takes how many flights are done, and of how many."""
 
 
-class Timing(Frozen, allow_inf_nan=False):
+class Timing(Result, allow_inf_nan=False):
     """What the study will take, from a block of each variant under correct inputs."""
 
     scenes: int
@@ -35,7 +35,7 @@ class Timing(Frozen, allow_inf_nan=False):
     """Of the whole study, all workers together at work on it."""
 
 
-class Plan(Frozen):
+class Plan(Result):
     """What `faultpath plan --json` prints."""
 
     format: int = 1

@@ -1,10 +1,10 @@
 """Another conclusion from the same trials, as data."""
 
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 from faultpath.statistics import RuleName
 
 
-class EarlierLook(Frozen):
+class EarlierLook(Result):
     """What was asked when an audit was concluded before; a record cannot allow for that."""
 
     scenes: int | None

@@ -2,14 +2,14 @@
 
 from typing import Literal
 
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 from faultpath.statistics import Estimate, Sign
 
 FactorialOf = Literal["baseline", "repair", "difference"]
 OUTCOMES: tuple[FactorialOf, ...] = ("baseline", "repair", "difference")
 
 
-class FactorialEffect(Frozen):
+class FactorialEffect(Result):
     """A main effect of one module, or an interaction of several, on success."""
 
     of: FactorialOf
@@ -25,7 +25,7 @@ class FactorialEffect(Frozen):
     adjusted_p_value: float
 
 
-class Factorial(Frozen):
+class Factorial(Result):
     """The fault at every subset of the modules that read its source."""
 
     factors: tuple[str, ...]

@@ -4,11 +4,11 @@ from typing import Any, Literal, cast
 
 from pydantic import model_validator
 
-from faultpath.frozen import Frozen
 from faultpath.record.earlier import EarlierLook
 from faultpath.record.factors import Factorial
 from faultpath.record.question import Question
 from faultpath.record.voids import FailedTrials
+from faultpath.results import Result
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 from faultpath.trials.metrics import VEHICLE
 
@@ -16,7 +16,7 @@ Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 
 
-class StruckTap(Frozen):
+class StruckTap(Result):
     """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
 
     channel: str
@@ -27,7 +27,7 @@ class StruckTap(Frozen):
     """Those in which what the consumer got differed from the reading."""
 
 
-class Path(Frozen):
+class Path(Result):
     """One way in which the fault reaches the system."""
 
     name: str
@@ -44,7 +44,7 @@ class Path(Frozen):
     """What was struck in the baseline."""
 
 
-class Cell(Frozen):
+class Cell(Result):
     """The trials of one variant on one path, all seeds together."""
 
     variant: str
@@ -61,7 +61,7 @@ class Cell(Frozen):
     altered_trials: int
 
 
-class AtThreshold(Frozen):
+class AtThreshold(Result):
     """Success under another rule: the trial did not crash, and its metric is good enough."""
 
     threshold: float
@@ -71,7 +71,7 @@ class AtThreshold(Frozen):
     """Percentage points; secondary, with an interval that stands by itself."""
 
 
-class Effect(Frozen):
+class Effect(Result):
     """The repair minus the baseline on one path, over scenes in which every arm ran."""
 
     path: str
@@ -148,7 +148,7 @@ class Effect(Frozen):
         return self.failed is not None and self.failed.unsettled
 
 
-class PathBreakEven(Frozen):
+class PathBreakEven(Result):
     """The fault frequencies at which neither arm is decided to be ahead, on one path."""
 
     path: str
@@ -160,7 +160,7 @@ class PathBreakEven(Frozen):
     """What may be said of it, without the path; empty where no end has an effect that leads."""
 
 
-class Change(Frozen):
+class Change(Result):
     """How the effect changes from a fault at one module to the shared one."""
 
     isolated: str
@@ -179,7 +179,7 @@ class Change(Frozen):
     words: str
 
 
-class Stopped(Frozen):
+class Stopped(Result):
     """How far a sequential audit went."""
 
     scenes: int
@@ -190,7 +190,7 @@ class Stopped(Frozen):
     """Paths on which the difference was shown to be smaller than the margin."""
 
 
-class Verdict(Frozen):
+class Verdict(Result):
     """The answer in words."""
 
     headline: str
@@ -199,7 +199,7 @@ class Verdict(Frozen):
     """What would change the verdict."""
 
 
-class DecisionRecord(Frozen):
+class DecisionRecord(Result):
     """Everything that tables, pictures and the report show; written as `record.json`."""
 
     format: Literal[2] = 2

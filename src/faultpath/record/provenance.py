@@ -2,13 +2,16 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import ConfigDict, Field, StringConstraints
+
+from faultpath.results import Shown
 
 FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
+
 Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 
 
-class FlownAgain(BaseModel):
+class FlownAgain(Shown):
     """Scenes of a finished unit that were flown a second time, and what that showed."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -33,7 +36,7 @@ class FlownAgain(BaseModel):
     """The consumer that wrote into its reading, where the guard saw one."""
 
 
-class RunProvenance(BaseModel):
+class RunProvenance(Shown):
     """The conditions under which a run was made; written as `provenance.json`."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")

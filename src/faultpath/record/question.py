@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from faultpath.faults import Fault
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 from faultpath.statistics import RULES, RuleName
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 
@@ -13,7 +13,7 @@ Generalise = Literal["scenes", "models"]
 StopWhen = Literal["decided", "all-decided"]
 
 
-class StopRule(Frozen):
+class StopRule(Result):
     """When a sequential audit stops."""
 
     when: StopWhen
@@ -30,7 +30,7 @@ class StopRule(Frozen):
     """That a scene takes: distinct arms."""
 
 
-class Question(Frozen):
+class Question(Result):
     """What the audit asked."""
 
     system: str

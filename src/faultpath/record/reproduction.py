@@ -2,8 +2,9 @@
 
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import ConfigDict
 
+from faultpath.results import Shown
 from faultpath.tables import Table
 
 Answer = Literal["confirmed", "refuted", "undecided"]
@@ -14,7 +15,7 @@ Size = Literal["compatible", "right sign, other size", "other size", "other sign
 """
 
 
-class _Frozen(BaseModel):
+class _Frozen(Shown):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 from faultpath.statistics import Contrast, Estimate, RuleName, with_test
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import ALPHA, PairedTest
@@ -50,7 +50,7 @@ class Fills(NamedTuple):
     favour: Contrast
 
 
-class FailedTrials(Frozen):
+class FailedTrials(Result):
     """What failed trials leave open of an effect, as a record tells it."""
 
     repair: int

@@ -20,8 +20,8 @@ from typing_extensions import override
 
 from faultpath.blame import described
 from faultpath.execution.attempt import taps_of
-from faultpath.frozen import Frozen
 from faultpath.loop import Batch, Graph, Module
+from faultpath.results import Result
 from faultpath.taps import Query, Reading, Taps
 from faultpath.taps.tap import Tap
 from faultpath.trials import Arm, LoopSystem
@@ -29,7 +29,7 @@ from faultpath.trials import Arm, LoopSystem
 _DEEP = 8
 
 
-class Gradient(Frozen):
+class Gradient(Result):
     """What autograd tells of a traced variant."""
 
     seen: tuple[str, ...] = ()

@@ -2,12 +2,12 @@
 
 from typing import Literal
 
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 
 Status = Literal["passed", "failed", "not judged"]
 
 
-class Check(Frozen):
+class Check(Result):
     """One thing that was looked at."""
 
     name: str
@@ -27,7 +27,7 @@ class Check(Frozen):
         return "passed" if self.judged else "not judged"
 
 
-class Struck(Frozen):
+class Struck(Result):
     """A tap that was struck by itself."""
 
     variant: str
@@ -40,7 +40,7 @@ class Struck(Frozen):
     """Those of them that differed from what the source held."""
 
 
-class Report(Frozen):
+class Report(Result):
     """A check of a system; what `faultpath check --json` prints."""
 
     format: Literal[1] = 1

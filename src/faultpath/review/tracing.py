@@ -5,8 +5,8 @@ from typing import Literal
 
 from faultpath.errors import UserError
 from faultpath.faults import AnyFault
-from faultpath.frozen import Frozen
 from faultpath.interface import Provenance
+from faultpath.results import Result
 from faultpath.review.flights import Flight, Flown, fly_here
 from faultpath.review.gradient import Gradient, gradient
 from faultpath.review.information import differences
@@ -14,7 +14,7 @@ from faultpath.text import unknown
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
 
-class TracedRead(Frozen):
+class TracedRead(Result):
     """One read: a consumer, a channel and a control step."""
 
     step: int
@@ -32,7 +32,7 @@ class TracedRead(Frozen):
     """Whether the module looked at it; `None` where the system runs a loop of its own."""
 
 
-class Finding(Frozen):
+class Finding(Result):
     """A difference from what is declared."""
 
     says: str
@@ -40,7 +40,7 @@ class Finding(Frozen):
     """Channel and consumer."""
 
 
-class TraceReport(Frozen):
+class TraceReport(Result):
     """A trace of a variant; what `faultpath trace --json` prints."""
 
     format: Literal[1] = 1

@@ -3,14 +3,14 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Self
 
-from faultpath.frozen import Frozen
+from faultpath.results import Result
 from faultpath.taps import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.outcome import Outcome
 from faultpath.trials.table import OutcomeTable
 
 
-class RowDeliveries(Frozen):
+class RowDeliveries(Result):
     """The taps of one row of a study."""
 
     variant: str
@@ -20,7 +20,7 @@ class RowDeliveries(Frozen):
     """In the order of the interface; empty where every trial failed."""
 
 
-class Deliveries(Frozen):
+class Deliveries(Result):
     """The taps of a study, row by row; written as `deliveries.json`."""
 
     format: int = 1
