@@ -101,6 +101,7 @@ def test_the_quick_profile_keeps_every_promise() -> None:
         "equal maps",
         "break-even correlation",
         "turning sizes",
+        "decided places",
         "turning sizes found",
     ]
     assert Report.model_validate_json(quick.text()) == quick

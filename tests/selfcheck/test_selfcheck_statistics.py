@@ -5,14 +5,16 @@ import dataclasses
 import numpy as np
 import pytest
 
-from faultpath.record.family import SHARED, alpha_shares, decide_paths
+from faultpath.record.family import SHARED, alpha_shares
 from faultpath.selfcheck import Report, check_statistics, failures, page
 from faultpath.selfcheck.audits import PATHS, EqualArms, NoReversal, Trainings
 from faultpath.selfcheck.coverage import BreakEvenCoverage, IntervalCoverage, ModelsCoverage, tables
 from faultpath.selfcheck.detection import DetectionAtTheReported
 from faultpath.selfcheck.populations import Population, joint
-from faultpath.selfcheck.sequential import AnyLook, EveryLook, announced
-from faultpath.statistics import Resamples, break_even, success_effect
+from faultpath.selfcheck.promises import PROMISES
+from faultpath.selfcheck.records import Dying, Extended, Lopsided
+from faultpath.selfcheck.sequential import AnyLook, EveryLook
+from faultpath.statistics import Resamples, betting, break_even, success_effect, unconditional
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +32,11 @@ def test_the_quick_profile_keeps_every_promise(quick):
         "equal arms",
         "no reversal",
         "trainings",
+        "lopsided arms",
+        "dying trials",
+        "extended audits",
         "sequential, equal arms",
+        "sequential, p against interval",
         "sequential, coverage",
         "sequential, scenes taken",
         "sequential, decided",
@@ -170,17 +176,47 @@ def test_a_setting_always_gives_the_same_rate():
     assert cell.measure() == dataclasses.replace(cell).measure()
 
 
-def test_what_is_announced_at_a_look_is_what_an_audit_of_its_scenes_announces():
-    stream = np.random.default_rng(5)
-    shares = alpha_shares(PATHS, SHARED)
-    lean = {"correct": 0.5, "reconstruction": 0.75, "predictor": 0.4, SHARED: 0.15}
-    arms = {path: stream.random((2, 40, 3)) < [[[lean[path]]], [[0.5]]] for path in PATHS}
-    effects = {path: (one * 1.0 - two).mean(axis=1) for path, (one, two) in arms.items()}
-    at_once = announced(effects, SHARED)
-    assert 0 < at_once.sum() < 40
-    for scenes in range(1, 41, 3):
-        so_far = {path: (one[:scenes], two[:scenes]) for path, (one, two) in arms.items()}
-        assert decide_paths(so_far, shares=shares, rule="exact").announces == at_once[scenes - 1]
+@pytest.mark.parametrize(
+    ("code", "cell"),
+    [
+        (betting, AnyLook(60, Population(0.5, 0.0), 0.0, 15)),
+        (unconditional, EqualArms(100, Population(0.3, 0.0), 0.0, 150)),
+    ],
+)
+def test_a_p_divided_by_four_breaks_a_promise(code, cell, monkeypatch):
+    """The simulations take the code that decides; they had their own, which a wrong p passed by."""
+
+    def broken() -> bool:
+        found = cell.measure()
+        rates = found if isinstance(found, tuple) else (found,)
+        return any(
+            promise.broken({"measured": each.rate, "runs": each.runs})
+            for each in rates
+            for promise in PROMISES
+            if promise.section == each.section
+        )
+
+    assert not broken()
+    real = code.p_value
+
+    def less(*given):
+        p = real(*given)
+        return (p[0] / 4, *p[1:]) if isinstance(p, tuple) else p / 4
+
+    monkeypatch.setattr(code, "p_value", less)
+    assert broken()
+
+
+@pytest.mark.parametrize("gains", [0.3, 0.6])
+def test_lopsided_arms_are_seldom_told_apart(gains):
+    """By sign tests .07 to .18 were."""
+    assert Lopsided(100, 3, gains, 100).measure().rate <= 0.046 + 0.063
+
+
+def test_trials_that_die_announce_nothing_and_a_look_is_told():
+    assert Dying(40, 1.0, 8).measure().rate <= 0.3
+    announced, silent = Extended((30, 60), 6).measure()
+    assert silent.rate <= announced.rate
 
 
 def test_shares_of_the_error_rate_sum_to_all_of_it():
@@ -194,5 +230,5 @@ def test_shares_of_the_error_rate_sum_to_all_of_it():
 def test_looks_after_every_scene_keep_their_promises():
     """The full profile is in the documents; here a few settings, at three standard errors."""
     population = Population(0.4, 0.0, 1)
-    assert AnyLook(150, population, 0.0, 400).measure().rate <= 0.05 + 0.033
+    assert AnyLook(100, population, 0.0, 30).measure()[0].rate <= 0.05 + 0.12
     assert EveryLook(150, Population(0.4, 0.5), 400).measure().rate >= 0.95 - 0.033

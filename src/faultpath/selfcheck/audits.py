@@ -34,7 +34,9 @@ class EqualArms:
         stream = generator("selfcheck", repr(self), 0)
         paths: dict[str, Population] = dict.fromkeys(PATHS, self.population)
         announced = sum(
-            decide_paths(_audit(stream, self.scenes, paths, self.together), rule=IN_FORCE).announces
+            decide_paths(
+                audit_of(stream, self.scenes, paths, self.together), rule=IN_FORCE
+            ).announces
             for _ in range(self.runs)
         )
         setting = {
@@ -68,7 +70,7 @@ class NoReversal:
         }
         announced = 0
         for _ in range(self.runs):
-            turns = decide_paths(_audit(stream, self.scenes, paths, 0.3), rule=IN_FORCE).turns
+            turns = decide_paths(audit_of(stream, self.scenes, paths, 0.3), rule=IN_FORCE).turns
             announced += "reversal" in turns.values()
         setting = {
             "scenes": self.scenes,
@@ -125,7 +127,7 @@ def training_grid(runs: int) -> Iterator[Trainings]:
         yield Trainings(100, seeds, generalise, runs)
 
 
-def _audit(
+def audit_of(
     stream: np.random.Generator, n: int, paths: Mapping[str, Population], together: float
 ) -> dict[str, Arms]:
     """Return paired successes [scenes, seeds] on each path."""

@@ -16,6 +16,7 @@ from faultpath.plane.grow import next_points
 from faultpath.plane.joint import Errors, Expected
 from faultpath.plane.lattice import (
     COARSE,
+    SHOWN,
     UNITS,
     Point,
     along,
@@ -31,7 +32,9 @@ from faultpath.statistics.inputs import Floats
 from faultpath.streams import generator
 
 EQUAL_MAPS, CORRELATION = "equal maps", "break-even correlation"
+PLACES = "decided places"
 TURNS, TURNS_FOUND = "turning sizes", "turning sizes found"
+_TRUTHS = (CORRELATION, TURNS, PLACES)
 MODULES = ("first", "second")
 POINTS = 81
 SPREAD, BEARS, COST = 0.4, 0.6, 0.1
@@ -161,6 +164,14 @@ def _announces(found: Differences) -> bool:
     return bool(places) or any(flip.start or flip.turned for flip in flips)
 
 
+def _true_places(found: Differences, z: float, straight: bool) -> bool:
+    """Return whether the truth is on the side that is decided, at every place of the surface."""
+    weights = surface_weights(found.points)
+    signs = Combined.of(weights, found).signs(z)
+    heights = weights @ truth(found.points) if straight else truth(lattice(SHOWN))
+    return bool((signs * np.sign(heights) >= 0).all())
+
+
 @dataclass(frozen=True)
 class Truths:
     """Maps of arms that differ, by what is known of them."""
@@ -174,16 +185,17 @@ class Truths:
         often nothing false is said of any path; by either truth, that of the map, straight between
         its points, and that of the errors. Last, how often a turn is found, where one is."""
         stream = generator("selfcheck", repr(self), 0)
-        held = {(section, straight): 0 for section in (CORRELATION, TURNS) for straight in (1, 0)}
+        held = {(section, straight): 0 for section in _TRUTHS for straight in (1, 0)}
         decided = 0
         for _ in range(self.runs):
             found = grown(Scenes.draw(stream, self.scenes, self.alike, equal=False))
             expected = Expected.over(_ERRORS, found, "selfcheck")
             true = np.array([_of_the_map(expected), true_correlation()])
-            flips, _z = turns(found, MODULES, 1.0, "selfcheck")
+            flips, z = turns(found, MODULES, 1.0, "selfcheck")
             for straight, covered in zip((1, 0), expected.undecided(true).tolist(), strict=True):
                 held[CORRELATION, straight] += covered
                 held[TURNS, straight] += all(holds(f, found, bool(straight)) for f in flips)
+                held[PLACES, straight] += _true_places(found, z, bool(straight))
             decided += any(f.start and f.turned for f in flips if f.path == MODULES[1])
         setting = {"scenes": self.scenes, "alike": self.alike}
         rates = [

@@ -8,8 +8,9 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell, Report
-from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, TURNS
-from faultpath.selfcheck.sequential import ANY_LOOK, EVERY_LOOK
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, PLACES, TURNS
+from faultpath.selfcheck.records import DYING, EXTENDED, LOPSIDED
+from faultpath.selfcheck.sequential import ANY_LOOK, AT_ODDS, EVERY_LOOK
 
 
 @dataclass(frozen=True)
@@ -61,7 +62,7 @@ PROMISES = (
     Promise(
         REVERSAL,
         "an audit announces a reversal that is not there",
-        most=0.025,
+        most=0.015,
         concerns=lambda cell: cell["isolated pp"] == 0,
     ),
     Promise(
@@ -71,6 +72,12 @@ PROMISES = (
         concerns=lambda cell: cell["generalise"] == "models",
     ),
     Promise(EQUAL_MAPS, "a map of equal arms announces anything", most=0.05),
+    Promise(
+        PLACES,
+        "the side that is decided at every place of a map is the true one",
+        least=0.95,
+        concerns=lambda cell: cell["straight"] == 1,
+    ),
     Promise(CORRELATION, "the set of correlations covers the true one", least=0.93),
     Promise(
         TURNS,
@@ -78,7 +85,16 @@ PROMISES = (
         least=0.95,
         concerns=lambda cell: cell["straight"] == 1,
     ),
+    Promise(LOPSIDED, "an audit of lopsided arms of one mean announces anything", most=0.05),
+    Promise(DYING, "an audit of equal arms, of which one dies, announces anything", most=0.05),
+    Promise(
+        EXTENDED,
+        "an audit announces something after a look and does not say that there was one",
+        most=0.05,
+        concerns=lambda cell: cell["finding"] == "without",
+    ),
     Promise(ANY_LOOK, "a sequential audit of equal arms announces anything at any look", most=0.05),
+    Promise(AT_ODDS, "p and interval of a sequential audit say otherwise of 0", most=0.0),
     Promise(EVERY_LOOK, "the confidence sequence holds the truth at every look", least=0.95),
 )
 

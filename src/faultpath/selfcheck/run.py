@@ -13,6 +13,7 @@ from faultpath.selfcheck.detection import detection_grid
 from faultpath.selfcheck.model import Measured, Report, Section
 from faultpath.selfcheck.plane import map_grid
 from faultpath.selfcheck.populations import SCENES
+from faultpath.selfcheck.records import lopsided_grid, record_grid
 from faultpath.selfcheck.sequential import any_look_grid, every_look_grid, taken_grid
 from faultpath.work import local, run_all
 
@@ -36,6 +37,8 @@ class Profile:
     reports: int
     audits: int
     trainings: int
+    looks: int
+    records: int
     sequential: int
 
     def tasks(self) -> list[Task]:
@@ -48,15 +51,17 @@ class Profile:
             *equal_grid(self.audits),
             *reversal_grid(self.audits),
             *training_grid(self.trainings),
-            *any_look_grid(self.sequential),
+            *lopsided_grid(self.audits),
+            *record_grid(self.records),
+            *any_look_grid(self.looks),
             *every_look_grid(self.sequential),
             *taken_grid(self.sequential),
         ]
 
 
 PROFILES = {
-    "full": Profile(SCENES, 20_000, 4_000, 500, 200, 1_000, 2_000, 2_000),
-    "quick": Profile((25,), 500, 200, 20, 1, 10, 30, 20),
+    "full": Profile(SCENES, 20_000, 4_000, 500, 60, 1_000, 2_000, 400, 100, 2_000),
+    "quick": Profile((25,), 500, 200, 20, 1, 10, 30, 4, 1, 20),
 }
 _EACH = 8
 """Settings that are worth starting a process for."""

@@ -1,6 +1,6 @@
-"""What sequential audits announce, and how many scenes they take, with a look after every scene."""
+"""What sequential audits announce, by the code that decides, and how many scenes they take."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -8,8 +8,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record.family import ALPHA, SHARED, alpha_shares
-from faultpath.selfcheck.audits import PATHS
+from faultpath.record.family import ALPHA, SHARED, alpha_shares, decide_paths
+from faultpath.selfcheck.audits import PATHS, audit_of
 from faultpath.selfcheck.model import Measured, Setting
 from faultpath.selfcheck.populations import Population
 from faultpath.statistics import IN_FORCE
@@ -19,7 +19,10 @@ from faultpath.statistics.power import rule_power
 from faultpath.streams import generator
 
 ANY_LOOK, EVERY_LOOK = "sequential, equal arms", "sequential, coverage"
+AT_ODDS = "sequential, p against interval"
 TAKEN, DECIDED = "sequential, scenes taken", "sequential, decided"
+LOOKS = 10
+"""Of the audits whose decisions are simulated; a confidence sequence is looked at every scene."""
 POWER = 0.9
 """At which the fixed number of scenes is planned that a sequential audit is compared with."""
 Bools = NDArray[np.bool_]
@@ -37,23 +40,6 @@ def above(values: Floats, mean: float, alpha: float, bound: float = 1.0) -> Bool
     return np.asarray(log_capitals(values, mean, bound) >= needed, dtype=np.bool_)
 
 
-def announced(effects: Mapping[str, Floats], primary: str) -> Bools:
-    """Return [scenes]: whether after each scene an audit announces anything.
-
-    ``effects`` [scenes] are what a scene shows on each path, a mean over seeds; the rule is that of
-    `record.family.decide_paths` with the shares of a sequential audit.
-    """
-    shares = alpha_shares(list(effects), primary)
-    found = np.zeros(len(effects[primary]), dtype=np.bool_)
-    for name, share in shares.items():
-        kind, _, path = name.partition("/")
-        values, bound = effects[path], 1.0
-        if kind == "change":
-            values, bound = effects[SHARED] - values, 2.0
-        found |= against(values, 0.0, bound, ALPHA * share)
-    return found
-
-
 @dataclass(frozen=True)
 class AnyLook:
     """Sequential audits with four paths of arms that do not differ."""
@@ -64,26 +50,39 @@ class AnyLook:
     """Chance that a scene is the same on all paths, as where the fault changes nothing."""
     runs: int
 
-    def measure(self) -> Measured:
-        """Return the share of audits that announce anything at any look."""
+    def measure(self) -> tuple[Measured, ...]:
+        """Return the share of audits that announce anything at any of `LOOKS` looks, and the share
+        in which the primary contrast's p and its interval say otherwise of 0 at any of them."""
         stream = generator("selfcheck", repr(self), 0)
         n, seeds = self.scenes, self.population.seeds
-        false = 0
+        paths: dict[str, Population] = dict.fromkeys(PATHS, self.population)
+        shares = alpha_shares(PATHS, SHARED)
+        looks = np.unique(np.linspace(0, n, LOOKS + 1, dtype=np.int64)[1:]).tolist()
+        announced = {ANY_LOOK: 0, AT_ODDS: 0}
         for _ in range(self.runs):
-            common = stream.random((n, seeds + 2))
-            effects: dict[str, Floats] = {}
-            for path in PATHS:
-                same = stream.random((n, 1)) < self.together
-                draws: Floats = np.where(same, common, stream.random((n, seeds + 2)))
-                effects[path] = self.population.outcomes(draws).mean(axis=1)
-            false += bool(announced(effects, SHARED).any())
+            arms = audit_of(stream, n, paths, self.together)
+            found = [
+                decide_paths(
+                    {path: (one[:look], two[:look]) for path, (one, two) in arms.items()},
+                    rule=IN_FORCE,
+                    primary=SHARED,
+                    shares=shares,
+                )
+                for look in looks
+            ]
+            announced[ANY_LOOK] += any(family.announces for family in found)
+            primary = [family.effects[SHARED] for family in found]
+            announced[AT_ODDS] += any(each.rejected != each.side for each in primary)
         setting = {
             "scenes": n,
             "seeds": seeds,
             "rate": self.population.rate,
             "paths alike": self.together,
         }
-        return Measured(ANY_LOOK, setting, false / self.runs, self.runs)
+        return tuple(
+            Measured(section, setting, count / self.runs, self.runs)
+            for section, count in announced.items()
+        )
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ from faultpath.selfcheck.audits import EQUAL, REVERSAL, TRAININGS
 from faultpath.selfcheck.coverage import BREAK_EVEN, INTERVAL, MODELS
 from faultpath.selfcheck.detection import DETECTION
 from faultpath.selfcheck.model import Cell
-from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, TURNS, TURNS_FOUND
+from faultpath.selfcheck.plane import CORRELATION, EQUAL_MAPS, PLACES, TURNS, TURNS_FOUND
+from faultpath.selfcheck.record_words import RECORDS
 from faultpath.selfcheck.rows import LEANS, Shown, Texts, across, each, of_seeds, share
-from faultpath.selfcheck.sequential import ANY_LOOK, DECIDED, EVERY_LOOK, TAKEN
+from faultpath.selfcheck.sequential import ANY_LOOK, AT_ODDS, DECIDED, EVERY_LOOK, TAKEN
 
 _FEW = (0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 1e9)
 
@@ -141,7 +142,7 @@ TABLES = (
         REVERSAL,
         "Reversals",
         "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
-        "isolated effects are 0 there is none; promised: at most .025. The others show the power.",
+        "isolated effects are 0 there is none; promised: at most .015. The others show the power.",
         each(
             ("scenes", "seeds", "isolated effects, pp", "announce"),
             lambda c: (str(c["scenes"]), str(c["seeds"]), f"{float(c['isolated pp']):g}"),
@@ -173,6 +174,21 @@ TABLES = (
         each(
             ("of a", "scenes", "scenes alike", "announce"),
             lambda c: (str(c["of"]), str(c["scenes"]), str(c["alike"])),
+        ),
+    ),
+    Shown(
+        PLACES,
+        "Decided places of a map",
+        "Share of maps in which the side that is decided is the true one at every place of the "
+        "map, flown or between. Promised: at least .95 of the surface that is straight between the "
+        "points; nothing of the errors themselves, which bend between them.",
+        each(
+            ("truth", "scenes", "scenes alike", "all true"),
+            lambda c: (
+                "of the surface" if c["straight"] else "of the errors",
+                str(c["scenes"]),
+                f"{float(c['alike']):g}",
+            ),
         ),
     ),
     Shown(
@@ -217,13 +233,29 @@ TABLES = (
             lambda c: (str(c["scenes"]), f"{float(c['alike']):g}"),
         ),
     ),
+    *RECORDS,
     Shown(
         ANY_LOOK,
         "Sequential audits of equal arms",
-        "Share of sequential audits with four paths that announce anything at any look, with a "
-        "look after every scene. Promised: at most .05.",
+        "Share of sequential audits with four paths that announce anything at any of ten "
+        "looks, by the code that decides. Promised: at most .05.",
         each(
             ("at most scenes", "seeds", "discordant", "paths alike", "announce"),
+            lambda c: (
+                str(c["scenes"]),
+                str(c["seeds"]),
+                f"{100 * float(c['rate']):g} %",
+                f"{float(c['paths alike']):g}",
+            ),
+        ),
+    ),
+    Shown(
+        AT_ODDS,
+        "Sequential p-values and intervals",
+        "Share of the same audits in which, at any look, the p of the primary contrast is at most "
+        ".05 and its 95 % interval holds 0, or the other way round. Promised: none.",
+        each(
+            ("at most scenes", "seeds", "discordant", "paths alike", "at odds"),
             lambda c: (
                 str(c["scenes"]),
                 str(c["seeds"]),

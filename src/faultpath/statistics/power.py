@@ -116,8 +116,9 @@ def detected(
     second = counts[:, values < 0].sum(axis=1)
     fewer = np.minimum(first, second)
     if rule == "unconditional" and len(values) > _ONE_SEED:
-        z = quantile(max(LEVEL, 1.0 - alpha))
-        return (signflip.p_values(values, counts) <= alpha) & rejects(values, counts, 0.0, far, z)
+        found = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
+        found[found] = signflip.rejects(values, counts[found], alpha)
+        return found
     tested = 2.0 * binomial_cdf(fewer, first + second, 0.5) <= alpha
     if rule == "unconditional":
         known = unconditional.critical(int(counts[0].sum()), alpha)
