@@ -61,6 +61,7 @@ class Profile:
 
 PROFILES = {
     "full": Profile(SCENES, 20_000, 4_000, 500, 60, 1_000, 2_000, 400, 100, 2_000),
+    "medium": Profile(SCENES, 4_000, 800, 150, 8, 300, 600, 50, 25, 300),
     "quick": Profile((25,), 500, 200, 20, 1, 10, 30, 4, 1, 20),
 }
 _EACH = 8
