@@ -19,6 +19,7 @@ from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report import wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
+from faultpath.statistics import IN_FORCE, unconditional
 from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.markdown import grid
 
@@ -160,8 +161,29 @@ def table(run: Run) -> str:
             f"below 10 % or above 90 %, no headline. Break-even: the estimate of the fault "
             f"frequency at which neither is ahead, and the frequencies at which none is decided to "
             f"be. Intervals are for {record.estimand}. Void pairs: "
-            f"{sum(effect.void_pairs for effect in record.effects)}. {flown(run)}",
+            f"{sum(effect.void_pairs for effect in record.effects)}.{_rule(run)} {flown(run)}",
         ]
+    )
+
+
+def _rule(run: Run) -> str:
+    """Say by which rule a run was decided, and what today's makes of its primary effect."""
+    asked, effects = run.record.question, {each.path: each for each in run.record.effects}
+    if asked.stop or asked.rule == IN_FORCE:
+        return f" Rule: {asked.ruled}." if asked.ruled else ""
+    said = (
+        f" Rule: {asked.ruled}; its scenes were seen under it, so it keeps that verdict. Scenes "
+        "flown from now on answer under the rule in force."
+    )
+    effect = effects.get(asked.primary)
+    if effect is None or len(effect.wins) != 1:
+        return said
+    wins, losses = effect.wins[0], effect.losses[0]
+    now = unconditional.p_value(wins, losses, effect.scenes)
+    return (
+        f"{said} Of the primary effect, {wins}:{losses}, p by itself is "
+        f"{wording.p_value(effect.p_value)} by this rule and {wording.p_value(now)} by the E+M "
+        "test."
     )
 
 

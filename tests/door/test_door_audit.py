@@ -12,6 +12,7 @@ from rich.console import Console
 
 import faultpath
 from faultpath.door.display import Display
+from faultpath.report.tables import markdown_table
 from faultpath.report.terminal import decision
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -56,6 +57,23 @@ def test_a_run_holds_what_was_decided_and_from_what(run):
     assert run.table().num_rows == 12 * 2 * 4
     assert run.record.verdict.headline in repr(run)
     assert run.provenance.command[0].startswith(f"faultpath.audit(system={TOY!r}, baseline=")
+
+
+def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_path):
+    assert run.record.question.rule == "unconditional"
+    assert "since 2026-11-23" in markdown_table(run.record)
+    told = io.StringIO()
+    Console(file=told, width=200).print(decision(run.record, details=True))
+    assert "E+M" in told.getvalue()
+    assert "McNemar" in told.getvalue()
+    assert all(effect.mcnemar_p_value is not None for effect in run.record.effects)
+    with pytest.raises(faultpath.UserError, match="--rule unconditional"):
+        faultpath.audit(TOY, folder=run.folder, workers=0, rule="exact", **ASKED)
+    with pytest.raises(faultpath.UserError, match="exact or unconditional"):
+        faultpath.audit(TOY, folder=tmp_path / "no", workers=0, rule="sign", **ASKED)
+    old = run.record.question.model_dump()
+    del old["rule"]
+    assert type(run.record.question).model_validate(old).rule == "exact"
 
 
 def test_trials_are_the_table_as_a_frame(run):

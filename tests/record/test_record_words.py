@@ -165,7 +165,7 @@ def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
     (effect,) = (e for e in made.effects if e.path == CORRECT)
     least = re.search(r"a true one of (\d+) pp would be found with 80 % power", words)
     assert least is not None
-    assert effect.minimum_detectable_pp <= int(least[1]) < effect.minimum_detectable_pp + 1
+    assert effect.findable_pp <= int(least[1]) < effect.findable_pp + 1
     (line,) = (line for line in made.verdict.would_change if "less than 80 % power" in line)
     assert f": {least[1]} pp under correct inputs" in line
 

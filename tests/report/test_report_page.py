@@ -142,7 +142,7 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
         row = rows[effect.path]
         adjusted = effect.adjusted_p_value or 0.0
         assert row[1] == ("< 0.001" if adjusted < 0.001 else f"{adjusted:.3f}")
-        assert row[2] == plain(effect.minimum_detectable_pp or 0.0)
+        assert row[2] == plain(effect.findable_pp or 0.0)
         assert row[3:5] == [str(effect.scenes), str(effect.void_pairs)]
         result = breaks.get(effect.path)
         assert row[5] == ("–" if result is None else wording.break_even(result))

@@ -124,3 +124,27 @@ def test_wrong_input_is_refused():
         rule_power(100, 0.1, 0.2, rule="exact")
     with pytest.raises(ValueError, match="only 0 and 1"):
         detectable(np.full((4, 2), 0.5), np.ones((4, 2)), rule="exact")
+
+
+@pytest.mark.parametrize("rule", ["exact", "unconditional"])
+@pytest.mark.parametrize(("wins", "losses"), [(5, 5), (10, 10)])
+def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losses):
+    """Wins on top of noise: at the other number it is .8 only if the noise gives way to them."""
+    arms = counted(wins, losses)
+    seen = detectable(*arms, rule=rule) / 100.0
+    planned = detectable(*arms, rule=rule, on_top=True) / 100.0
+    assert 1.1 < planned / seen < 1.8
+    stream, noise = np.random.default_rng(5), (wins + losses) / 100.0
+
+    def power(difference):
+        chances = [noise / 2 + difference, noise / 2, 1 - noise - difference]
+        first, second, _ = stream.multinomial(100, chances, size=300).T
+        resamples = Resamples.draw("planned", 100, n_resamples=1)
+        tested = (
+            with_test(success_effect(*counted(b, c), resamples), rule)
+            for b, c in zip(first.tolist(), second.tolist(), strict=True)
+        )
+        return np.mean([each.detected != 0 for each in tested])
+
+    assert power(planned) == pytest.approx(0.8, abs=0.07)
+    assert power(seen) < power(planned)

@@ -214,6 +214,7 @@ def _effect(
         extreme=family.extremes[path],
         acted=path not in untested,
         minimum_detectable_pp=_detectable(about, found, trials.arms),
+        planning_detectable_pp=_detectable(about, found, trials.arms, on_top=True),
         time_s=others.time_s,
         joint_successes=others.joint_successes,
         metrics=others.metrics,
@@ -224,7 +225,9 @@ def _effect(
     return effect.model_copy(update={"words": words.effect_words(about, effect)})
 
 
-def _detectable(about: words.About, found: Contrast, arms: Arms) -> float | None:
+def _detectable(
+    about: words.About, found: Contrast, arms: Arms, on_top: bool = False
+) -> float | None:
     """Return the least difference that the rule finds at the level that Holm left this contrast.
 
     None is known for newly trained models, whose spread a few seeds do not give, and of an audit
@@ -232,7 +235,8 @@ def _detectable(about: words.About, found: Contrast, arms: Arms) -> float | None
     """
     if found.decision is None or about.question.generalise == "models" or about.sequential:
         return None
-    return detectable(*arms, rule=about.question.rule, alpha=found.decision.critical_p)
+    rule, alpha = about.question.rule, found.decision.critical_p
+    return detectable(*arms, rule=rule, alpha=alpha, on_top=on_top)
 
 
 def _exact(test: Callable[[int, int], float], counts: Sequence[Discordant]) -> float:

@@ -104,7 +104,11 @@ class Effect(Result):
     acted: bool
     """Whether the fault changed anything in any trial of the path; correct inputs count as so."""
     minimum_detectable_pp: float | None
-    """True difference that the deciding rule finds with 80 % power."""
+    """True difference that the deciding rule finds with 80 % power, if as many pairs are discordant
+    as were seen, whatever the difference."""
+    planning_detectable_pp: float | None = None
+    """The same if the difference adds to the discordance seen, the number to plan by; `None` in
+    records that do not say."""
     time_s: Estimate | None
     """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
     joint_successes: int
@@ -136,6 +140,11 @@ class Effect(Result):
         """Whether a headline may rest on it: decided, away from floor and ceiling, and not among
         trials that one arm survived."""
         return self.sign != 0 and self.extreme is None and not self.uneven
+
+    @property
+    def findable_pp(self) -> float | None:
+        """True difference that would be found in 8 of 10 audits."""
+        return self.planning_detectable_pp or self.minimum_detectable_pp
 
     @property
     def uneven(self) -> bool:

@@ -209,7 +209,7 @@ def _missed(effects: Sequence[Effect]) -> list[str]:
     """Return the places of undecided effects, each with what could have been seen there."""
     said: list[str] = []
     for effect in effects:
-        least = effect.minimum_detectable_pp
+        least = effect.findable_pp
         if effect.extreme:
             ends = "fail" if effect.extreme == "floor" else "succeed"
             aside = f" (both nearly always {ends})"

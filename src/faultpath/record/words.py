@@ -161,9 +161,9 @@ def effect_words(about: About, effect: Effect) -> str:
         words += f", and it is smaller than {margin(about.question.stop)}"
     if effect.extreme:
         return f"{words}; {_extreme(effect)}, where a difference can hardly show."
-    if effect.minimum_detectable_pp is None:
+    if effect.findable_pp is None:
         return f"{words}."
-    least = math.ceil(effect.minimum_detectable_pp)
+    least = math.ceil(effect.findable_pp)
     return f"{words}; a true one of {least} pp would be found with 80 % power."
 
 
@@ -273,8 +273,8 @@ def would_change(about: About, effects: Sequence[Effect]) -> tuple[str, ...]:
             lines.append(advice + "difference can hardly show.")
     missed: dict[int, list[str]] = {}
     for effect in tested:
-        if not about.few and not effect.detected and effect.minimum_detectable_pp is not None:
-            least = math.ceil(effect.minimum_detectable_pp)
+        if not about.few and not effect.detected and effect.findable_pp is not None:
+            least = math.ceil(effect.findable_pp)
             missed.setdefault(least, []).append(where(effect.path))
     if missed:
         listed = "; ".join(f"{least} pp {' and '.join(at)}" for least, at in missed.items())

@@ -47,8 +47,18 @@ class _Of:
 
     def power(self) -> Entry:
         """Return the difference that is found with 80 % power."""
+        least = self.effect.findable_pp
+        return Entry(text=MISSING if least is None else wording.plain(least))
+
+    def power_seen(self) -> Entry:
+        """Return it for as much discordance as was seen."""
         least = self.effect.minimum_detectable_pp
         return Entry(text=MISSING if least is None else wording.plain(least))
+
+    def mcnemar(self) -> Entry:
+        """Return exact McNemar's p, where another test decides."""
+        p = self.effect.mcnemar_p_value
+        return Entry(text=MISSING if p is None else wording.p_value(p))
 
     def break_even(self) -> Entry:
         """Return the fault frequencies at which neither arm is decided to be ahead."""
@@ -72,8 +82,8 @@ BEHIND = ("holm", "power", "scenes", "void", "break-even")
 """Beside a forest plot, which has the rest."""
 SHOWN = (*_ARMS, *DIFFERENCE, *BEHIND)
 ALL = (
-    *(*_ARMS, *DIFFERENCE, "p", "holm", "decided"),
-    *("power", "scenes", "void", "break-even"),
+    *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
+    *("power", "power-seen", "scenes", "void", "break-even"),
 )
 _QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
     "baseline": ("", lambda of: of.rate(of.record.question.baseline)),
@@ -85,6 +95,8 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
     "holm": ("", lambda of: wording.adjusted(of.effect)),
     "decided": ("Decided for", _Of.decided),
     "power": ("80 % power, pp", _Of.power),
+    "power-seen": ("the same at the discordance seen, pp", _Of.power_seen),
+    "mcnemar": ("p, exact McNemar", _Of.mcnemar),
     "scenes": ("Scenes", lambda of: str(of.effect.scenes)),
     "void": ("Void pairs", _Of.void),
     "break-even": ("Break-even, %", _Of.break_even),
@@ -142,13 +154,18 @@ def whole_table(record: DecisionRecord) -> Table:
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
         "ahead, with the estimate in front; any: none is decided from which on one of them is.",
-        f"Primary contrast: {asked.primary}. {_corrected(record)} Intervals and tests speak of "
-        f"{record.estimand}.",
+        f"Primary contrast: {asked.primary}. {_ruled(record)}{_corrected(record)} Intervals and "
+        f"tests speak of {record.estimand}.",
         *not_standing(record),
         record.verdict.headline,
     )
     table = by_quantity(record, ALL, title, notes)
     return table.model_copy(update={"lines": (*table.lines, *_secondary(record))})
+
+
+def _ruled(record: DecisionRecord) -> str:
+    rule = record.question.ruled
+    return f"Rule: {rule}. " if rule else ""
 
 
 def _corrected(record: DecisionRecord) -> str:
@@ -174,7 +191,10 @@ def latex_table(record: DecisionRecord) -> str:
 
 def _named(record: DecisionRecord, names: Sequence[str]) -> list[str]:
     """Return the quantities that the record has: no power where the number of scenes was open."""
-    return [name for name in names if name != "power" or record.stopped is None]
+    beside = any(effect.mcnemar_p_value is not None for effect in record.effects)
+    shown = {"power": record.stopped is None, "mcnemar": beside}
+    shown["power-seen"] = any(effect.planning_detectable_pp for effect in record.effects)
+    return [name for name in names if shown.get(name, True)]
 
 
 def _label(record: DecisionRecord, name: str) -> str:

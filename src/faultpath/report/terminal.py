@@ -39,6 +39,10 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     parts += [Text(note) for note in factors.notes] if factors else []
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
+        if record.question.ruled:
+            parts += [Text(""), Text(f"Rule: {record.question.ruled}.")]
+        if any(effect.mcnemar_p_value is not None for effect in record.effects):
+            parts += [Text(""), Parted(by_path(record, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, record.verdict.sentences)]
         parts += _list("What would change this", record.verdict.would_change, "bold")
     return Group(*parts)

@@ -21,7 +21,13 @@ _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
 
 
 def detectable(
-    first: Numbers, second: Numbers, *, rule: RuleName, alpha: float = ALPHA, power: float = 0.8
+    first: Numbers,
+    second: Numbers,
+    *,
+    rule: RuleName,
+    alpha: float = ALPHA,
+    power: float = 0.8,
+    on_top: bool = False,
 ) -> float | None:
     """Return the detectable difference in success (pp) of binary arms [scenes, seeds].
 
@@ -29,6 +35,9 @@ def detectable(
     pairs are taken to be discordant as were, or with all of them on one side what the difference
     needs; without any, the upper end of the 95 % Clopper-Pearson interval of their share. Seeds
     agree within a scene as often as was seen; copies of a seed count once.
+
+    ``on_top`` takes what was seen for noise that favours neither arm, and the difference for wins
+    beside it, so that pairs are discordant more often: the number to plan by.
     """
     one, two = paired_binary(first, second)
     n_scenes = len(one)
@@ -40,7 +49,7 @@ def detectable(
         alike = _alike(seeds)
 
     def reached(difference: float) -> float:
-        share = min(1.0, max(rate, difference))
+        share = min(1.0, rate + difference if on_top else max(rate, difference))
         if alike == 1.0:
             return rule_power(n_scenes, share, difference, alpha, rule=rule)
         values, chances = seed_mixture(seeds.shape[1], share, difference / share, alike)

@@ -43,7 +43,7 @@ def effect_rows(record: DecisionRecord) -> tuple[EffectRow, ...]:
             wins_losses=wording.wins_losses(effect.wins, effect.losses),
             sign=effect.sign,
             note=", ".join(filter(None, (primary[effect.path], wording.reservation(effect)))),
-            band_pp=None if effect.detected else effect.minimum_detectable_pp,
+            band_pp=None if effect.detected else effect.findable_pp,
         )
         for effect in record.effects
     )
