@@ -76,7 +76,7 @@ def _shown(report: "Report") -> "RenderableType":
     for check in report.checks:
         status = Text(check.status, styles[check.status])
         parts.append(Text.assemble(status, f"  {check.name}: {check.says}"))
-        told = (*check.failures, *(f"Perhaps: {said}" for said in check.remarks))
+        told = (*check.failures, *(f"Remark: {said}" for said in check.remarks))
         parts += [Padding(Text(f"- {said}"), (0, 0, 0, 2)) for said in told]
     failed = sum(check.status == "failed" for check in report.checks)
     said = f"{wording.counted(failed, 'check')} failed." if failed else "No check failed."

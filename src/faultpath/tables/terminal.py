@@ -94,7 +94,9 @@ def _columns_within(width: int, table: Table) -> int:
     """Count the first columns that stand unfolded within `width`, beside the narrowest labels."""
     used = _longest(word for line in table.lines for word in line.label.split())
     for index, column in enumerate(table.columns):
-        head = _folded(column, index, table).splitlines()
+        head = [column]  # of words it is never folded, so it counts whole
+        if column not in table.words:
+            head = _folded(column, index, table).splitlines()
         texts = (_text(line.entries[index]).plain for line in table.lines if line.entries)
         used += _apart(table)[1] + _longest(
             each for text in (*head, *texts) for each in text.splitlines()
