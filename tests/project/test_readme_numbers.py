@@ -159,6 +159,7 @@ def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | Non
         "--repair": asked.repair,
         "--fault": asked.fault,
         "--library": asked.library,
+        "--rule": asked.rule,
     }
     assert asked.seeds == (0,)
     assert scenes is None or asked.n_scenes == scenes
