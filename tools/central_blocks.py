@@ -40,7 +40,7 @@ def fill() -> str:
     seeds = ", ".join(map(str, asked.seeds))
     own = of_run(found, f"At the paper's error, {asked.scenes} held-out scenes, seeds {seeds}")
     table = central([*([own] if own else []), *_besides()])
-    return f"{state(asked, run='the shipped run')}\n\n{block(table)}"
+    return f"{block(table)}\n{state(asked, run='the shipped run')}"
 
 
 def _besides() -> Iterator[Line]:
