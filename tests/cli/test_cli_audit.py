@@ -186,7 +186,7 @@ def test_a_damaged_shard_is_named_and_run_again(damage, run, monkeypatch):
         ({"fault": "gain:scale=0.7"}, "set of variants, faults or seeds"),
         ({"seeds": "1"}, "set of variants, faults or seeds"),
         ({"baseline": "blind", "repair": "calibrated"}, "study"),
-        ({"library": "wagons"}, "library"),
+        ({"library": "selection"}, "library"),
     ],
 )
 def test_a_folder_of_another_study_is_left_alone(options, says, run, monkeypatch):

@@ -90,7 +90,7 @@ def test_a_flag_of_the_verb_keeps_its_meaning():
         (["--wnd", "L3"], {"system": "quadrotor"}, ["--wnd", "--wind, --environment"]),
         (["--wind=L3"], {}, ["--wind", "toy.py:create", "takes none"]),
         (["--gear", "3"], {"system": "mine.py:create"}, ["'3'", "low, high"]),
-        (["--steps", "x"], {"system": "mine.py:create"}, ["steps 'x'", "integer"]),
+        (["--steps", "x"], {"system": "mine.py:create"}, ["steps 'x'", "whole number"]),
         (["--gear", "low", "--set", "gear=low"], {"system": "mine.py:create"}, ["'gear' twice"]),
         (["--wind", "L3"], {"system": "nowhere.py:create"}, ["no file 'nowhere.py'"]),
         (["--wind", "L3"], {"system": "quadcopter"}, ["no system 'quadcopter'"]),

@@ -89,7 +89,7 @@ def test_trials_are_the_table_as_a_frame(run):
 def test_without_pandas_a_sentence_names_the_table(run, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(
-        faultpath.UserError, match=r"pip install 'faultpath\[pandas\]', or .* table\(\)"
+        faultpath.UserError, match=r"pip install '\.\[pandas\]', or .* table\(\)"
     ):
         run.trials()
 
@@ -176,7 +176,7 @@ def test_an_object_says_that_it_runs_here(toy):
     asked = ASKED | {"progress": Display(Console(file=told))}
     run = faultpath.audit(toy, **asked)
     assert "The system is an object, so it runs in this process" in told.getvalue()
-    assert "Running: 72 of 72 trials" in told.getvalue()
+    assert "Running: 96 of 96 trials" in told.getvalue()
     assert run.provenance.workers == 0
 
 
@@ -232,7 +232,7 @@ def test_what_is_typed_in_flies_and_needs_no_guard(tmp_path):
         [sys.executable, "-"], input=NOTEBOOK, capture_output=True, text=True, timeout=120
     )
     assert done.stdout == "True None\n", done.stderr
-    assert "Running: 72 of 72 trials" in done.stderr
+    assert "Running: 96 of 96 trials" in done.stderr
 
 
 def test_the_command_line_leaves_the_same_record(run, tmp_path):
