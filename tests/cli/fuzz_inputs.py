@@ -172,9 +172,13 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
     "scenes generate": (["folder"], {"--seed": ("x", "-1"), "--count": ("0", "-5")}),
     "selfcheck statistics": (
         [],
-        {"--quick": (None,), "--out": ("found.json", "folder"), "--processes": ("1", "0", "x")},
+        {
+            "--profile": ("quick", "fast"),
+            "--out": ("found.json", "folder"),
+            "--processes": ("1", "0", "x"),
+        },
     ),
-    "selfcheck map": (["too much"], {"--quick": (None,), "--processes": ("0", "x")}),
+    "selfcheck map": (["too much"], {"--profile": ("quick", "fast"), "--processes": ("0", "x")}),
     "train quadrotor": (["nobody"], {"--seed": ("77", "x"), "--out": ("t",)}),
 }
 """Each verb with arguments that end soon: right ones for the toy, wrong ones for what is costly.

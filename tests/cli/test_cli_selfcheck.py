@@ -11,7 +11,7 @@ from faultpath.selfcheck.run import Profile
 from faultpath.statistics import score
 from faultpath.work import local
 
-SMALL = Profile((10,), 20, 10, 1, 1, 1, 1, 1)
+SMALL = Profile((10,), 20, 10, 1, 1, 1, 1, 1, 1, 1)
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def check(monkeypatch, capsys):
 
     def run(*options):
         alone = () if "--processes" in options else ("--processes", "1")
-        command = ["faultpath", "selfcheck", "statistics", "--quick", *alone, *options]
+        command = ["faultpath", "selfcheck", "statistics", "--profile", "quick", *alone, *options]
         monkeypatch.setattr("sys.argv", command)
         with pytest.raises(SystemExit) as ended:
             main()
@@ -38,7 +38,7 @@ def test_numbers_are_written_and_tables_printed(check, tmp_path):
     assert status == 0, said
     report = Report.model_validate_json(out.read_text())
     assert report.profile == "quick"
-    assert len(report.sections) == 11
+    assert len(report.sections) == 15
     for title in ("Interval of an effect, one seed", "Break-even frequency", "Reversals"):
         assert title in said
     assert "No promise is broken by more than three standard errors." in said

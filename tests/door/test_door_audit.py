@@ -88,9 +88,7 @@ def test_trials_are_the_table_as_a_frame(run):
 
 def test_without_pandas_a_sentence_names_the_table(run, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(
-        faultpath.UserError, match=r"pip install '\.\[pandas\]', or .* table\(\)"
-    ):
+    with pytest.raises(faultpath.UserError, match=r"pip install '\.\[pandas\]', or .* table\(\)"):
         run.trials()
 
 

@@ -117,7 +117,7 @@ EXAMPLES = {
     "reproduce": "faultpath reproduce table-4",
     "runs": "faultpath runs",
     "scenes": "faultpath scenes generate mine.json --seed 7",
-    "selfcheck": "faultpath selfcheck statistics --quick",
+    "selfcheck": "faultpath selfcheck statistics --profile quick",
     "trace": "faultpath trace examples/toy.py:create",
     "train": "faultpath train quadrotor gru gru+dcc --seed 0",
 }

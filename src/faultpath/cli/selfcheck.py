@@ -18,7 +18,10 @@ BROKEN = 1
 app = Verbs(help="Check that the installed code keeps what it promises.")
 
 
-Quick = Annotated[bool, typer.Option("--quick", help="A small part, in seconds, with wide limits.")]
+Profile = Annotated[
+    str,
+    typer.Option(help="full; medium, in minutes; or quick, in seconds. Less has wider limits."),
+]
 Out = Annotated[
     Path | None, typer.Option(parser=path, help="File to write the numbers to, as JSON.")
 ]
@@ -26,26 +29,26 @@ Processes = Annotated[int | None, typer.Option(min=1, help="Processes; default o
 
 
 @app.command("statistics")
-def statistics(quick: Quick = False, out: Out = None, processes: Processes = None) -> int:
+def statistics(profile: Profile = "full", out: Out = None, processes: Processes = None) -> int:
     """Simulate audits with a known truth: coverage of the intervals, power at the reported
     detectable difference, false announcements. Exits with 1 where a promise is not kept."""
     from faultpath.selfcheck import check_statistics
 
-    return _checked(check_statistics, quick, out, processes)
+    return _checked(check_statistics, profile, out, processes)
 
 
 @app.command("map")
-def reversal_map(quick: Quick = False, out: Out = None, processes: Processes = None) -> int:
+def reversal_map(profile: Profile = "full", out: Out = None, processes: Processes = None) -> int:
     """Simulate reversal maps with a known truth: false announcements, coverage of the break-even
     correlation. Exits with 1 where a promise is not kept."""
     from faultpath.selfcheck import check_map
 
-    return _checked(check_map, quick, out, processes)
+    return _checked(check_map, profile, out, processes)
 
 
 def _checked(
     check: "Callable[[str, int, Progress], Report]",
-    quick: bool,
+    profile: str,
     out: Path | None,
     processes: int | None,
 ) -> int:
@@ -64,7 +67,7 @@ def _checked(
         def note(done: int, total: int, seconds: float | None) -> None:
             simulating(Now(done, total, f"{done}/{total} settings", seconds))
 
-        report = check("quick" if quick else "full", processes or os.cpu_count() or 1, note)
+        report = check(profile, processes or os.cpu_count() or 1, note)
     show(report, console)
     if out is not None:
         write_output(out, report.text(), NUMBERS)

@@ -30,7 +30,7 @@ def page(report: Report, broken: Sequence[str]) -> str:
     lines = [
         "# What the statistics keep",
         "",
-        f"Made by `faultpath selfcheck statistics`, profile {report.profile}, in {minutes:.0f} "
+        f"Made by `faultpath selfcheck statistics --profile {report.profile}` in {minutes:.0f} "
         "minutes; the numbers are in [reference/statistics-check.json]"
         "(reference/statistics-check.json). Populations with a known truth are sampled, and the "
         "shipped code decides. Simulated rates have a standard error of "

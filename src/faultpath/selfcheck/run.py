@@ -2,9 +2,9 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 from faultpath.errors import UserError
 from faultpath.selfcheck.audits import equal_grid, reversal_grid, training_grid
@@ -16,6 +16,8 @@ from faultpath.selfcheck.populations import SCENES
 from faultpath.selfcheck.records import lopsided_grid, record_grid
 from faultpath.selfcheck.sequential import any_look_grid, every_look_grid, taken_grid
 from faultpath.work import local, run_all
+
+T = TypeVar("T")
 
 
 class Task(Protocol):
@@ -64,6 +66,12 @@ PROFILES = {
     "medium": Profile(SCENES, 4_000, 800, 150, 8, 300, 600, 50, 25, 300),
     "quick": Profile((25,), 500, 200, 20, 1, 10, 30, 4, 1, 20),
 }
+MAPS = {
+    "full": ((10, 25, 50, 100), 500),
+    "medium": ((10, 25, 50, 100), 100),
+    "quick": ((25,), 10),
+}
+"""Of maps: numbers of scenes, and maps of each kind."""
 _EACH = 8
 """Settings that are worth starting a process for."""
 
@@ -76,15 +84,20 @@ def check_statistics(profile: str, processes: int = 1, progress: Progress | None
 
     One process is this one itself. `UserError` for an unknown profile.
     """
-    if profile not in PROFILES:
-        raise UserError(f"there is no profile {profile!r}: choose {' or '.join(PROFILES)}.")
-    return _simulated(profile, PROFILES[profile].tasks(), processes, progress)
+    tasks = _known(profile, PROFILES).tasks()
+    return _simulated(profile, tasks, processes, progress)
 
 
 def check_map(profile: str, processes: int = 1, progress: Progress | None = None) -> Report:
-    """Simulate reversal maps as `check_statistics` does audits; ``profile`` is full or quick."""
-    tasks = map_grid((25,), 10) if profile == "quick" else map_grid((10, 25, 50, 100), 500)
+    """Simulate reversal maps as `check_statistics` does audits."""
+    tasks = map_grid(*_known(profile, MAPS))
     return _simulated(profile, list(tasks), processes, progress)
+
+
+def _known(profile: str, profiles: Mapping[str, T]) -> T:
+    if profile not in profiles:
+        raise UserError(f"there is no profile '{profile}': choose {', '.join(profiles)}.")
+    return profiles[profile]
 
 
 def _simulated(
