@@ -92,7 +92,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(place)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
     for name in PROFILES:
-        monkeypatch.setitem(PROFILES, name, OneOfEach((10,), 2, 2, 1, 1, 1, 1, 1))
+        monkeypatch.setitem(PROFILES, name, OneOfEach((10,), 2, 2, 1, 1, 1, 1, 1, 1, 1))
     return place
 
 

@@ -44,8 +44,8 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("map") / "run"
     ended = faultpath(*line(folder, scenes=12))
     assert (ended.status, ended.err) == (0, "")
-    assert "25 pairs of errors first, 360 trials" in ended.out
-    assert "Sharing the error reverses" in ended.out or "it is not decided" in ended.out
+    assert "25 pairs of errors first, 600 trials" in ended.out
+    assert "Sharing the error reverses" in ended.out or "nothing is decided" in ended.out
     assert str(folder / "report.html") in ended.out
     return folder
 

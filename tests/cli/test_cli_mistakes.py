@@ -164,11 +164,11 @@ def test_help_is_whole(verb):
 
 
 YAMLS = {
-    "not YAML": ("name: [", "line 1"),
+    "not YAML": ("name: [", "not plain YAML"),
     "nothing": ("", "no interface"),
     "a tag that runs code": (
         "name: !!python/object/apply:os.system ['touch harm']",
-        "not plain YAML",
+        "tags are not read",
     ),
     "aliases": ("name: &a x\nsources: *a\n", "aliases"),
     "deep": ("[" * 200 + "]" * 200, "nested too deeply"),

@@ -68,8 +68,8 @@ def test_json_is_all_that_is_printed_and_is_what_the_folder_keeps(instant, tmp_p
     [
         (("probe",), ["system", "probe --help"]),
         (("probe", TOY, "--variants", "a"), ["offers no measurements", "quadrotor"]),
-        (("probe", "quadrotor", "--variants", ""), ["variants once each"]),
-        (("probe", "quadrotor", "--variants", "wm-a,wm-a"), ["variants once each"]),
+        (("probe", "quadrotor", "--variants", ""), ["--variants", "empty"]),
+        (("probe", "quadrotor", "--variants", "wm-a,wm-a"), ["'wm-a' twice"]),
         (("probe", "quadrotor", "--variants", "wm-x"), ["'wm-x'", "wm-a"]),
         ((*PROBE, "--perturb", "velocity:noise=1"), ["'velocity:noise=1'", "mass"]),
         ((*PROBE, "--perturb", "wnd:scale=2"), ["'wnd'", "did you mean"]),

@@ -160,7 +160,7 @@ def test_time_and_consumers_of_a_preset() -> None:
         ),
         (
             "wind:delay=-1",
-            "'delay': steps is -1, and must be a number of at least 0; correct the value",
+            "'delay': steps is -1.0, and must be a number of at least 0; correct the value",
         ),
         ("wind:noise=-1", "'noise': noise std must not be negative; correct the value"),
         ("wind:freeze=3", "'freeze' takes no value; write wind:freeze"),

@@ -167,7 +167,7 @@ def test_planning_for_ended_trials_changes_no_result_and_no_receipt(tmp_path, as
         scenes = with_halls(
             flyer,
             tmp_path,
-            hall(0, start=(0.0, 0.0, 1.5), goal=(0.3, 0.0, 1.5)),
+            hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995)),
             hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
             hall(2, start=(0.0, -1.0, 0.5), goal=(4.0, 1.0, 1.5)),
         )

@@ -201,6 +201,6 @@ def test_an_audit_s_trials_are_their_own_and_of_their_plant(
 def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     monkeypatch.delitem(sys.modules, "faultpath.quadrotor.plant.mujoco_plant")
-    with pytest.raises(UserError, match=r"pip install 'faultpath\[mujoco\]'"):
+    with pytest.raises(UserError, match=r"pip install '\.\[mujoco\]'"):
         load_system(SystemSpec(name="quadrotor", options={"plant": "mujoco"}))
     assert load_system(SystemSpec(name="quadrotor", options={"plant": "torch"}))

@@ -29,7 +29,7 @@ def _end(tmp_path: Path, text: str | None, *args, **options: str) -> Outcome:
 
 
 def test_arrival_is_a_success_at_the_end_of_a_control_step(tmp_path):
-    end = _end(tmp_path, None, (0.0, 0.0, 1.5), (0.4, 0.0, 1.5))
+    end = _end(tmp_path, "action:erase=0/0/0/0@vehicle", (0.0, 0.0, 1.5), (0.0, 0.0, 0.997))
     assert end.status is Status.SUCCESS
     assert end.time_s == CONTROL_DT_S
     assert end.metrics["terminal_distance_m"] <= GOAL_RADIUS_M

@@ -209,7 +209,7 @@ def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: R
 def test_ten_scenes_that_all_end_alike_answer_only_what_is_far_off() -> None:
     """No arm is ahead of another anywhere, and ten scenes could have missed much, but no 28 pp."""
     far_off = {
-        "success of WM-A lost at e = +0.1 is at least 30 and detected",
+        "success of WM-A at e = +0.1 minus at e = 0 is at most -30 and detected",
         "percentage of scenes that succeed in all eight configurations is at least 50",
         "percentage of scenes that fail in all eight configurations is at least 10",
     }

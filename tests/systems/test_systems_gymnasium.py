@@ -300,7 +300,7 @@ def test_the_pendulum_counts_the_simulator_and_needs_its_package(monkeypatch):
     assert built.control_dt_s == pytest.approx(0.04)
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     monkeypatch.delitem(sys.modules, "faultpath.systems.gymnasium")
-    with pytest.raises(SystemMistake, match=r"pip install 'faultpath\[gymnasium\]'"):
+    with pytest.raises(SystemMistake, match=r"pip install '\.\[gymnasium\]'"):
         load_system(SystemSpec(name=f"{PENDULUM}:create"))
 
 

@@ -115,13 +115,13 @@ def command(
     executor: Executor = "local",
     time_limit: TimeLimit = None,
     memory_limit: MemoryLimit = None,
-    signals: Annotated[
+    no_signals: Annotated[
         bool,
         typer.Option(
-            "--signals/--no-signals",
-            help="Fly the scenes that the report begins with once more and plot their signals.",
+            "--no-signals",
+            help="Do not fly the report's first scenes once more to plot their signals.",
         ),
-    ] = True,
+    ] = False,
     as_json: Json = False,
 ) -> int:
     """Audit a repair against a baseline under correct inputs, under the fault at each module
@@ -159,7 +159,7 @@ def command(
         executor=executor,
         time_limit_s=time_limit,
         memory_limit_gib=memory_limit,
-        signals=signals,
+        signals=not no_signals,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )
 

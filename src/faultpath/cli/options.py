@@ -54,7 +54,8 @@ def check_arguments(arguments: Sequence[str]) -> None:
     """Refuse arguments that can name nothing; they would fail later, and garble the terminal."""
     for before, argument in pairwise(("", *arguments)):
         flag = f"{before} " if before.startswith("--") and "=" not in before else ""
-        if not argument or re.fullmatch(r"--[\w-]+=", argument):
+        # A word without a flag is named by what reads it.
+        if (flag and not argument) or re.fullmatch(r"--[\w-]+=", argument):
             said = argument or f"{flag}''"
             raise UserError(f"the argument {said} is empty: give a value, or leave it out.")
         if foreign := next(filter(_foreign_number, re.split(r"[,=:/@]|\.\.", argument)), ""):
