@@ -37,7 +37,6 @@ def _command(*arguments: str) -> list[str]:
 
 
 def _environment() -> dict[str, str]:
-    """Return that of commands: they may keep byte code, as wherever they are installed."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
 
 
@@ -107,7 +106,6 @@ def _watched(*arguments: str) -> tuple[float, int]:
 
 
 def _tree(root: int) -> Iterator[int]:
-    """Yield a process and all that descend from it."""
     yield root
     for child in _lines(f"/proc/{root}/task/{root}/children"):
         for each in child.split():
@@ -115,7 +113,6 @@ def _tree(root: int) -> Iterator[int]:
 
 
 def _proportional(process: int) -> int:
-    """Return the bytes that a process holds, pages shared by n processes counting a nth each."""
     lines = _lines(f"/proc/{process}/smaps_rollup")
     return sum(1024 * int(line.split()[1]) for line in lines if line.startswith("Pss:"))
 
@@ -128,7 +125,6 @@ def _lines(path: str) -> Sequence[str]:
 
 
 def _ceiling(effort: Effort) -> Iterator[Record]:
-    """Return what a second process brings where nothing of ours runs."""
     product, cpus = Work("benchmarks.planning:matrix_product"), processors()
     length = max(0.1, effort.share * PRODUCT_S)
 

@@ -96,8 +96,6 @@ class ClosedLoop:
 
 
 def _clocked(original: Callable[..., Any], spent: dict[str, float], part: str) -> Any:
-    """Return a function whose calls add up the time that they take."""
-
     @wraps(original)
     def timed(*arguments: Any, **named: Any) -> Any:
         start = time.process_time()

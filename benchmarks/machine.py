@@ -36,7 +36,6 @@ def describe() -> Machine:
 
 
 def _compiler() -> str:
-    """Return the line in which the C++ compiler says what it is; empty where there is none."""
     command = [os.environ.get("CXX", "c++"), "--version"]
     try:
         done = subprocess.run(command, capture_output=True, text=True, check=True)

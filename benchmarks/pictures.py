@@ -51,14 +51,12 @@ def ratios(records: Sequence[Record]) -> str:
 
 
 def _named(record: Record) -> str:
-    """Return what is measured, with what it is compared with where its name does not say so."""
     peer = record.peer_name
     said = not peer or peer.split()[0].strip(",") in record.name
     return record.name if said else f"{record.name}, {peer}"
 
 
 def _costs(record: Record) -> bool:
-    """Return whether a record's ratio is one of costs, where less is better."""
     target = record.target
     return target is not None and (target.of, target.sense) == ("ratio", "at most")
 

@@ -31,7 +31,6 @@ def busy(share: float) -> str:
 
 
 def _ticks() -> tuple[float, float]:
-    """Return how long all cores together were busy, and how long they were there."""
     line = _STAT.read_text("ascii").partition("\n")[0]
     user, nice, system, idle, waiting, *interrupts = (float(word) for word in line.split()[1:])
     taken = user + nice + system + sum(interrupts[:2])

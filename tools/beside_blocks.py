@@ -39,7 +39,6 @@ _INPUTS = {
 
 
 def _claims() -> str:
-    """Return a line a claim: the paper's figures, then answer, estimate and size by platform."""
     ledgers = [load(platform)[0].ledger for platform in shipped.shipped()]
     if not ledgers:
         return "*The paper has not been flown yet.*"
@@ -61,7 +60,6 @@ def _claims() -> str:
 
 
 def _about(ledger: Ledger) -> str:
-    """Return how the sizes of a platform are spread, and what qualifies its claims."""
     said = " ".join([words.sizes(ledger), *words.notes(ledger)]).strip()
     return said and f"- `{ledger.platform}`: {said}"
 
@@ -71,7 +69,6 @@ def _answer(*phrases: str) -> str:
 
 
 def _contrasts() -> str:
-    """Return the main contrasts of Tables II to IV: the paper's, then ours by platform."""
     runs = [(platform, _measured(platform)) for platform in shipped.shipped()]
     if not runs:
         return "*The paper has not been flown yet.*"
@@ -92,7 +89,6 @@ def _shown(part: Part) -> Entry:
 
 @cache
 def _measured(platform: str) -> dict[str, Part]:
-    """Return each contrast as a platform's run has it, by its subject."""
     try:
         results, _ = read_results(shipped.shipped_run(platform))
     except UserError as error:
@@ -114,7 +110,6 @@ def _calibration() -> Iterator[Statement]:
 
 
 def _wind() -> Iterator[Statement]:
-    """Yield the contrasts that the paper's text draws from its rates; it prints no intervals."""
     true, zero, withheld, gru = table_3.TRUE, table_3.ZERO, table_3.WITHHELD, table_3.GRU
     asked: Iterable[tuple[str, str, str, Rule]] = (
         ("L2", zero, withheld, NO_GAIN),

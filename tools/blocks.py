@@ -300,8 +300,6 @@ PARTS: dict[str, tuple[str, str]] = {
 
 
 def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
-    """Return what fills blocks about one run; without the run the `first` kind says so, once."""
-
     def filled(name: str, *arguments: str) -> str:
         run = load(name)
         if run is None:

@@ -44,7 +44,6 @@ def fill() -> str:
 
 
 def _besides() -> Iterator[Line]:
-    """Yield what was decided of the claim outside the run of the default platform."""
     for folder in new_scenes.folders():
         record = parsed(folder / new_scenes.DECIDED, DecisionRecord, TAKE_AGAIN)
         times = _TIMES[round(_size(record) / _PAPERS)]

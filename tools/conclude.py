@@ -94,7 +94,6 @@ def _audit(folder: Path, before: Mapping[str, Any]) -> DecisionRecord:
 def _decided(
     folder: Path, before: Mapping[str, Any]
 ) -> tuple[System, DecisionRecord, OutcomeTable]:
-    """Return the record that the outcomes of a folder make now."""
     asked = Question.model_validate(before["question"])
     place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
     system = load_system(SystemSpec(name=place, options=asked.options))
@@ -196,7 +195,6 @@ def _plans(system: System, scenes: list[str]) -> dict[str, Any]:
 
 
 def _tracks(page: Path) -> dict[TrialAddress, NDArray[np.float32]]:
-    """Return the tracks that a page shows, in metres; to whole centimetres, as it holds them."""
     held = _DATA.search(page.read_text("utf-8"))
     if held is None:  # a system that leaves no traces
         return {}

@@ -117,7 +117,6 @@ def row_name(law: str, path: str) -> str:
 def _error(
     std: float, time_constant_s: float | None, share: float, cause: str, module: str
 ) -> Iterable[Fault]:
-    """Return a share of the error of one cause, at one module: opposite on both channels."""
     if not share:
         return ()
     bias = Bias(std=std * share, relative=True, time_constant_s=time_constant_s)

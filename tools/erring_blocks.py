@@ -122,7 +122,6 @@ def _lines(found: Erring) -> Iterator[Line]:
 
 
 def _rate(of: DecisionRecord, variant: str) -> str:
-    """Return success under correct inputs in percent."""
     cell = next(each for each in of.cells if (each.variant, each.path) == (variant, CORRECT))
     return wording.plain(100 * cell.success / cell.trials)
 

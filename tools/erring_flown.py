@@ -103,7 +103,6 @@ def poor(windy: int, folder: Path) -> float:
 
 
 def _system(models: Path | None) -> Quadrotor:
-    """Return the quadrotor in the strongest wind, with these models or with the shipped ones."""
     chosen = QuadrotorOptions.parse(**WINDY.options)
     return Quadrotor(chosen.model_copy(update={"settings": DEFAULT, "checkpoints": models}))
 

@@ -32,7 +32,6 @@ def flown_by(made: RunProvenance, system: str, options: Mapping[str, str]) -> st
 
 @cache
 def _state(system: str, options: tuple[tuple[str, str], ...]) -> CodeState:
-    """Return the state of what flies a system, which may be named from the root of the project."""
     spec = SystemSpec(name=system, options=dict(options))
     with chdir(ROOT):
         return system_code(load_system(spec), spec).state

@@ -154,7 +154,6 @@ def _seeds(row: Row) -> str:
 
 
 def _under_errors(template: str, quality: Quality) -> Columns:
-    """Return a column for each calibration error; `%` stands for what was measured under it."""
     return {
         f"e = {signed(error)}": template.replace("%", f"mean[under_error][{i}]")
         for i, error in enumerate(quality.settings.calibration_errors)

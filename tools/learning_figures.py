@@ -169,7 +169,6 @@ def _whiskers(
 
 
 def _under_error(quality: Quality, rows: Sequence[Any], fields: Mapping[str, str]) -> list[Panel]:
-    """Return a panel for each title: a field of what was measured, over the calibration error."""
     ticks = [(error, signed(error)) for error in quality.settings.calibration_errors]
 
     def points(field: str) -> Callable[[Any], list[tuple[float, float]]]:
@@ -182,7 +181,6 @@ def _under_error(quality: Quality, rows: Sequence[Any], fields: Mapping[str, str
 
 
 def _curves(rows: Sequence[Any], points: Callable[[Any], Any]) -> list[Curve]:
-    """Return the curve of each row, and those of its seeds; a predictor may be told no wind."""
     return [
         Curve(
             f"{row.name}, zero wind" if getattr(row, "wind", "") == ZERO_WIND else row.name,

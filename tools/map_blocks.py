@@ -124,7 +124,6 @@ def _picture(run: Mapped, part: str) -> str:
 
 
 def _said(run: Mapped) -> str:
-    """Return the headline, what it rests on, and by which code the map was flown."""
     record, asked = run.record, run.record.question
     lines = [f"> **{wording.typeset(record.headline)}**"]
     lines += [f"> {wording.typeset(each)}" for each in record.sentences]
@@ -160,8 +159,6 @@ def _check() -> str:
 
 
 def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
-    """Return what fills blocks about one map; without the map the `first` kind says so, once."""
-
     def filled(name: str, *arguments: str) -> str:
         run: Any = load(name)
         if run is None:

@@ -59,7 +59,6 @@ def _predicted(windows: Windows, platform: Platform) -> Tensor:
 
 
 def _replayed(windows: Windows, intervals: int) -> Tensor:
-    """Return how far the plant ends from where the vehicle was, `[W]`, m."""
     names = ("mass_kg", "thrust_scale", "torque_scale", "inertia_kgm2")
     names += ("motor_time_constant_s", "drag_kgps")
     plant = TorchPlant(Vehicle(**{name: getattr(windows, name).double() for name in names}))

@@ -49,7 +49,6 @@ def load(platform: str) -> tuple[Reproduction, RunProvenance]:
 
 
 def _part(fill: Callable[..., str], *names: str) -> str:
-    """Return a part of a shipped run."""
     platform = present()
     if names and names[-1] in shipped.shipped():
         names, platform = names[:-1], names[-1]
@@ -67,7 +66,6 @@ def _counts(found: Reproduction, origin: RunProvenance) -> str:
 
 
 def _claim(found: Reproduction, origin: RunProvenance, name: str) -> str:
-    """Return every statement of one claim."""
     claim = _named(found.ledger.claims, name, "id")
     lines = [f"**{claim.id}, {claim.verdict}.** {claim.claim}. The paper: {claim.paper}.", ""]
     for part in claim.parts:
@@ -83,7 +81,6 @@ def _table(found: Reproduction, origin: RunProvenance, name: str) -> str:
 
 
 def _named(parts: Iterable[T], name: str, key: str) -> T:
-    """Return the part of that name; `Wrong` where there is none."""
     known = {getattr(part, key): part for part in parts}
     if name not in known:
         raise Wrong(f"the paper has no '{name}': use {', '.join(known)}")
@@ -91,7 +88,6 @@ def _named(parts: Iterable[T], name: str, key: str) -> T:
 
 
 def _motors(_: Reproduction, origin: RunProvenance) -> str:
-    """Return what `tools/motor_state.py` measured."""
     try:
         measured = json.loads((REFERENCE / "motor-state.json").read_text("utf-8"))
     except FileNotFoundError:
@@ -109,7 +105,6 @@ def _motors(_: Reproduction, origin: RunProvenance) -> str:
 
 
 def _frozen(_: Reproduction, origin: RunProvenance) -> str:
-    """Return what `tools/frozen_wind.py` flew."""
     try:
         table = Table.model_validate_json((REFERENCE / "frozen-wind.json").read_bytes())
     except FileNotFoundError:
@@ -118,7 +113,6 @@ def _frozen(_: Reproduction, origin: RunProvenance) -> str:
 
 
 def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
-    """Return the picture of a part of the report, by its place in the page."""
     titles = {each.name: each.title for each in (*found.tables, *found.figures)}
     return f"![{titles.get(part, part)}]({{images}}/paper-{part}.svg)"
 

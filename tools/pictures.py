@@ -174,7 +174,6 @@ def twice(size: tuple[float, float], light: str, dark: str) -> str:
 
 
 def _around(areas: Sequence[Mapping[str, float]], margin: float) -> dict[str, float]:
-    """Return the rectangle around all areas, with a margin."""
     left = max(0.0, min(area["x"] for area in areas) - margin)
     top = max(0.0, min(area["y"] for area in areas) - margin)
     right = max(area["x"] + area["width"] for area in areas) + margin

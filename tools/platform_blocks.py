@@ -74,7 +74,6 @@ def frozen(record: dict) -> str:
 
 
 def _flat(value: object, within: str = "") -> dict[str, object]:
-    """Return the leaves of nested settings by their dotted names."""
     if not isinstance(value, dict):
         return {within: value}
     found: dict[str, object] = {}

@@ -65,7 +65,6 @@ class Measurer:
         return {**judged(asked, flown), "seconds": round(time.monotonic() - started)}
 
     def _models(self, platform: Platform, names: Collection[str], seeds: Sequence[int]) -> Path:
-        """Return the folder of the fitted baselines; platforms with the same data share it."""
         if platform == FIRST:
             return shipped_folder()
         folder = self.folder / "models" / f"{platform.weights_hash('wm-a')}-{self.code[:12]}"

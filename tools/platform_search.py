@@ -152,7 +152,6 @@ def _promoted(trials: list[dict[str, Any]], trial: dict[str, Any], rung: int) ->
 def _asked(
     trials: list[dict[str, Any]], count: int, by_hand: Sequence[dict[str, Any]]
 ) -> list[dict[str, Any]]:
-    """Return the next trials: the starts, what is given by hand, then what the sampler proposes."""
     numbers = range(len(trials), len(trials) + count)
     starts = [{"point": point} for point in STARTS[len(trials) :]]
     given = [*starts, *({"by_hand": True, "point": point} for point in by_hand)][:count]
@@ -182,7 +181,6 @@ def _proposed(trials: list[dict[str, Any]], count: int) -> list[dict[str, Any]]:
 
 
 def _told(trial: dict[str, Any]) -> Any:
-    """Return a trial as the sampler knows it: those that got furthest are the best."""
     from optuna.trial import TrialState, create_trial
 
     complete = trial["state"] == "complete"

@@ -101,7 +101,6 @@ def _highest(trial: dict[str, Any]) -> dict[str, Any]:
 
 
 def _said(asked: Mapping[str, Any], value: float | None) -> str:
-    """Return a value in the unit that the paper prints it in."""
     if value is None:
         return "none"
     if asked["kind"] == "time":

@@ -199,7 +199,6 @@ def _measured(cost: Cost) -> str:
 
 
 def _extrapolated(cost: Cost) -> str:
-    """Return the hours of many workers: those of one, shared out, as far as the driver keeps up."""
     rows = [
         _shared_out(f"{each.case}{name}", each.trial_s + longer_s, each.driver_s)
         for each in cost.timed

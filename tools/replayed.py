@@ -80,7 +80,6 @@ def _row(run: Run, when: str, margin_pp: float | None) -> Mapping[str, object]:
 
 @cache
 def _values(name: str) -> Mapping[str, Floats]:
-    """Return what the scenes show on each path, a mean over seeds, [orders, scenes]."""
     run = load(name)
     assert run is not None
     question, paths = run.record.question, run.record.paths

@@ -162,7 +162,6 @@ def _told(
     counted: NDArray[np.bool_],
     resamples: Resamples,
 ) -> str:
-    """Return the median difference of what is counted, with its interval."""
     found: Contrast = median_effect(first, second, counted, resamples, UNIT)
     ends = "" if found.interval is None else f" {bracket(found.interval, 2)}"
     return f"{wording.signed(found.value, 2)}{ends}"

@@ -108,7 +108,6 @@ def _compose(a: Sequence[Array], b: Sequence[Array]) -> list[Array]:
 
 
 def _exponential(x: Array, y: Array, z: Array) -> list[Array]:
-    """Return the nine entries of the rotation by (x, y, z) rad, through half angles."""
     angle = jnp.sqrt(x * x + y * y + z * z + 1e-24)
     s, c = jnp.sin(0.5 * angle), jnp.cos(0.5 * angle)
     x, y, z = (part * (s / angle) for part in (x, y, z))

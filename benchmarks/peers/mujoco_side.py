@@ -78,7 +78,6 @@ def rays() -> Side:
 
 
 def _model(scene: Scene) -> mujoco.MjModel:
-    """Return a scene's solids and its six walls as geoms of the world."""
     geoms = [
         _geom("box", box.centre_m, box.half_extents_m, f' euler="0 0 {box.yaw_rad}"')
         for box in scene.boxes

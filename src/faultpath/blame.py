@@ -110,7 +110,6 @@ def explained(error: BaseException) -> UserError | None:
 
 
 def _frames(error: BaseException) -> Iterator[str]:
-    """Yield the frames that count, innermost first; those of faultpath are empty."""
     if isinstance(error, SyntaxError) and error.filename and not _passed_over(error.filename):
         yield _said(error.filename, error.lineno or 1)
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):

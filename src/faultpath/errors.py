@@ -9,7 +9,6 @@ class UserError(Exception):
     """
 
     def _render_traceback_(self) -> list[str]:
-        """Return what IPython shows in place of a traceback."""
         return [str(self)]
 
 

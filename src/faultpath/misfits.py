@@ -95,7 +95,6 @@ def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) 
 
 
 def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
-    """Return where an error is, without the branches of unions that were tried there."""
     steps = cast("tuple[str | int, ...]", error["loc"])
     last = len(steps) - 1 if error["type"] in ("missing", "extra_forbidden") else len(steps)
     return tuple(
@@ -166,7 +165,6 @@ def _allowed(error: Mapping[str, Any]) -> str:
 
 
 def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
-    """Return the fields of what stands at a place of a model; none where that is not known."""
     from pydantic import BaseModel
 
     if isinstance(model, type) and issubclass(model, BaseModel):

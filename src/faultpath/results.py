@@ -55,7 +55,6 @@ def _has(value: object) -> bool:
 
 
 def _rows(value: object) -> list[BaseModel]:
-    """Return the models of a sequence that holds nothing else."""
     found = list(cast("Sequence[object]", value)) if isinstance(value, tuple | list) else []
     models = [each for each in found if isinstance(each, BaseModel)]
     same = {type(each) for each in models}

@@ -116,7 +116,6 @@ class _CtrlC:
 
 
 def _arguments(given: Sequence[str]) -> tuple[list[str], bool]:
-    """Return the arguments without `--traceback`, and whether it was there."""
     end = given.index("--") if "--" in given else len(given)
     told = _TRACEBACK in given[:end]
     return [part for part in given[:end] if part != _TRACEBACK] + list(given[end:]), told

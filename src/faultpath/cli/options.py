@@ -75,7 +75,6 @@ def check_arguments(arguments: Sequence[str]) -> None:
 
 
 def _foreign_number(text: str) -> bool:
-    """Return whether Python would take a text for a number that is not in our digits."""
     if text.isascii():
         return False
     try:

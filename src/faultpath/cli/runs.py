@@ -49,7 +49,6 @@ def command(
 
 
 def _told(each: "Listed") -> "RenderableType":
-    """Return what is known of a run, folded at the edge of the terminal and never cut."""
     from rich.console import Group
     from rich.padding import Padding
     from rich.text import Text

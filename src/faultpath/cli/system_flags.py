@@ -78,7 +78,6 @@ def _flag(option: _Option) -> str:
 
 
 def _options(system: str, forgiving: bool) -> Sequence[_Option]:
-    """Return the options of a system; for the sake of a help text none where it cannot be asked."""
     from faultpath.patience import patience
     from faultpath.trials import system_options
 
@@ -92,7 +91,6 @@ def _options(system: str, forgiving: bool) -> Sequence[_Option]:
 
 
 def _flags(verb: Callable[..., Any]) -> dict[str, bool]:
-    """Return the flags of a verb, and whether each is followed by a value."""
     found: dict[str, bool] = {}
     for name, parameter in inspect.signature(verb).parameters.items():
         for note in getattr(parameter.annotation, "__metadata__", ()):
@@ -112,7 +110,6 @@ def _dashed(name: str) -> str:
 
 
 def _system(arguments: Sequence[str], own: dict[str, bool]) -> str | None:
-    """Return the first argument that is neither a flag nor the value of one."""
     value = False
     for part in arguments:
         if value or part.startswith("-"):
@@ -125,8 +122,6 @@ def _system(arguments: Sequence[str], own: dict[str, bool]) -> str | None:
 def _extended(
     verb: Callable[..., Any], system: str, options: Sequence[_Option]
 ) -> Callable[..., Any]:
-    """Return a verb that takes more options and hands them on among the pairs of `set_`."""
-
     @wraps(verb)
     def extended(**given: Any) -> Any:
         pairs = list(given.pop("set_") or ())

@@ -147,7 +147,6 @@ class Graph:
 
 
 def _absolute(each: Import, package: str) -> str:
-    """Return the dotted name of what is imported from; empty where there is no such package."""
     if not each.level:
         return each.module
     parts = package.split(".")
@@ -162,7 +161,6 @@ def _file_name(name: str, path: Path) -> str:
 
 
 def _sources(folder: Path) -> Iterator[Path]:
-    """Yield the Python files in and below a folder, but for environments and hidden folders."""
     for place, folders, files in os.walk(folder):
         folders[:] = sorted(
             each

@@ -103,7 +103,6 @@ def _called(call: ast.Call) -> str:
 
 
 def _literal(call: ast.Call) -> Import | None:
-    """Return the import of a call whose name stands there as text, else `None`."""
     first = call.args[0] if call.args else None
     if not isinstance(first, ast.Constant) or not isinstance(first.value, str):
         return None

@@ -242,7 +242,6 @@ def _until(rule: StopRule | None) -> list[str]:
 
 
 def _checked_rule(rule: object) -> RuleName:
-    """Return a rule to decide by; `UserError` for what is none."""
     for known in RULES:
         if rule == known:
             return known
@@ -250,7 +249,6 @@ def _checked_rule(rule: object) -> RuleName:
 
 
 def _checked_stop(rule: object) -> StopWhen | None:
-    """Return when to stop; `UserError` for what is no rule."""
     rules: tuple[StopWhen, ...] = get_args(StopWhen)
     for known in rules:
         if rule == known:
@@ -261,7 +259,6 @@ def _checked_stop(rule: object) -> StopWhen | None:
 
 
 def _checked_margin(margin: object) -> float | None:
-    """Return a margin in percentage points; `UserError` for what is no number."""
     if margin is None or (isinstance(margin, (int, float)) and not isinstance(margin, bool)):
         return margin
     raise UserError(f"margin_pp is {margin!r:.80}: give a number of percentage points, or None.")

@@ -69,7 +69,6 @@ def carry_out(
 
 
 def _concluded(folder: Path) -> tuple[DecisionRecord, ...]:
-    """Return the record that a folder holds, from an earlier conclusion; none that is not sound."""
     place = folder / RECORD
     try:
         return (parsed(read_regular(place), place, DecisionRecord),)

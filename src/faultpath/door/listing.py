@@ -179,7 +179,6 @@ def _flying(folder: Path) -> Listed:
 
 
 def _kept(folder: Path) -> tuple[int, datetime | None]:
-    """Return how many trials the blocks of a run hold, and when something was last written."""
     rows: dict[str, int] = {}
     files = [path for path in (folder / "shards").glob("*-*.parquet") if path.is_file()]
     for path in files:
@@ -221,7 +220,6 @@ def _moment(text: str) -> datetime | None:
 
 
 def _briefly(folder: Path, sentence: str) -> str:
-    """Return what is wrong, without the folder's name and what to do about it."""
     wrong = sentence.rpartition(": ")[0] or sentence
     for named in (f"{folder}/", f"{folder}: ", f"{folder} "):
         wrong = wrong.replace(named, "")

@@ -107,7 +107,6 @@ class _Flying:
         )
 
     def _most(self, points: Sequence[Point], trials: int) -> int:
-        """Return how many trials the map will have at most, as far as these points tell."""
         most = max(len(points), self.plan.question.points + _BISECTING)
         return round(trials * most / len(points))
 

@@ -185,7 +185,6 @@ def _compared(
     before: dict[TrialAddress, Outcome],
     addresses: dict[tuple[str, str], list[TrialAddress]],
 ) -> Iterable[Replayed]:
-    """Return what a second flight was like, trial by trial; what differs has no signals."""
     heard = reply if isinstance(reply, Overheard) else Overheard(error=_said(reply))
     for place, scene in enumerate(task.scenes):
         for at in addresses[task.arm.key(), scene]:

@@ -155,7 +155,6 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
 
 
 def _loaded(system: System) -> SystemSpec | None:
-    """Return what an object was loaded from; `None` for one that was made or changed otherwise."""
     spec, before = vars(system).get(_LOADED, (None, {}))
     now = {name: value for name, value in vars(system).items() if name != _LOADED}
     same = all(name in now and now[name] is value for name, value in before.items())

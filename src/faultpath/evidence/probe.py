@@ -109,7 +109,6 @@ class ProbePlan:
     def _responses(
         self, table: EvidenceTable, variant: str, perturbation: str
     ) -> NDArray[np.float64]:
-        """Return `[W, seeds]`, cm."""
         columns = [
             table.values(self._measurement(variant, perturbation, seed)).values
             for seed in self.seeds

@@ -112,7 +112,6 @@ def _exited(error: SystemExit) -> str:
 
 
 def _said(error: BaseException) -> str:
-    """Return the last line of the traceback, with a hint where the taps know better."""
     text = described(error)
     if isinstance(error, ValueError) and "read-only" in text:
         text += " (what a tap delivers cannot be written to: copy it first)"
@@ -159,6 +158,5 @@ def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[
 
 
 def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:
-    """Return the last control step of each trial; before the first for one that failed."""
     steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
     return np.array(steps, dtype=np.int64) - 1

@@ -97,7 +97,6 @@ class Flying(Generic[T]):
         self._executor.submit(worker, self._call(task), told)
 
     def _worth_another(self, running: _Running[T], end: Lost) -> bool:
-        """Return whether a task whose worker was lost is handed out as if that had not been."""
         if not running.started:
             self._false_starts += 1
             if self._false_starts > _FALSE_STARTS:

@@ -93,7 +93,6 @@ def hold_to(limit_gib: float | None) -> None:
 
 @cache
 def _limits_before() -> tuple[int, int]:
-    """Return the limits that this process began with."""
     import resource
 
     return resource.getrlimit(resource.RLIMIT_DATA)

@@ -153,7 +153,6 @@ class Rechecks:
 
 
 def _few(unit: Unit) -> Task:
-    """Return the flight of a few scenes of a unit, each at another place than among all."""
     scenes = unit.scenes
     if len(scenes) > SAMPLE:
         by_lot = sorted(scenes[1:], key=lambda scene: _lot(unit.key, scene))[:SAMPLE]
@@ -162,7 +161,6 @@ def _few(unit: Unit) -> Task:
 
 
 def _guarded(sound: Sequence[Unit], taken: Unit) -> Task:
-    """Return the guarded flight of one scene, of a unit that is not taken if there is another."""
     others = [unit for unit in sound if unit is not taken] or [taken]
     unit = min(others, key=lambda unit: (len(unit.scenes) == 1, _lot("guard", unit.key)))
     scene = min(unit.scenes[1:] or unit.scenes, key=lambda each: _lot(unit.key, each))
@@ -186,7 +184,6 @@ def _not_named(paths: Sequence[str]) -> str:
 
 
 def _read(path: Path) -> _Kept:
-    """Return what was shown before; a file that cannot be read is as good as none."""
     try:
         return model_of(contents(path, LARGEST_TEXT), _Kept)
     except (OSError, Misread):

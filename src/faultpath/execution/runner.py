@@ -164,7 +164,6 @@ def _store(share: Path | None, system: System, study: Study) -> SharedTrials | N
 
 
 def _sound(units: Iterable[Unit], standing: Standing) -> list[str]:
-    """Return the keys of the units in which no trial failed."""
     return [
         unit.key
         for unit in units
@@ -198,7 +197,6 @@ def _keep_finished(
 
 
 def _orders(fly: Callable[[Order], Reply]) -> Callable[[Task], Call]:
-    """Return what makes a call of a task."""
     return lambda task: partial(
         fly, Order(task.unit.arm, task.scenes, task.recheck is Recheck.GUARDED)
     )

@@ -87,7 +87,6 @@ def fly(brief: Brief, order: Order) -> Reply:
 
 
 def _in_want(error: str) -> bool:
-    """Return whether an error of NumPy, torch or Python says that there was no memory."""
     return "MemoryError" in error or "allocate memory" in error
 
 

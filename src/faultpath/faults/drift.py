@@ -54,14 +54,12 @@ class Drift(Intervention):
         return pick(at.elapsed > 0, value, reading), (walk, at.step)
 
     def _ramp(self, reading: Array, at: Moment) -> Array:
-        """Return the ramp of scenes with onsets of their own; float64 as on the host."""
         xp = namespace(reading)
         seconds = rows(xp.astype(at.elapsed, xp.float64) * at.dt_s, reading)
         rate = place(np.asarray(self.rate_per_s, dtype=np.float64), reading)
         return xp.astype(rate * seconds, reading.dtype)
 
     def _walk(self, reading: Array, walk: Array, done: int, at: Moment) -> Array:
-        """Return the walk at this step; steps without a delivery count, so consumers agree."""
         if not self.walk_per_sqrt_s:
             return walk
         deviation = self.walk_per_sqrt_s * sqrt(at.dt_s)
@@ -118,7 +116,6 @@ class Bias(Intervention):
         )
 
     def _moved_on(self, process: HostArray, done: int, at: Moment) -> HostArray:
-        """Return the process at this step; steps without a delivery count, so consumers agree."""
         if self.time_constant_s is None:
             return process
         stays = exp(-at.dt_s / self.time_constant_s)

@@ -225,7 +225,6 @@ AnyFault: TypeAlias = Annotated[Fault | Coupled, Field(discriminator="kind")]
 
 
 def _matching(name: str, consumers: Collection[str]) -> bool:
-    """Return whether `name` (a consumer, a module or `*`) covers one of `consumers`."""
     return any(name in (ALL, consumer, module_of(consumer)) for consumer in consumers)
 
 

@@ -13,7 +13,6 @@ from faultpath.faults.base import Intervention, Memory, Moment
 
 
 def _laid(mask: HostArray, reading: Array) -> Array:
-    """Return `[B, H, W]` beside the reading, with an axis of length one for each that it lacks."""
     ones = (1,) * (reading.ndim - 3)
     return place(mask.reshape(mask.shape[0], *ones, *mask.shape[1:]), reading)
 

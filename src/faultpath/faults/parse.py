@@ -125,7 +125,6 @@ def _take_apart(text: str) -> _Text:
 
 
 def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the fields of a fault's window, and the options that are left."""
     when: dict[str, Any] = {}
     rest: dict[str, str] = {}
     for key, given in options.items():
@@ -224,7 +223,6 @@ def _preset(
 
 
 def _targets(interface: Interface) -> dict[str, tuple[str, ...]]:
-    """Return what text may name as a channel: channels and correlation groups."""
     channels = {channel.name: (channel.name,) for channel in interface.channels}
     return groups(interface) | channels
 
@@ -268,7 +266,6 @@ def _build(said: str, kind: str, value: str | None, options: dict[str, str]) -> 
 
 
 def _value(key: str, text: str) -> Any:
-    """Return a number, a vector `1/0/0`, true or false, or an intervention without a value."""
     if text in ("true", "false"):
         return text == "true"
     if text in KINDS:

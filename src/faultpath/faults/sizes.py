@@ -28,7 +28,6 @@ def each_size(text: str) -> tuple[str, ...]:
 
 
 def _is_size(item: str) -> bool:
-    """Return whether an item is a number or a vector, before its consumers."""
     try:
         _value(item.partition("@")[0])
     except ValueError:

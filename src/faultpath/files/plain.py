@@ -236,7 +236,6 @@ def _short(text: str) -> str:
 
 
 def _items(node: Node | None) -> Iterator[tuple[Any, Node, Node]]:
-    """Yield `(key, node that shows the place, value node)` of a mapping or a sequence."""
     if isinstance(node, MappingNode):
         for key, value in cast(list[tuple[Node, Node]], node.value):
             yield (key.value if isinstance(key, ScalarNode) else None), key, value

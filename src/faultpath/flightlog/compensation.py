@@ -162,13 +162,11 @@ def _decided(ratio: Estimate) -> Decided:
 
 
 def _disturbance(flight: Flight, error: float) -> Floats:
-    """Return the unfiltered wind, or force, that explains each interval's residual, `[N, 3]`."""
     residual = flight.acceleration_mps2 - nominal(flight, error)
     return through_air(flight, residual * flight.mass_kg * (1 + error), inverse=True)
 
 
 def _held(flight: Flight, raw: Floats) -> Floats:
-    """Return the filtered estimate that each interval finds, of the intervals before it."""
     held = np.zeros_like(raw)
     for index in range(1, len(raw)):
         if flight.stretch[index] == flight.stretch[index - 1]:

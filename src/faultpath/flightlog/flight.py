@@ -72,7 +72,6 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
 
 
 def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
-    """Return the edges of the intervals of each stretch in which every column has readings."""
     columns = list(series.values())
     begin = max(float(each.time_s[0]) for each in columns)
     end = min(float(each.time_s[-1]) for each in columns)
@@ -91,7 +90,6 @@ def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]
 
 
 def _pauses(columns: Iterable[Series]) -> list[tuple[float, float]]:
-    """Return when some column has no readings: ascending, with those that overlap as one."""
     found: list[tuple[float, float]] = []
     for each in columns:
         steps = np.diff(each.time_s)
@@ -136,7 +134,6 @@ def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> S
 def _stretch(
     columns: ColumnMap, series: Mapping[str, Series], attitude: Slerp, number: int, edges: Floats
 ) -> dict[str, Floats]:
-    """Return what the intervals between `edges` `[N + 1]` hold."""
     up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
     scale = SPEED_UNITS[columns.velocity.unit] * up
     velocity = scale * np.stack(
@@ -158,7 +155,6 @@ def _stretch(
 
 
 def _thrust(command: Series, edges: Floats, lag_s: float) -> Floats:
-    """Return the mean of the command over each interval, `[N]`, after a first-order lag."""
     # A command holds until the next one: its integral is known at every time.
     done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
     last = np.clip(np.searchsorted(command.time_s, edges, side="right") - 1, 0, None)
@@ -176,7 +172,6 @@ def _thrust(command: Series, edges: Floats, lag_s: float) -> Floats:
 
 
 def _scaled(path: Path, columns: ColumnMap, flight: Flight) -> Flight:
-    """Return the flight with thrust in N, and refuse what cannot be a flight in these units."""
     axis = flight.rotation.apply([0.0, 0.0, 1.0])
     needed = flight.acceleration_mps2 + np.array([0.0, 0.0, GRAVITY_MPS2])
     wanted = flight.mass_kg * (needed * axis).sum(1)

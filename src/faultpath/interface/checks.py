@@ -18,7 +18,6 @@ Where = tuple[str | int, ...]
 
 
 def _refuse(where: Where, sentence: str) -> PydanticCustomError:
-    """Return an error with the path to the part in its context, for the line in a file."""
     return PydanticCustomError("interface", "{sentence}", {"sentence": sentence, "where": where})
 
 

@@ -88,7 +88,6 @@ def _check_ports(
 def _ordered(
     modules: Sequence[Module], bound: Mapping[str, str], writers: Mapping[str, Module | Plant]
 ) -> tuple[Module, ...]:
-    """Return the modules, each after those whose sources it reads at the same step."""
     before = {
         id(module): {
             id(writer)

@@ -166,7 +166,6 @@ class _Execution:
 def _looks(
     given: Sequence[Inputs],
 ) -> tuple[dict[tuple[str, str], bool], set[tuple[str, str]]]:
-    """Return who looked at what came through which tap in a step, and what truths were taken."""
     looks = {
         (port.channel, f"{inputs.module}.{port.place}"): port in inputs.used
         for inputs in given

@@ -132,7 +132,6 @@ def _surface(all_: Combined, up_to: float, z: float) -> MapSurface:
 
 
 def _ray_weights(found: Differences, way: Point) -> Floats:
-    """Return `[looks, points]`: straight lines between the sizes that were flown on a ray."""
     known = sizes(way, found.points)
     looks = np.arange(_BETWEEN * UNITS + 1) / _BETWEEN
     own = np.eye(len(known))
@@ -215,7 +214,6 @@ def _expectations(expected: Expected, correlations: Sequence[float]) -> tuple[Ex
 
 
 def _foretold(found: Differences) -> tuple[int, float | None]:
-    """Return at how many points coarser ones foretold the difference, and how wrongly, pp."""
     missed: list[float] = []
     means = found.values.mean(axis=1)
     spacing = COARSE // 2

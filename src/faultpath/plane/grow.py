@@ -41,7 +41,6 @@ def _refined(found: Differences, limit: int, label: str) -> tuple[Point, ...]:
 
 
 def _undecided(around: Sequence[Point], signs: Mapping[Point, int]) -> bool:
-    """Return whether the corners of a cell are all there and not all decided alike."""
     return all(each in signs for each in around) and {signs[each] for each in around} not in (
         {1},
         {-1},
@@ -49,7 +48,6 @@ def _undecided(around: Sequence[Point], signs: Mapping[Point, int]) -> bool:
 
 
 def _urgency(around: Sequence[Point], means: Mapping[Point, float]) -> tuple[bool, float, Point]:
-    """Return what sorts cells: those that the estimate's zero crosses first, then the nearest."""
     values = [means[each] for each in around]
     return min(values) * max(values) >= 0.0, abs(sum(values)), around[0]
 

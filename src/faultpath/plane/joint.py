@@ -27,7 +27,6 @@ _GRID = np.linspace(-1.0, 1.0, 81)
 
 @cache
 def _independent() -> tuple[Floats, Floats]:
-    """Return equally likely pairs of independent standard errors, each `[pairs]`."""
     grid = (np.arange(_NODES) + 0.5) / _NODES
     one = np.array([normal_quantile(p) for p in grid.tolist()])
     one /= one.std()

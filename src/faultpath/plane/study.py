@@ -178,7 +178,6 @@ def _distribution(
     largest: float,
     fault: SizedFault,
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the means and spreads of the joint distribution; `UserError` for impossible ones."""
     given = spreads or (fault.expected or largest / 2.0,)
     spread = _two("--spread", given)
     if min(spread) <= 0.0:
@@ -192,7 +191,6 @@ def _distribution(
 
 
 def _two(option: str, values: Sequence[float]) -> tuple[float, float]:
-    """Return one number for both modules, or one for each."""
     if len(values) not in (1, 2) or any(value - value != 0.0 for value in values):
         raise UserError(
             f"{option} needs one finite number, or one for each module: 0.1 or 0.1,0.2."

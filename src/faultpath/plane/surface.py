@@ -112,5 +112,4 @@ def simultaneous(weights: Floats, found: Differences, label: str) -> float:
 
 @lru_cache(maxsize=4)
 def _resamples(label: str, scenes: int) -> Resamples:
-    """Return the draws of a library, which every round of a map asks for again."""
     return Resamples.draw(f"map/{label}", scenes, n_resamples=RESAMPLES)

@@ -103,7 +103,6 @@ def _decided(record: MapRecord) -> str:
 
 
 def _reversals(record: MapRecord) -> Iterable[str]:
-    """Yield, for each module, at which errors sharing them turns what is decided at it alone."""
     asked = record.question
     of = {point.errors: point for point in record.points}
     for place, module in enumerate(asked.against):

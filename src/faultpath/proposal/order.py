@@ -87,7 +87,6 @@ def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
 
 
 def _parts(of: Any) -> Mapping[Any, Any]:
-    """Return what an object holds, by name or place."""
     if isinstance(of, list | tuple):
         return dict(enumerate(cast("Sequence[Any]", of)))
     return cast("Mapping[Any, Any]", of if isinstance(of, Mapping) else getattr(of, "__dict__", {}))

@@ -159,7 +159,6 @@ class Proposal:
         variant: str,
         scenes: Sequence[str],
     ) -> tuple[Candidate, ...]:
-        """Return the candidates with responses of a variant, path by path as an audit has them."""
         arms = {
             (each.name, row.path): row.arm.faults
             for each in found
@@ -180,7 +179,6 @@ class Proposal:
     def _reasons(
         self, order: Sequence[Candidate], repaired: tuple[str, ...]
     ) -> tuple[str, dict[str, str]]:
-        """Return the source that comes first, and why each that is audited is."""
         first = next(each for each in order if each.fault)
         by_rank = "first by rank" if first is order[0] else "first with an expected error"
         struck = tuple(dict.fromkeys(c.partition(".")[0] for c in first.consumers))
@@ -191,7 +189,6 @@ class Proposal:
         }
 
     def _seconds(self, variant: str, block: Sequence[str]) -> float:
-        """Return what a block takes once all that it needs is loaded, as one scene has shown."""
         self._flown_s(variant, block[:1])
         few = block[:TIMED_SCENES]
         taken = self._flown_s(variant, few)

@@ -104,7 +104,6 @@ class _Beside:
         return told.execute(batch, self.taps(faults, leads=False))
 
     def _command(self, inputs: Inputs) -> Floats:
-        """Return what reaches the plant, `[B, D]`."""
         n = len(self._scenes)
         parts = [
             np.array(to_numpy(inputs[port]), dtype=np.float64).reshape(n, -1)

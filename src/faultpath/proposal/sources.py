@@ -80,7 +80,6 @@ def bound(variant: Variant, interface: Interface, channel: str) -> str:
 
 
 def _channels(interface: Interface, variants: Sequence[Variant], source: str) -> dict[str, None]:
-    """Return the channels that a source feeds where somebody reads them."""
     return {
         channel.name: None
         for variant in variants

@@ -118,7 +118,6 @@ def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...
 
 
 def _roles(path: str) -> tuple[Role, ...]:
-    """Return the roles that a path can have."""
     if path == CORRECT:
         return ("correct",)
     if path == SHARED:

@@ -138,7 +138,6 @@ def _reads(part: Part) -> frozenset[Any]:
 
 
 def _trained(part: Part) -> bool:
-    """Return whether it holds modules with parameters, itself or among its attributes."""
     held = [part, *vars(part).values()]
     return any(
         isinstance(each, nn.Module) and next(each.parameters(), None) is not None for each in held

@@ -186,7 +186,6 @@ def _try_planner(name: str, planner: Planner, settings: SamplerSettings) -> None
 
 
 def _spread(value: Tensor, *lanes: int) -> Tensor:
-    """Return a copy of a reading for each lane, `[..., *lanes]`, where tensors are made now."""
     shaped = value[(..., *(None for _ in lanes))].expand(*value.shape, *lanes)
     return shaped.contiguous().to(torch.get_default_device())
 

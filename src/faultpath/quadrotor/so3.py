@@ -47,7 +47,6 @@ def exp(phi: Tensor) -> Tensor:
 
 
 def _from_quaternion(c: Tensor, q: Tensor, cos: Tensor) -> Tensor:
-    """Return the rotation of a unit quaternion of scalar `c` and vector `q`; cos = c^2 - |q|^2."""
     doubled = q + q
     skew = doubled * c
     x, y, z = skew.unbind(0)
@@ -84,7 +83,6 @@ def _outer(r: Tensor) -> Tensor:
 
 
 def _safest_row(outer: Tensor) -> Tensor:
-    """Return the row [4, *b] with the largest diagonal: each is the quaternion up to a factor."""
     best = torch.stack([outer[i, i] for i in range(4)]).argmax(0)
     return outer.gather(0, best.expand(1, *outer.shape[1:]))[0]
 

@@ -174,7 +174,6 @@ class Quadrotor(LoopSystem):
 
 @cache
 def _weights(folder: Path) -> tuple[Path, ...]:
-    """Return the weights in a folder; their cards decide nothing."""
     return tuple(sorted(folder.glob("*.safetensors")))
 
 

@@ -164,7 +164,6 @@ def dryden(
 
 
 def _flow_axes(stream: np.random.Generator, elevation_deg: float) -> Array:
-    """Return unit vectors along and twice across a random flow, as rows in the world frame."""
     azimuth = stream.uniform(-np.pi, np.pi)
     sine = math.sin(math.radians(elevation_deg)) * stream.uniform(-1.0, 1.0)
     cosine = math.sqrt(1.0 - sine * sine)

@@ -107,7 +107,6 @@ def _trials(
 
 
 def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]:
-    """Return what failed trials leave open on every path; nothing where no trial failed."""
     if not any(side.failed.any() for each in pairs.values() for side in each.ended):
         return {}
     unlike = {mismatch.scene for each in pairs.values() for mismatch in each.mismatches}
@@ -130,7 +129,6 @@ def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]
 
 
 def _distinct(arms: Sequence[Bools]) -> list[int]:
-    """Return the seeds without those that repeat an earlier one in every arm and scene."""
     stacked = np.concatenate(arms)
     seen: dict[bytes, int] = {}
     for seed, column in enumerate(stacked.T):

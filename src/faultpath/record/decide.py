@@ -271,7 +271,6 @@ def _change(about: words.About, path: str, family: Family, effects: Sequence[Eff
 def _break_even(
     about: words.About, path: str, family: Family, effects: Sequence[Effect]
 ) -> PathBreakEven:
-    """Return the set at the level that the family leaves to both ends."""
     ends = family.effects[CORRECT], family.effects[path]
     level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
     found = break_even(*ends, level=level)

@@ -162,7 +162,6 @@ def _change(path: str) -> str:
 
 
 def _isolated(tested: Collection[str]) -> list[str]:
-    """Return the paths that the shared one is compared with."""
     return [path for path in tested if path not in (CORRECT, SHARED)] if SHARED in tested else []
 
 

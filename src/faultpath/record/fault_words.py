@@ -115,7 +115,6 @@ def _when(fault: Fault, dt_s: float) -> str:
 
 
 def _said(what: Any, of: _Reading) -> str:
-    """Return what is done, as it follows `mass is`."""
     return _WORDS[what.kind](what, of)
 
 

@@ -38,7 +38,6 @@ def headline(about: About, effects: Sequence[Effect], changes: Sequence[Change])
 
 
 def _fitting(candidates: Iterator[str]) -> str:
-    """Return the first that is short enough, else the last: they come from long to short."""
     said = ""
     for said in candidates:
         if len(said.split()) <= MOST_WORDS:
@@ -53,7 +52,6 @@ def _never_acted(main: Effect, effects: Sequence[Effect]) -> str:
 
 
 def _saturated(tested: Sequence[Effect]) -> str:
-    """Return the headline where no arm can be told from another: all at 0 %, or all at 100 %."""
     rates = [(effect.baseline_percent, effect.repair_percent) for effect in tested]
     if any(base != fix or base not in (0.0, 100.0) for base, fix in rates):
         return ""
@@ -94,7 +92,6 @@ def _reversal(
 
 
 def _ahead(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[str]:
-    """Yield what may stand where the primary contrast is decided."""
     winner, loser = about.winner(main.sign), about.winner(-main.sign)
     others = [effect for effect in effects if effect.leads and effect is not main]
     same = [effect for effect in others if effect.sign == main.sign]
@@ -116,13 +113,11 @@ def _ahead(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[st
 
 
 def _open(effects: Sequence[Effect]) -> bool:
-    """Return whether the shared fault was tested, could show a difference, and none is detected."""
     shared = (effect for effect in effects if effect.path == SHARED and effect.acted)
     return any(not (each.sign or each.extreme or each.unsettled) for each in shared)
 
 
 def _undecided(about: About, main: Effect, effects: Sequence[Effect]) -> Iterator[str]:
-    """Yield what may stand where it is not."""
     place, briefly = capital(where(main.path)), _briefly(about, main)
     others = [effect for effect in effects if effect.leads]
     sides = {
@@ -173,7 +168,6 @@ def _briefly(about: About, main: Effect) -> str:
 
 
 def _marred(effect: Effect) -> bool:
-    """Return whether failed trials keep a headline from it."""
     return effect.uneven or effect.unsettled
 
 

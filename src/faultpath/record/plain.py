@@ -206,7 +206,6 @@ def _left_open(known: About, record: DecisionRecord) -> Iterator[str]:
 
 
 def _missed(effects: Sequence[Effect]) -> list[str]:
-    """Return the places of undecided effects, each with what could have been seen there."""
     said: list[str] = []
     for effect in effects:
         least = effect.findable_pp

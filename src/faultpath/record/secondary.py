@@ -59,7 +59,6 @@ def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> Secondary:
 
 
 def _bare(estimate: Estimate, what: str) -> Estimate:
-    """Return the estimate without the interval that a fixed number of scenes would give it."""
     method = f"{what} of the scenes until the audit stopped: no interval"
     return estimate.model_copy(update={"low": None, "high": None, "method": method})
 
@@ -72,7 +71,6 @@ def _means(pairs: Pairs, metric: str) -> tuple[float, float] | None:
 
 
 def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -> AtThreshold:
-    """Return success where it means: did not crash, and the metric is good enough."""
     less = asked.metrics[asked.metric].better == "less"
 
     def reached(side: Trials) -> Bools:
@@ -106,7 +104,6 @@ def _mean(first: Floats, second: Floats, resamples: Resamples, unit: str) -> Est
 
 
 def _honest(estimate: Estimate, what: str) -> Estimate:
-    """Return the estimate without its interval where resampling cannot give one."""
     if estimate.n_scenes < MIN_SCENES:
         why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
     elif estimate.low == estimate.high:

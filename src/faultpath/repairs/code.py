@@ -38,7 +38,6 @@ def plain_fields(thing: Any) -> dict[str, Any]:
 
 
 def _parts(thing: Any, seen: set[int]) -> Iterator[str]:
-    """Yield all that a thing is made of, as text."""
     if isinstance(thing, partial):
         yield from _parts((thing.func, thing.args, thing.keywords), seen)
     elif isinstance(thing, ModuleType):
@@ -116,20 +115,17 @@ def _of_code(code: CodeType) -> Iterator[str]:
 
 
 def _names(code: CodeType) -> set[str]:
-    """Return the globals that code reads."""
     inner = (c for c in code.co_consts if isinstance(c, CodeType))
     read = {i.argval for i in dis.get_instructions(code) if i.opname == "LOAD_GLOBAL"}
     return read.union(*map(_names, inner))
 
 
 def _has_docstring(code: CodeType) -> bool:
-    """Return whether the first constant is a docstring; a comprehension's would be a value."""
     first = code.co_consts[0] if code.co_consts else None
     return isinstance(first, str) and not code.co_name.startswith("<")
 
 
 def _own(thing: Any) -> bool:
-    """Return whether a function or class is the user's own: neither installed nor Python's."""
     try:
         return kind_of(Path(inspect.getfile(thing))) is Kind.LOCAL
     except TypeError:  # built in, or a class of a notebook

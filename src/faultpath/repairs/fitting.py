@@ -218,7 +218,6 @@ class _Work:
     def _loss(
         self, part: np.ndarray, faults: Iterable[Any], epoch: int
     ) -> tuple[Tensor, tuple[TapCount, ...]]:
-        """Return the loss of a minibatch as the taps deliver it; targets pass no tap."""
         import torch
 
         rows = torch.from_numpy(part).to(self.device)
@@ -235,7 +234,6 @@ class _Work:
         return loss, counts
 
     def _permuted(self, epoch: int) -> np.ndarray:
-        """Return the training windows in an epoch's order."""
         return generator("repairs", "minibatches", self.seed, epoch).permutation(self.training)
 
     def _diverged(self, epoch: int, what: str) -> UserError:

@@ -72,7 +72,6 @@ class Learned(Module):
 
 
 def _laid(past: Sequence[Mapping[Port, HostArray]], port: Port, steps: int | None) -> HostArray:
-    """Return the steps of a port as a fit's windows have them."""
     if steps is None:
         return past[-1][port].copy()
     return np.stack([step[port] for step in past], axis=1)
@@ -103,7 +102,6 @@ def _named(fault: Fault, module: Module, port: Port) -> bool:
 
 
 def _neutral(fault: Fault, interface: Interface | None) -> HostArray:
-    """Return the value of one scene, in the reading's shape."""
     value: Any = getattr(fault.intervention, "default", None)
     if interface is None:
         if value is None:
@@ -155,6 +153,5 @@ class _Withheld(Module):
 
 
 def _beside(host: HostArray, array: Array) -> Array:
-    """Return numbers in the namespace and float type of an array."""
     floating = namespace(array).isdtype(array.dtype, "real floating")
     return place(host, array, array.dtype if floating else None)

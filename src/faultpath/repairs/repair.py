@@ -160,7 +160,6 @@ def reconstruction(channel: str) -> Repair:
 
 
 def _said(fault: AnyFault | str) -> str:
-    """Return a fault in a few words, and what ties its errors to those of others."""
     if isinstance(fault, str):
         return fault
     if isinstance(fault, Coupled) or fault.loading == 1.0:

@@ -91,7 +91,6 @@ def machine(device: str) -> Machine:
 
 
 def _encoded(net: nn.Module) -> bytes:
-    """Return the weights as safetensors; the bytes depend on the weights alone."""
     state = net.state_dict().items()
     return _safetensors().save({name: value.detach().cpu().clone() for name, value in state})
 

@@ -242,6 +242,5 @@ def _check_steps(windows: Windows) -> None:
 
 
 def _unit(name: str) -> float:
-    """Return a number in [0, 1) that depends on `name` alone."""
     digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
     return int.from_bytes(digest, "little") / 2**64

@@ -135,7 +135,6 @@ def _of(source: ReportInput, pairs: Mapping[str, Pair]) -> Adding | None:
 
 
 def _terms(named: Sequence[Signal]) -> tuple[Signal, ...]:
-    """Return two errors and their sum; nothing where they were not recorded."""
     topics = [each.topic for each in named if each.name == TOGETHER]
     found = [each for each in named if each.topic in topics]
     known = all(np.isfinite(each.values).any() for each in found)

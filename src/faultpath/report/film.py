@@ -240,7 +240,6 @@ def _write(out: Path, frames: Iterator[Any], count: int, pace_s: float) -> None:
 
 
 def _with_palette(frames: Iterator[Any]) -> Iterator[Any]:
-    """Yield the frames in our colours and what lies between each and its ground."""
     from PIL import Image, ImageColor
 
     grounds = [np.array(ImageColor.getrgb(_INK[name])) for name in ("paper", "wash")]

@@ -94,7 +94,6 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
 
 
 def _story(source: ReportInput, pairs: Sequence[Pair]) -> Mapping[str, object]:
-    """Return what the first screen tells, beside the headline and the tiles."""
     why = adding(source, pairs)
     return {
         "adding": why
@@ -125,7 +124,6 @@ def _cells(record: DecisionRecord, path: str) -> list[Cell]:
 
 
 def _tiles(record: DecisionRecord) -> list[tuple[str, str, Effect | None, str]]:
-    """Return name, title, effect and what is decided of each path: the first screen's numbers."""
     known, effects = about(record), {effect.path: effect for effect in record.effects}
     return [
         (name, title, effects.get(name), decided_words(known, effects.get(name)))
@@ -167,7 +165,6 @@ def _pictures(
 
 
 def _interface(source: ReportInput) -> list[tuple[Markup, list[ChannelRows]]]:
-    """Return the interface as picture and in words: the fault's part first, then the whole."""
     struck, wiring = struck_paths(source.record), Wiring(source.variants)
     meant = (fault.channel for fault in source.record.question.faults)
     part = concerned(source.interface, struck, meant, wiring)

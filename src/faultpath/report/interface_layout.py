@@ -176,7 +176,6 @@ def _near_neighbours(
 
 
 def _rising(values: Sequence[float]) -> list[float]:
-    """Return the nondecreasing numbers nearest to `values` in squares (pool adjacent violators)."""
     pools: list[tuple[float, int]] = []
     for value in values:
         total, size = value, 1

@@ -40,7 +40,6 @@ def draw_trace(interface: Interface, trace: TraceReport) -> str:
 
 
 def _as_it_ran(interface: Interface, trace: TraceReport) -> Interface:
-    """Return the interface with the readers and sources that nobody declared."""
     sources = {source.name for source in interface.sources}
 
     def with_readers(channel: Channel) -> Channel:

@@ -116,5 +116,4 @@ def by_scene(pairs: Iterable[Pair]) -> dict[tuple[str, int], dict[str, Pair]]:
 
 
 def _met(outcome: Outcome) -> tuple[str, str, str]:
-    """Return the conditions that both trials of a pair must share."""
     return outcome.initial_hash, outcome.disturbance_hash, outcome.planner_noise_hash

@@ -84,7 +84,6 @@ def _flips(record: MapRecord) -> Table:
 
 
 def _flip(record: MapRecord, flip: Flip) -> Line:
-    """Return a path; as in the sentences, nothing is rounded so that it would claim more."""
     asked = record.question
     ahead = {1: asked.repair, -1: asked.baseline}
     kept, turned = MISSING, MISSING

@@ -190,7 +190,6 @@ def latex_table(record: DecisionRecord) -> str:
 
 
 def _named(record: DecisionRecord, names: Sequence[str]) -> list[str]:
-    """Return the quantities that the record has: no power where the number of scenes was open."""
     beside = any(effect.mcnemar_p_value is not None for effect in record.effects)
     shown = {"power": record.stopped is None, "mcnemar": beside}
     shown["power-seen"] = any(effect.planning_detectable_pp for effect in record.effects)

@@ -101,7 +101,6 @@ def viewer_data(
 
 
 def _begin(record: DecisionRecord, first: Mapping[str, Pair]) -> str:
-    """Return the path that is shown first: one on which the first scene goes as was announced."""
     signs = {effect.path: effect.sign for effect in record.effects if effect.leads}
     apart = [path for path, pair in first.items() if pair.sign and signs.get(path) == pair.sign]
     primary = record.question.primary or SHARED
@@ -194,8 +193,6 @@ def _space(traces: Traces, plans: Mapping[str, FloorPlan]) -> str:
 
 
 def _with_positions(signals: Signals, traces: Traces) -> Signals:
-    """Return the signals with positions along the one axis, in place of what says the same."""
-
     def others(at: TrialAddress, axis: Track) -> Iterator[Signal]:
         for each in signals.get(at, ()):
             if not np.array_equal(each.values, axis[: len(each.values)]):
@@ -210,7 +207,6 @@ def _with_positions(signals: Signals, traces: Traces) -> Signals:
 def _kept(
     signals: Signals, chosen: Sequence[tuple[str, int]], groups: Iterable[tuple[str, int]]
 ) -> Signals:
-    """Return the signals of as many scenes as a page has room for, the chosen ones first."""
     with_signals = {(at.scene, at.seed) for at in signals}
     order = [at for at in dict.fromkeys((*chosen, *groups)) if at in with_signals]
     few = set(order[:_MOST_WITH_SIGNALS])

@@ -136,7 +136,6 @@ def tracks_of(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
 
 
 def _showings(pairs: Sequence[Pair]) -> list[Showing]:
-    """Return the scenes with their seeds that have no void pair."""
     out = (Kind.VOID, Kind.LEFT_OUT)
     return [
         Showing(group)
@@ -146,7 +145,6 @@ def _showings(pairs: Sequence[Pair]) -> list[Showing]:
 
 
 def _announced(record: DecisionRecord) -> set[str]:
-    """Return the paths of which something was announced."""
     changes = [change for change in record.changes if change.turn != "none"]
     leading = {effect.path for effect in record.effects if effect.leads}
     return leading.union(*({change.isolated, change.shared} for change in changes))
@@ -168,7 +166,6 @@ def _ranked(record: DecisionRecord, pairs: Sequence[Pair]) -> list[Showing]:
 
 
 def _agreement(record: DecisionRecord, kinds: Mapping[str, Kind]) -> tuple[int, ...]:
-    """Return how well a pattern agrees with what was announced; more is better, part by part."""
     if not _announced(record):
         return ()
     signs = {Kind.REPAIR_ONLY: 1, Kind.BASELINE_ONLY: -1}

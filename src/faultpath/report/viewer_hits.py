@@ -49,7 +49,6 @@ def _outside(value: float, low: float, high: float) -> float:
 
 
 def _from_polygon(x: float, y: float, corners: Sequence[tuple[float, float]]) -> float:
-    """Return the distance from a polygon, 0 inside of it."""
     inside, nearest = False, np.inf
     for (ax, ay), (bx, by) in zip(corners, (*corners[1:], corners[0]), strict=True):
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):

@@ -45,5 +45,4 @@ def unpack(packed: str) -> tuple[dict[str, Any], list[Whole]]:
 
 
 def _differences(values: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """Return the first value and each step from there, modulo 2^32."""
     return np.diff(values, prepend=np.zeros(1, np.uint32))

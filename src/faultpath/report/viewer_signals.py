@@ -103,7 +103,6 @@ def in_force(named: Mapping[str, Signal]) -> list[list[int]]:
 
 
 def _called(topic: str, unit: str, part: int, many: int, names: Sequence[str]) -> tuple[str, str]:
-    """Return what a component is called, and its own unit where each has one."""
     topic = topic.replace("_", " ")
     if many == 1:
         return topic, unit
@@ -113,7 +112,6 @@ def _called(topic: str, unit: str, part: int, many: int, names: Sequence[str]) -
 
 
 def _varies(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
-    """Return whether anything changes in some trial, or differs there from line to line."""
     trials: dict[TrialAddress, list[NDArray[Any]]] = {}
     for line in lines:
         for at, values in line.items():
@@ -123,14 +121,12 @@ def _varies(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
 
 
 def _differs(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
-    """Return whether anything is not zero in some trial."""
     return any(np.nan_to_num(values).any() for line in lines for values in line.values())
 
 
 def _told(
     lines: Mapping[_Line, Mapping[TrialAddress, NDArray[Any]]],
 ) -> tuple[tuple[_Line, str], ...]:
-    """Return the lines that differ from those before them, named after all that are the same."""
     kept: list[tuple[_Line, list[str]]] = []
     for line, trials in lines.items():
         for other, names in kept:
@@ -145,7 +141,6 @@ def _told(
 def _alike(
     one: Mapping[TrialAddress, NDArray[Any]], other: Mapping[TrialAddress, NDArray[Any]]
 ) -> bool:
-    """Return whether two lines are the same; one may go on for the step at which a trial ends."""
     return one.keys() == other.keys() and all(
         np.array_equal(*_cut(one[at], other[at]), equal_nan=True) for at in one
     )

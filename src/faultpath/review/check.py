@@ -153,7 +153,6 @@ def _first(seen: Seen) -> Iterable[Flight]:
 
 
 def _again(seen: Seen) -> Iterable[Flight]:
-    """Yield what follows from the first flights: the same again, in part, and with faults."""
     scenes = seen.scenes
     for name, first in seen.firsts():
         arm = Arm(variant=name, seed=seen.seed)
@@ -173,7 +172,6 @@ def _again(seen: Seen) -> Iterable[Flight]:
 
 
 def _whole(seen: Seen) -> Iterable[Flight]:
-    """Yield to their end the flights of faults that have changed nothing so far."""
     for (variant, why), (flight, flown) in tuple(seen.flights.items()):
         if not why.startswith("struck") or flown.error or not any(r.altered for r in flown.reads):
             continue
@@ -182,7 +180,6 @@ def _whole(seen: Seen) -> Iterable[Flight]:
 
 
 def _shared(reads: Sequence[Read]) -> Fault | None:
-    """Return a small fault of the channel that most consumers read, if numbers are read at all."""
     readers: dict[str, list[str]] = {}
     for read in reads:
         if "float" in read.dtype:

@@ -96,7 +96,6 @@ def fly_here(system: System, flight: Flight) -> Flown:
 
 
 def _said(found: Raised | Wrong) -> tuple[str, str]:
-    """Return what stopped a flight, and the check that tells of it."""
     if isinstance(found, Raised):
         kind, _, text = found.error.partition(": ")
         return (text, "readings") if kind == NotFinite.__name__ else (found.error, "trials")

@@ -197,7 +197,6 @@ class _Watch:
 
 
 def _alike(plants: Any, held: Any) -> bool:
-    """Return whether a tensor holds the plant's numbers, and numbers that are no coincidence."""
     if plants.numel() != held.numel() or plants.dtype != held.dtype:
         return False
     same = bool((plants.reshape(-1) == held.detach().reshape(-1)).all())
@@ -207,7 +206,6 @@ def _alike(plants: Any, held: Any) -> bool:
 def _tensors(
     torch: Any, thing: Any, name: str = "", deep: int = 0, met: set[int] | None = None
 ) -> Iterator[tuple[str, Any]]:
-    """Yield the floating tensors that something holds, but for trained parameters, by path."""
     met = set() if met is None else met
     if id(thing) in met or deep > _DEEP or isinstance(thing, (str, bytes, int, float, type)):
         return

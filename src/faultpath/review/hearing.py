@@ -198,7 +198,6 @@ def laid_out(held: Mapping[int, Values], scene: int, steps: int) -> Values:
 
 
 def _numbers(value: Any) -> Values | None:
-    """Return a copy `[B, P]` of a reading that is a few numbers."""
     if not is_array(value) or math.prod(value.shape[1:]) > _MOST_NUMBERS:
         return None
     host = np.array(to_numpy(value))
@@ -218,7 +217,6 @@ def _listening(loop: Loop, heard: Heard) -> Loop:
 
 
 def _with(thing: _Thing, name: str, method: Callable[..., Any]) -> _Thing:
-    """Return a copy of `thing` in which one method is another; the thing itself stays as it is."""
     other = copy.copy(thing)
     vars(other)[name] = method
     return other

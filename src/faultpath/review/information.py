@@ -146,7 +146,6 @@ def _missed(made: Struck, flown: Flown) -> str:
 
 
 def _told(seen: Seen, variant: str, why: str) -> bool:
-    """Return whether the consumer made something of it, in a few steps or in the whole flight."""
     whole = seen.flights.get((variant, f"{why} whole"), seen.flights[variant, why])[1]
     return bool(whole.error) or effective(seen, variant, whole)
 

@@ -148,7 +148,6 @@ def models_grid(runs: int) -> Iterator[ModelsCoverage]:
 
 
 def _structures(alike: tuple[float, ...]) -> list[tuple[int, float, bool]]:
-    """Return seeds, the share of scenes that treats them alike, and whether they differ."""
     return [(1, 0.0, False), *product((3, 5), alike, (False, True))]
 
 

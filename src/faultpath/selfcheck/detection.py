@@ -50,7 +50,6 @@ class DetectionAtTheReported:
         return Measured(DETECTION, setting, powers, runs)
 
     def _exactly(self) -> float:
-        """Return the mean over every number of discordant scenes, each with its chance."""
         every, numbers = tables(self.scenes), np.arange(self.scenes + 1)
         every = every[
             detected(self.population.sizes, every, np.ones(len(every)), self.alpha, IN_FORCE)
@@ -67,7 +66,6 @@ class DetectionAtTheReported:
         return total / weights
 
     def _simulated(self) -> tuple[float, int]:
-        """Return the mean over simulated reports, and how many audits would be as precise."""
         stream = generator("selfcheck", repr(self), 0)
         truth, shares = self.population, list[float]()
         for _ in range(self.runs):
@@ -84,12 +82,10 @@ class DetectionAtTheReported:
         return mean, round(mean * (1.0 - mean) / variance) if variance else len(shares)
 
     def _reported(self, difference: Floats) -> float | None:
-        """Return the least detectable difference, a fraction, of outcomes [scenes, seeds]."""
         least = detectable(difference > 0.0, difference < 0.0, rule=IN_FORCE, alpha=self.alpha)
         return None if least is None else least / 100.0
 
     def _at(self, difference: float) -> Population:
-        """Return the truth with that difference: as many scenes differ, more where it needs it."""
         rate = max(self.population.rate, difference)
         return replace(self.population, rate=rate, lean=min(1.0, difference / rate))
 

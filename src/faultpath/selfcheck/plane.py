@@ -157,7 +157,6 @@ class EqualMaps:
 
 
 def _announces(found: Differences) -> bool:
-    """Return whether a side is decided anywhere on the map, its paths included."""
     flips, z = turns(found, MODULES, 1.0, "selfcheck")
     weights = np.concatenate([np.eye(len(found.points)), surface_weights(found.points)])
     places = Combined.of(weights, found).signs(z).any()
@@ -165,7 +164,6 @@ def _announces(found: Differences) -> bool:
 
 
 def _true_places(found: Differences, z: float, straight: bool) -> bool:
-    """Return whether the truth is on the side that is decided, at every place of the surface."""
     weights = surface_weights(found.points)
     signs = Combined.of(weights, found).signs(z)
     heights = weights @ truth(found.points) if straight else truth(lattice(SHOWN))
@@ -224,7 +222,6 @@ def holds(flip: Flip, found: Differences, straight: bool) -> bool:
 
 
 def _of_the_map(expected: Expected) -> float:
-    """Return where the true expectation of the interpolated surface is 0."""
     heights = expected.surface @ truth(expected.found.points)
     low, high = -1.0, 1.0
     for _ in range(30):

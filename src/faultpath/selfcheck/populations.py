@@ -67,7 +67,6 @@ class Population:
         return (own < first).astype(np.float64) - (own > 1.0 - second)
 
     def _rates(self) -> tuple[Floats, Floats]:
-        """Return for each seed how often only the first, and only the second arm succeeds."""
         rate = np.full(self.seeds, self.rate)
         lean = np.full(self.seeds, self.lean)
         if self.seed_effects and self.seeds > 1:

@@ -101,7 +101,6 @@ class Extended:
 
 
 def _equal(stream: np.random.Generator, scenes: int) -> dict[str, tuple[Bools, Bools]]:
-    """Return both arms' successes [scenes] on each path, by a difficulty that scenes share."""
     easy = stream.random(scenes)
     noise = stream.normal(0.0, 0.25, size=(len(_PATHS), 2, scenes))
     ends = easy + noise > _HARD

@@ -78,12 +78,10 @@ def fewest_scenes(alpha: float) -> int:
 
 
 def _needed(level: float) -> float:
-    """Return the logarithm of the capital that one side needs."""
     return float(np.log(2.0 / (1.0 - level)))
 
 
 def _log_factors(values: Floats, null: Floats | float, bound: Floats | float) -> Floats:
-    """Return [..., values, shares]."""
     gain = (np.asarray(bound)[..., np.newaxis] + values) / (
         np.asarray(bound) + np.asarray(null, dtype=np.float64)
     )[..., np.newaxis]
@@ -91,14 +89,12 @@ def _log_factors(values: Floats, null: Floats | float, bound: Floats | float) ->
 
 
 def _mixed(logs: Floats) -> Floats:
-    """Return the logarithm of the mean over the shares [..., shares]."""
     top = logs.max(axis=-1)
     mean = np.exp(logs - top[..., np.newaxis]).mean(axis=-1)
     return np.asarray(top + np.log(mean), dtype=np.float64)
 
 
 def _low(values: Floats, counts: Floats, bound: Floats, level: float) -> Floats:
-    """Return the lower end: the capital falls as the null rises, and is below 1 at the mean."""
     needed = _needed(level)
     low: Floats = 0.0 - np.asarray(bound, dtype=np.float64)
     high: Floats = (counts * values).sum(axis=-1) / counts.sum(axis=-1)

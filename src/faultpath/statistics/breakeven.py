@@ -150,7 +150,6 @@ class _Mixture:
         return np.minimum.reduce(lows), np.maximum.reduce(highs)
 
     def _mixed(self, p: Floats) -> tuple[Floats, Floats, Floats]:
-        """Return values and counts [frequencies, kinds of scene] and the reach [frequencies]."""
         assert self.scenes is not None
         (first, second), counts, far_0, far_f = self.scenes
         share = p[:, np.newaxis]
@@ -161,7 +160,6 @@ class _Mixture:
 
 
 def _pieces(mixture: _Mixture, p_star: float | None) -> tuple[Piece, ...]:
-    """Return the frequencies that are not decided, as intervals."""
     grid = np.linspace(0.0, 1.0, _GRID + 1)
     if p_star is not None:
         grid = np.unique(np.append(grid, p_star))
@@ -185,7 +183,6 @@ def pieces_of(undecided: Callable[[Floats], Bools], grid: Floats) -> tuple[Piece
 
 
 def _edges(undecided: Callable[[Floats], Bools], grid: Floats, inside: Bools) -> list[float]:
-    """Return where the set begins and ends between neighbouring points of the grid, in order."""
     at = np.flatnonzero(inside[1:] != inside[:-1])
     if not len(at):
         return []

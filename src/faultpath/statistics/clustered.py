@@ -64,7 +64,6 @@ class WindowQuantiles:
         return values
 
     def _quantiles(self, values: Floats, q: float) -> Floats:
-        """Return [1 + resamples, seeds]: the quantile itself, and in every resample."""
         return np.stack([self._column(column, q) for column in values.T], axis=1)
 
     def _column(self, values: Floats, q: float) -> Floats:

@@ -111,7 +111,6 @@ def turn(isolated: Contrast, shared: Contrast, change: Contrast) -> Turn:
 def _critical(
     name: str, p_values: Mapping[str, float], weights: Mapping[str, float], alpha: float
 ) -> float:
-    """Return the largest p-value with which one would be rejected beside the others."""
     left = dict(weights)
     others = (other for other in p_values if other != name)
     for other in sorted(others, key=lambda other: p_values[other] / weights[other]):

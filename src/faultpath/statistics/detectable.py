@@ -75,7 +75,6 @@ def _alike(seeds: Floats) -> float:
 
 
 def _least(reaches: Callable[[float], bool]) -> float | None:
-    """Return the least difference between 0 and 1 that reaches the power; None when none does."""
     if not reaches(1.0):
         return None
     low, high = 0.0, 1.0

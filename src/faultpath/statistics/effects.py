@@ -74,7 +74,6 @@ def _mean(
     scenes: SceneValues | None = None,
     models: bool = False,
 ) -> Contrast:
-    """Return the mean of ``values`` [scenes, seeds], in the scale of ``scenes``."""
     n_scenes, n_seeds = values.shape
     check_scenes(n_scenes, resamples)
     scale = scenes.scale if scenes else 1.0
@@ -152,14 +151,12 @@ def _masked(values: Numbers, mask: NDArray[np.bool_], name: str) -> Floats:
 
 
 def _resampled_medians(values: Floats, scenes: NDArray[np.intp], resamples: Resamples) -> Floats:
-    """Return the median of ``values``, which belong to ``scenes``, in every resample with any."""
     order = np.argsort(values, kind="stable")
     ordered, columns = values[order], scenes[order]
     return np.concatenate([_medians(ordered, block[:, columns]) for block in resamples.blocks()])
 
 
 def _medians(ordered: Floats, counts: Floats) -> Floats:
-    """Return the median of ascending values [n] that occur ``counts`` [resamples, n] times."""
     reached = np.cumsum(counts, axis=1, dtype=np.int32)
     reached = reached[reached[:, -1] > 0]
     total = reached[:, -1:]

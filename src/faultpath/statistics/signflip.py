@@ -64,7 +64,6 @@ def rejects(values: Floats, counts: Floats, alpha: float) -> NDArray[np.bool_]:
 
 
 def _whole(values: Floats, n_seeds: int) -> NDArray[np.int64]:
-    """Return values in whole units, halves and quarters of ``1 / n_seeds`` where it takes them."""
     for halving in range(_HALVINGS):
         scaled = values * (n_seeds * 2.0**halving)
         whole = np.rint(scaled)

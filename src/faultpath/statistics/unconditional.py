@@ -58,7 +58,6 @@ def critical(n_pairs: int, alpha: float) -> Counts:
 
 
 def _bounds(n_pairs: int) -> tuple[Counts, Counts]:
-    """Return [discordants]: no table, and every table whose counts differ."""
     total = np.arange(n_pairs + 1)
     return np.full_like(total, -1), (total - 1) // 2
 
@@ -154,7 +153,6 @@ def _mixed(n_pairs: int, shares: Floats) -> Floats:
 
 
 def _tails(n_pairs: int) -> Floats:
-    """Return [discordants, 1 + fewer]: the chance that the smaller count is at most the fewer."""
     widest = n_pairs // 2 + 1
     tails = np.zeros((n_pairs + 1, widest + 1))
     split = np.zeros(widest + 1)

@@ -90,7 +90,6 @@ def _unwritable(path: Path, error: OSError) -> UserError:
 
 
 def _place(path: Path, inside: Path | None) -> Path:
-    """Return where the data go: `path`, or what it is a link to; `OSError` where no file may be."""
     try:
         mode = os.stat(path).st_mode
     except FileNotFoundError:  # or a link to where nothing is yet

@@ -139,7 +139,6 @@ def keyed(place: Path, name: str, code: CodeState) -> tuple[Path, str]:
 
 
 def _others(place: Path, name: str) -> dict[Path, Manifest | None]:
-    """Return the folders of the same name, each with its manifest where it can be read."""
     key = re.compile(re.escape(name) + rf"-[0-9a-f]{{{_KEY}}}")
     found: dict[Path, Manifest | None] = {}
     for path in place.iterdir():

@@ -62,7 +62,6 @@ class SharedTrials:
             )
 
     def _keep(self, run: RunFolder, key: str) -> bool:
-        """Return whether what is kept is what this run has."""
         mine, *_ = run.files_of(key)
         data, place = contents(mine), self._held.shards / mine.name
         if any(path != place for path in self._held.files_of(key)):

@@ -162,7 +162,6 @@ def _outcomes(metrics: Iterable[str]) -> Schema:
 
 
 def _metrics(outcomes: Iterable[Outcome]) -> list[str]:
-    """Return the columns of metrics: those of a vehicle first, then the others as they come."""
     found = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
     vehicle = VEHICLE if any(name in VEHICLE for name in found) else ()
     return list(dict.fromkeys((*vehicle, *found)))

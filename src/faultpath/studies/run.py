@@ -253,7 +253,6 @@ def _check_digests(folder: Path) -> None:
 
 
 def _gallery(library: Library) -> tuple[SceneShown, ...]:
-    """Return the first scene of each topology (paper, Figure 2)."""
     first = {scene.topology: scene for scene in reversed(library.scenes)}
     scenes = sorted(first.values(), key=lambda scene: scene.index)
     return tuple(SceneShown(scene=scene.id, topology=scene.topology) for scene in scenes)

@@ -39,7 +39,6 @@ def words(pages: Iterable[Page], profile: Profile, given: str, library: Library)
 
 
 def _roles(page: Page, profile: Profile) -> set[str]:
-    """Return the roles of the libraries on which a profile flies or measures for a page."""
     flown = {cell.setting.library for cell in profile.cells(page.cells)}
     measured = {m.recording.library for m in page.measurements if m.seed in profile.seeds}
     return flown | measured

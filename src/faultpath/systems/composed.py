@@ -119,7 +119,6 @@ class ComposedSystem(LoopSystem):
         return self._plant.code()
 
     def _shapes(self) -> dict[str, tuple[int, ...]]:
-        """Return the shape of one scene's reading of each source that somebody reads."""
         seen = _Shapes()
         for name in self._parts:
             made = graph(
@@ -203,7 +202,6 @@ class _Facts:
             raise SystemMistake(f"system '{self.name}': {misfit_of(error, Interface)}") from None
 
     def _readers(self) -> dict[str, dict[str, None]]:
-        """Return who reads each channel, in the order of the parts."""
         found: dict[str, dict[str, None]] = {}
         parts: list[Part] = [*self.modules, self.plant]
         for part in parts:

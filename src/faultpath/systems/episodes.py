@@ -288,7 +288,6 @@ def _exact(part: Any) -> str:
 
 
 def _where(running: HostArray, fresh: HostArray, old: HostArray) -> HostArray:
-    """Return the fresh rows of scenes that run, and the old ones of the others."""
     if running.all():
         return fresh
     return np.where(running.reshape(-1, *[1] * (fresh.ndim - 1)), fresh, old)

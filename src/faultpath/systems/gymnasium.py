@@ -133,7 +133,6 @@ class _GymnasiumWorlds(Worlds):
         self.told = {name: np.array([np.asarray(t[name]) for t in told]) for name in told[0]}
 
     def _action(self, action: HostArray) -> HostArray:
-        """Return a batch's actions in the shape and type of the environment's."""
         space = self._space
         if space.shape is None:
             raise SystemMistake(
@@ -239,7 +238,6 @@ def _mode(envs: Any) -> str:
 
 
 def _row(batch: Any, i: int) -> Any:
-    """Return one scene's part of a batch's observation, or of what is said beside it."""
     if isinstance(batch, Mapping):
         return {key: _row(value, i) for key, value in cast("Mapping[Any, Any]", batch).items()}
     if isinstance(batch, tuple):
@@ -248,7 +246,6 @@ def _row(batch: Any, i: int) -> Any:
 
 
 def _said(info: Mapping[str, Any], i: int) -> Mapping[str, Any]:
-    """Return what a vector environment says of one of its own; `_key` marks whom `key` is of."""
     return {
         key: _row(value, i)
         for key, value in info.items()
@@ -257,5 +254,4 @@ def _said(info: Mapping[str, Any], i: int) -> Mapping[str, Any]:
 
 
 def _stream(env: Any) -> Any:
-    """Return where an environment's random numbers stand, so far as it has any."""
     return None if env is None else env.unwrapped.np_random.bit_generator.state

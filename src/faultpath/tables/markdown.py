@@ -42,5 +42,4 @@ def _entry(entry: Entry) -> str:
 
 
 def _code(name: str) -> str:
-    """Return a name as code; one with marks that code cannot hold stays escaped text."""
     return escape(name) if any(mark in name for mark in "`|\n\\") else f"`{name}`"

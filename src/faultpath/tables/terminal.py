@@ -58,7 +58,6 @@ def _tall(table: Table) -> bool:
 
 
 def _apart(table: Table) -> tuple[int, int, int, int]:
-    """Return how far entries stand from each other: above, right, below, left."""
     return (0, 1 if len(table.columns) > _ROOMY else 2, 1 if _tall(table) else 0, 0)
 
 

@@ -154,7 +154,6 @@ class Taps:
         return tap.cached
 
     def _handed(self, tap: Tap, value: Any, step: int) -> Any:
-        """Return what the consumer gets of a step's value."""
         if isinstance(value, Query):
             tap.asked = 0
             return partial(self._answer, tap, value, step)
@@ -167,7 +166,6 @@ class Taps:
         return value if tap.guard is None else tap.guard.hand_out(value)
 
     def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
-        """Return what the tap makes of one answer of a query."""
         if step != tap.last_step:
             raise MalformedReading(
                 f"tap {tap}: the query of step {step} was asked in step {tap.last_step}; ask what "

@@ -149,7 +149,6 @@ class TracedTaps(Taps):
 
 
 def _noted(read: Read, given: Any, got: Any) -> Read:
-    """Return the read with one more value that passed."""
     values = to_numpy(given)
     finite = np.isfinite(values)
     seen = values[finite]
@@ -178,7 +177,6 @@ def _sums(
 
 
 def _weights(count: int) -> HostArray:
-    """Return weights with which numbers that change places give another sum."""
     return 0.5 + 0.5 * np.modf(np.arange(count) * 0.6180339887498949)[0]
 
 
@@ -187,7 +185,6 @@ def _digests(values: HostArray) -> tuple[bytes, ...]:
 
 
 def _added(before: tuple[bytes, ...], now: tuple[bytes, ...]) -> tuple[bytes, ...]:
-    """Return the digests of answers, of which a step has several."""
     pairs = zip(before, now, strict=True)
     return tuple(_digest(one + other) for one, other in pairs) if before else now
 

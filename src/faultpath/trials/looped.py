@@ -99,7 +99,6 @@ class LoopSystem(System):
 
 
 def _privileged(interface: Interface, parts: Graph) -> frozenset[str]:
-    """Return the privileged sources that the parts read: a variant says so by reading them."""
     bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
     return frozenset(
         name for name in bound if interface.source(name).provenance is Provenance.PRIVILEGED
@@ -107,7 +106,6 @@ def _privileged(interface: Interface, parts: Graph) -> frozenset[str]:
 
 
 def _noise(parts: Graph, batch: Batch) -> Sequence[str]:
-    """Return what the modules draw in each scene, `none` where no module draws."""
     drawn = [found for each in parts.modules if (found := each.noise_hashes(batch)) is not None]
     if not drawn:
         return ["none"] * len(batch.scenes)
@@ -146,7 +144,6 @@ def _outcomes(
 
 
 def _traces(path: Sequence[Array]) -> HostArray | None:
-    """Return the positions `[T, B, 3]`, at the start and after each control step."""
     if path[0] is None:
         return None
     return to_numpy(namespace(path[0]).stack(list(path)))

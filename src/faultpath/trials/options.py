@@ -132,7 +132,6 @@ def _slots(factory: Factory) -> dict[str, _Slot]:
 
 
 def _fields(factory: Factory) -> dict[str, FieldInfo]:
-    """Return the keyword parameters of a factory as a model would hold them."""
     found: dict[str, FieldInfo] = {}
     hints = _hints(factory)
     for name, parameter in _parameters(factory).items():
@@ -155,7 +154,6 @@ def _slot(name: str, field: FieldInfo) -> _Slot:
 
 
 def _values(kind: Any) -> dict[str, Any]:
-    """Return what can be chosen of a type, by text; empty where that cannot be listed."""
     if kind is bool:
         return {"true": True, "false": False}
     if isinstance(kind, type) and issubclass(kind, Enum):
@@ -175,7 +173,6 @@ def _text(value: object) -> str:
 
 
 def _model(factory: Factory) -> type[BaseModel] | None:
-    """Return the model that a factory takes in place of parameters, if it does."""
     names = list(_parameters(factory))
     kind = _hints(factory).get(names[0]) if len(names) == 1 else None
     return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None

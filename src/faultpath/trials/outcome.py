@@ -118,7 +118,6 @@ def _number(name: str, value: Any) -> float:
 
 
 def _measured(given: Mapping[str, Any], declared: Collection[str]) -> dict[str, float | None]:
-    """Return the metrics that have a value."""
     for name in given:
         if name not in declared:
             raise _Malformed(

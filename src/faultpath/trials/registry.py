@@ -96,7 +96,6 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
 
 
 def _factory(name: str) -> Factory:
-    """Return what builds the system `name`; raises as `load_system`, or `ModuleNotFoundError`."""
     place, attribute = _target(name)
     return _attribute(_module(place, name), place, attribute)
 
@@ -159,7 +158,6 @@ def _target(name: str) -> tuple[str, str]:
 
 
 def _split(name: str) -> tuple[str, str]:
-    """Return module or file, and the factory in it; `UserError` for a name that has not both."""
     place, _, attribute = name.rpartition(":")
     if not place or not attribute or (place.startswith(".") and not place.endswith(".py")):
         raise UserError(
@@ -230,7 +228,6 @@ def _file(place: str) -> Path:
 
 
 def _module_name(path: Path) -> str:
-    """Return the name of a system's module, another one for each file."""
     return f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}"
 
 

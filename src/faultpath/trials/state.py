@@ -35,14 +35,12 @@ def system_code(system: System, spec: SystemSpec) -> Code:
 
 
 def _class_root(system: System) -> Root | None:
-    """Return the module of an object's class; `None` where it is in no file."""
     name = type(system).__module__
     file = _file(sys.modules.get(name))
     return None if file is None else Root(name, file)
 
 
 def _file(module: ModuleType | None) -> Path | None:
-    """Return a module's file; what is typed in, or piped in, has none."""
     name = getattr(module, "__file__", None)
     return Path(name) if name and Path(name).is_file() else None
 
@@ -55,7 +53,6 @@ def _source(system: System) -> str:
 
 
 def _parts(system: System) -> tuple[Root, ...]:
-    """Return the modules of the parts that the user named: no import leads there."""
     return tuple(factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
 
 
@@ -65,7 +62,6 @@ def source_state(spec: SystemSpec) -> CodeState:
 
 
 def _classes(system: System, root: Root | None) -> tuple[Root, ...]:
-    """Return the modules of the system's classes, which its factory may have found anywhere."""
     found: dict[str, Root] = {}
     for each in type(system).__mro__:
         module = sys.modules.get(each.__module__)

@@ -164,7 +164,6 @@ class RayWorkers(Executor):
         self._workers[number] = self._started()
 
     def _heard(self, timeout_s: float) -> list[int]:
-        """Return the workers of which something is to be had, after waiting for one at most."""
         awaited = {
             id(each.awaited): (number, each.awaited)
             for number, each in self._workers.items()
@@ -201,7 +200,6 @@ class RayWorkers(Executor):
         self._nodes.add(node)
 
     def _message(self, worker: _Worker) -> tuple[Any] | End:
-        """Return what a call tells, as a tuple of one, or its end."""
         try:
             # Of our own worker, through Ray, which itself runs what its cluster sends: no file.
             message: tuple[Any] | End = pickle.loads(self._ray.get(next(worker.stream)))

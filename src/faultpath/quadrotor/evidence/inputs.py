@@ -72,7 +72,6 @@ class Subject:
         )
 
     def _parse(self, texts: Sequence[str]) -> tuple[list[AnyFault], list[AnyFault]]:
-        """Return the faults that strike windows one by one, and those that strike all at once."""
         system = self.system
         by_window: list[AnyFault] = []
         by_recording: list[AnyFault] = []
@@ -103,7 +102,6 @@ class Subject:
         return by_window, by_recording
 
     def _taps(self, scene: str, faults: Sequence[AnyFault], *codes: int) -> Taps:
-        """Return taps with one scene; `codes`: the shape of its history codes."""
         source = self.system.interface.channel(CODE[0]).sources[0]
         return Taps(
             self.system.interface.shaped({source: codes} if codes else {}),

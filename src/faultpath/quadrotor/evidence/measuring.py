@@ -68,7 +68,6 @@ def _measure(measurement: Measurement, flown: Blocks, folder: Path, path: Path) 
 
 
 def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:
-    """Return the file of a measurement: a hash of everything that decides the numbers."""
     stems = tuple(block.stem for block in flown)
     content = repr((measurement.key(), stems, code_of("evidence.measuring")))
     return folder / f"{hashlib.sha256(content.encode()).hexdigest()[:24]}.measured.parquet"

@@ -58,7 +58,6 @@ def _subject(asked: Measurement) -> Subject:
 
 
 def _drag_kgps(subject: Subject) -> Drag:
-    """Return the nominal drag: analytic dynamics and wind map use no vehicle's own."""
     return subject.system.options.settings.drag_kgps
 
 
@@ -127,8 +126,6 @@ def _nominal(windows: Windows, drag_kgps: Drag) -> Tensor:
 
 
 def _wind_term_difference(present: Present, windows: Windows, drag_kgps: Drag) -> Tensor:
-    """Return how far B_eta w is from the true one at the present, `[3, W]`, m/s^2."""
-
     def term(map_mass_kg: Tensor, wind_mps: Tensor) -> Tensor:
         force = LinearDrag(drag_kgps).force(windows.rotation[:, :, HISTORY], wind_mps)
         return force / map_mass_kg

@@ -131,7 +131,6 @@ def _predicted(heard: Heard) -> Mapping[int, Mapping[int, Values]]:
 def _commands(
     actions: Values, parts: Sequence[Chunk], like: Sequence[Tensor]
 ) -> tuple[Tensor, ...]:
-    """Return actions `[H, B, 4]` as candidates `[H, 4, S, K]` of each part."""
     every = torch.from_numpy(actions).movedim(-1, 1).to(like[0])
     return tuple(
         every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()

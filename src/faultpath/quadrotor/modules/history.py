@@ -71,7 +71,6 @@ class HistoryEncoder(Module):
 
 
 def _recall(past: _Past, take: Take) -> _Past:
-    """Return the past with the interval that has just ended."""
     motion = {name: take(name, "history") for name in MOTION}
     command = take("action", "history")
     if past.latest is None:

@@ -171,7 +171,6 @@ def load(isa: str) -> Kernels:
 
 @cache
 def _sources() -> str:
-    """Return the digest of the sources, as the build computes it."""
     files = sorted((Path(__file__).parent / "source").iterdir())
     return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()
 

@@ -170,7 +170,6 @@ class CompiledPlant:
 
 
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:
-    """Return `value` as the kernel reads it: of this shape, double, contiguous."""
     if value.shape != shape:
         value = value.expand(shape)
     return lend(name, value.double().contiguous(), *shape, dtype=torch.float64)

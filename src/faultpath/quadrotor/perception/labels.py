@@ -90,7 +90,6 @@ def _surface_distance(z: Array, points: Array) -> Array:
 
 
 def _samples(found: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Return points along the longest edge of each triangle, `[P, 3]`, and whose they are."""
     edges = np.roll(found, -1, 1) - found
     length = np.linalg.norm(edges, axis=2)
     longest = length.argmax(1)
@@ -103,7 +102,6 @@ def _samples(found: Array) -> tuple[Array, NDArray[np.int64]]:
 
 
 def _triangle_distance(found: Array, points: Array) -> Array:
-    """Return the distance of each point `[M, 3]` to its triangle `[M, 3, 3]`."""
     edges = np.roll(found, -1, 1) - found
     toward = points[:, None] - found
     along = (toward * edges).sum(2) / np.maximum((edges * edges).sum(2), 1e-18)

@@ -208,7 +208,6 @@ class DepthRenderer:
         return image
 
     def _background(self, view: _View) -> Tensor:
-        """Return the depth at which rays leave the arenas, `[L, 36, 64]`."""
         arena = view.numbers()[:, 0].float()[..., None, None]
         return self._slabs(arena[0:3], arena[3:12].unflatten(0, (3, 3)), arena[12:15])[1]
 
@@ -257,7 +256,6 @@ class DepthRenderer:
         return enter.amax(0), middle.add_(radius).amin(0)
 
     def _directions(self, axes: Tensor) -> Tensor:
-        """Return coordinates of all rays from those of the camera's axes, `[A, 3, n, 1, 1]`."""
         forward, left, up = axes.unbind(1)
         out = self._scratch[0, : axes.shape[0], : axes.shape[2]]
         return torch.add(forward + left * self._left, up * self._up, out=out)

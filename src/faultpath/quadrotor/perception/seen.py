@@ -130,7 +130,6 @@ class DepthClearance:
         return clearance
 
     def _shown(self, by: _Captured, points: Tensor) -> Tensor:
-        """Return what one image shows of points `[3, S, N]`, `[S, N]`."""
         if self.queries is not None:
             return self.queries(by.code, by.position, by.rotation, points)
         local = by.frame().from_world(points)
@@ -146,7 +145,6 @@ class DepthClearance:
         points: Tensor,
         chosen: Tensor,
     ) -> Tensor:
-        """Return the clearance with what the last image to show a point said of it."""
         local = latest.take(chosen).frame().from_world(points)
         unknown = ~(in_view(local) | near(local, self._settings.near_m))
         for image in former:
@@ -171,7 +169,6 @@ def near(points: Tensor, radius_m: float) -> Tensor:
 
 
 def _misfit(model: ClearanceModel) -> str:
-    """Return in words why the kernels do not stand for a model; empty if they do."""
     if not is_exactly(model, ClearanceModel):
         return unlike(ClearanceModel, model)
     with torch.device("meta"):

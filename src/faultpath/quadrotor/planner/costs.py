@@ -136,7 +136,6 @@ class NavigationCost:
         return costs.cost(built, terms, paths)
 
     def _has_kernel(self, commands: Tensor) -> bool:
-        """Return whether the compiled kernel adds up what this cost does."""
         goal, others = self.goal, (RunningGoal, BlendedGoal)
         kind = next((each for each in others if isinstance(goal, each)), TerminalGoal)
         return (

@@ -52,7 +52,6 @@ _REST = np.eye(18)[_QUATERNION.start]
 
 
 def _wrenches() -> Array:
-    """Return each motor's force and torque on the body per newton, [4 motors, 6]."""
     rows = []
     for bearing, spin in zip(np.radians(_BEARINGS_DEG), _SPINS, strict=True):
         place = ARM_LENGTH_M * np.array([math.cos(bearing), math.sin(bearing), 0.0])
@@ -126,7 +125,6 @@ class MujocoPlant(Plant):
         return _unpack(physics)
 
     def _step(self, physics: Array, asked: Array, wind_mps: Array) -> Array:
-        """Return MuJoCo's state [L, 18] after 2 ms under `asked` [L, 4] and wind [L, 3]."""
         control = np.zeros((len(physics), 1, len(_MIX) + _DRAGS))
         control[:, 0, : len(_MIX)] = self._motor_commands(asked, physics[:, _RATE])
         before = physics.copy()
@@ -152,7 +150,6 @@ class MujocoPlant(Plant):
         return after
 
     def _motor_commands(self, asked: Array, rate: Array) -> Array:
-        """Return what the motors are asked for, [L, 4] N, each within its limits."""
         limit = np.array(RATE_LIMIT_RADPS)
         error = np.clip(asked[:, 1:], -limit, limit) - rate
         torque = self._inertia * RATE_GAIN_PER_S * error + np.cross(rate, self._inertia * rate)

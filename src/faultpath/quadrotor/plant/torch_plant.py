@@ -95,7 +95,6 @@ class TorchPlant(Plant):
         return _state(flown), replace(progress, **standing)
 
     def _airframes(self) -> Tensor:
-        """Return what the kernel knows of each vehicle, `[15, b]`, rows as in `plant.hpp`."""
         own = self._acceleration[:, 1].abs()  # of the second motor: one motor tells all by symmetry
         mixing = self._loop.per_acceleration[:, 1].abs()
         weights = torch.stack((self._left_end, self._left_mean))

@@ -118,7 +118,6 @@ def _kinematics(kind: Kind, integrator: KinematicIntegrator) -> Step:
 
 @torch.no_grad()
 def _layers(network: LatentNetwork) -> Mapping[str, Tensor]:
-    """Return each layer with its biases first, without the rows that pass a one on."""
     folded: FoldedNetwork = network.fold()
     split, gates = ACTION_EMBEDDING, folded.gates
     return {

@@ -68,7 +68,6 @@ class GatedCell(nn.Module):
         return torch.lerp(candidate, latent, update)
 
     def _has_kernel(self, sequence: Tensor) -> bool:
-        """Return whether the compiled kernel does what this cell does to a sequence."""
         layers = (self.from_input, self.from_latent)
         if not (covered(self, GatedCell) and all(covered(each, Affine) for each in layers)):
             return False
@@ -204,7 +203,6 @@ class FoldedNetwork:
 
 
 def _folded(weight: Tensor, bias: Tensor, mean: Tensor, inverse_std: Tensor) -> Tensor:
-    """Return weights and bias over raw features, as columns for (features, 1)."""
     scaled = weight * inverse_std.T
     return torch.cat((scaled, bias - scaled @ mean), 1)
 

@@ -155,7 +155,6 @@ class TrueParameter(Predictor):
     def _turn(
         self, rate: Tensor, target: Tensor, torque: Tensor, now: _Memory
     ) -> tuple[Tensor, Tensor]:
-        """Return the body rate and the lagged torque after a substep of the rate loop."""
         inertia = now.physics.inertia_kgm2
         gyroscopic = torch.linalg.cross(rate, inertia * rate, dim=0)
         wanted = now.stiffness * (target - rate) + gyroscopic

@@ -74,7 +74,6 @@ class RecurrentReconstruction(Reconstruction):
 
 
 def _state(delivered: Delivered) -> Tensor:
-    """Return the delivered state, `[18, 1, *batch]`, single precision."""
     parts = [delivered[channel, "history"] for channel in _STATE_CHANNELS]
     position, velocity, rotation, rate = parts
     return torch.cat((position, velocity, rotation.flatten(0, 1), rate)).float()[:, None]

@@ -65,7 +65,6 @@ class FreeLattice:
         return csr_array((np.concatenate(lengths), pair), shape=(size, size))
 
     def _node(self, point: Point) -> int | None:
-        """Return the free point nearest to a place, none where the nearest point is not free."""
         nearest = tuple(
             int(np.abs(axis.numpy() - at).argmin())
             for axis, at in zip(self.lattice.axes, point, strict=True)
@@ -74,7 +73,6 @@ class FreeLattice:
         return int(np.count_nonzero(self.free.ravel()[:place])) if self.free[nearest] else None
 
     def _travel(self, node: int, limit: float = np.inf) -> NDArray[np.float64]:
-        """Return the length of the shortest way from one free point to each, m."""
         return dijkstra(self._graph, directed=False, indices=[node], limit=limit)[0]
 
     def path_length_m(self) -> float:

@@ -102,7 +102,6 @@ def exact_on_lattice(scene: Scene, lattice: Lattice, free_space: bool = False) -
 
 
 def _plan_distance(prisms: list[Prism], x: Tensor, y: Tensor) -> Tensor:
-    """Return the least signed distance in plan to some prisms, `[nx, ny]`."""
     table = torch.tensor(
         [[*p.centre_m[:2], *p.half_m[:2], p.yaw_rad, p.rounding_m] for p in prisms],
         dtype=torch.float64,
@@ -215,7 +214,6 @@ class DistanceField:
         return _between(near, far, z).view(points.shape[1:])
 
     def _place(self, cell: Tensor) -> Tensor:
-        """Return where the low corner of each cell stands in the table; spoils `cell`."""
         # Places within one scene stay below 2^24, up to where float32 counts exactly.
         place = cell[0].mul_(self.pitch[0]).add_(cell[1].mul_(self.pitch[1])).add_(cell[2])
         # NaN converts to any integer: keep the read inside the table, the fraction stays NaN.

@@ -83,7 +83,6 @@ def is_sound(scene: Scene) -> bool:
 
 
 def _frozen_plan(layout: Layout, mirror: bool) -> dict[str, Any]:
-    """Return obstacles, start and goal to the millimetre; mirrored, the flight goes towards -x."""
     turn = -1.0 if mirror else 1.0
 
     def point(at: Point) -> Point:

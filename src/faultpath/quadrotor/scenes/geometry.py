@@ -110,7 +110,6 @@ class Geometry:
         return self._signed(points).amin(0)
 
     def _signed(self, points: Tensor) -> Tensor:
-        """Return the signed distance to every prism, `[K, B, ...]`."""
         tail = (1,) * (points.dim() - 2)
         parts = (self.along_x, self.along_y, self.along_z, self.offset, self.half)
         along_x, along_y, along_z, offset, half, rounding, sign = (

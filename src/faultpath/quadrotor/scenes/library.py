@@ -120,7 +120,6 @@ def _scene(place: int, entry: object) -> Scene:
 
 
 def _refusal(library: Library) -> str:
-    """Return in words why a library cannot be flown; empty for one that can."""
     if library.name in FROZEN_SEEDS:
         frozen = json.loads(frozen_file(library.name).read_text(encoding="utf-8"))
         if library.content_hash != frozen["content_hash"]:

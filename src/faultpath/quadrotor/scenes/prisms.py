@@ -105,5 +105,4 @@ def plan_gap(one: Prism, other: Prism) -> float:
 
 
 def _corner(first: float, second: float) -> float:
-    """Return the signed distance from how far a point lies beyond each of two pairs of faces."""
     return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)

@@ -104,7 +104,6 @@ def _faults(scene: Scene) -> Iterator[str]:
 
 
 def _outlandish(vehicle: VehicleParameters) -> Iterator[str]:
-    """Yield what no multirotor has; the integration of its motion would not bear it either."""
     for name, (least, most) in _RANGES.items():
         found = getattr(vehicle, name)
         for value in found if isinstance(found, tuple) else (found,):

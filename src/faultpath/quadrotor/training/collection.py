@@ -103,7 +103,6 @@ def _wind_ranges(winds: Winds) -> dict[str, float | tuple[float, float]]:
 
 
 def _is_there(path: Path, asked: Recipe) -> bool:
-    """Whether `path` holds the pool that is asked for; `UserError` when it holds another one."""
     found = read_provenance(path)
     if found is None:
         return False

@@ -143,7 +143,6 @@ class WaypointController:
         return torch.cat((thrust[None], torch.clamp(rate, -self._limit, self._limit)))
 
     def _way(self, position: Tensor) -> Tensor:
-        """Return what is left to the waypoint, [3, L], after taking the next one if it is time."""
         left = self._at_leg(self._course.waypoint_m) - position
         arrived = (left * left).sum(0).sqrt() < self._arrival_m
         late = self._on_leg_s >= self._at_leg(self._course.leg_s)
@@ -153,7 +152,6 @@ class WaypointController:
         return self._at_leg(self._course.waypoint_m) - position
 
     def _at_leg(self, values: Tensor) -> Tensor:
-        """Return what `values` [..., M, L] holds for the present leg of each lane, [..., L]."""
         index = self._leg.expand(*values.shape[:-2], 1, -1)
         return values.gather(-2, index).squeeze(-2)
 
@@ -163,7 +161,6 @@ class WaypointController:
         return velocity * (self._at_leg(self._course.speed_mps) / speed).clamp(max=1.0)
 
     def _wanted_force(self, state: State, velocity: Tensor, wind_mps: Tensor) -> Tensor:
-        """Return the specific force [3, L] in m/s^2 that the motors are to exert."""
         air = so3.rotate_back(state.rotation, wind_mps - state.velocity)
         drag = so3.rotate(state.rotation, self._vehicle.drag_kgps * air) / self._vehicle.mass_kg
         force = self._course.gains[1] * (velocity - state.velocity) - self._course.drag_share * drag
@@ -173,14 +170,12 @@ class WaypointController:
         return torch.stack((force[0] * shrink, force[1] * shrink, up))
 
     def _tilt_rate(self, state: State, force: Tensor) -> Tensor:
-        """Return roll and pitch rate [2, L] towards the attitude whose thrust points at `force`."""
         wanted = so3.rotate_back(state.rotation, force)
         sine = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt() + _TINY
         gain = self._course.gains[2] * torch.atan2(sine, wanted[2]) / sine
         return torch.stack((-wanted[1] * gain, wanted[0] * gain))
 
     def _heading_rate(self, state: State, velocity: Tensor) -> Tensor:
-        """Return the yaw rate [1, L] towards the direction of travel and the leg's offset."""
         travel = torch.atan2(velocity[1], velocity[0])
         heading = torch.atan2(state.rotation[1, 0], state.rotation[0, 0])
         error = travel + self._at_leg(self._course.heading_offset_rad) - heading

@@ -232,7 +232,6 @@ def _minibatches(task: Task, epoch: int) -> tuple[LongTensor, ...]:
 
 
 def _recipe(task: Task, module: nn.Module) -> dict[str, Any]:
-    """Return what decides the weights, as JSON values under the names that the card has."""
     config = dict(task.describe())
     config.pop("description", None)
     recipe = {

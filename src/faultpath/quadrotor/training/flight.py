@@ -251,7 +251,6 @@ def _winds(starts: Sequence[_Start]) -> Tensor:
 
 
 def _in_bounds(state: State, settings: FlightSettings) -> Tensor:
-    """Return which flights have not diverged, [L]; one that is not a number has."""
     lows, highs = torch.tensor(settings.volume_m, dtype=torch.float64).T[..., None]
     inside = ((state.position > lows) & (state.position < highs)).all(0)
     slow = (state.velocity * state.velocity).sum(0) < settings.speed_limit_mps**2

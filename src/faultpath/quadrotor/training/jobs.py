@@ -133,7 +133,6 @@ def run_jobs(
 
 
 def _result(job: Job, end: End, folder: Path) -> ModelCard | Failure:
-    """Return the card of a fit that ended well, or why it did not."""
     details = folder / f"{job.stem}.error.txt"
     if isinstance(end, Returned):
         details.unlink(missing_ok=True)

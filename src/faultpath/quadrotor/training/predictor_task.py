@@ -158,7 +158,6 @@ class PredictorTask(Task):
         return made
 
     def _predictor(self, network: nn.Module) -> Predictor:
-        """Return the predictor around the network that is fitted."""
         made: Any = self._blank()
         made.network = network
         return made
@@ -189,7 +188,6 @@ def error(predicted: Sequence[State], windows: Windows, scale: Mapping[str, Tens
 
 
 def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
-    """Return training and validation windows, as many of each pool as the smallest has."""
     halves = [pool.split() for pool in pools]
     training = [half[0] for half in halves]
     fewest = min(len(windows) for windows in training)
@@ -211,7 +209,6 @@ def _measure(network: LatentNetwork, windows: Windows) -> None:
 
 
 def _increments(windows: Windows) -> Tensor:
-    """Return the change of the state over the next interval, `[12, W]`, as WM-U predicts it."""
     now, then = windows.state(HISTORY), windows.state(HISTORY + 1)
     turned = so3.log(so3.compose(now.rotation.transpose(0, 1), then.rotation))
     return torch.cat(

@@ -173,7 +173,6 @@ def measure_reconstruction(
 
 
 def _faults(model: Predictor | Reconstruction, error: float) -> list[AnyFault]:
-    """Return the calibration error, where a model reads calibration at all."""
     interface = quadrotor_interface()
     readers = {name for channel in HELD for name in interface.channel(channel).consumers}
     return [calibration(error)] if model.consumers() & readers else []
@@ -188,14 +187,12 @@ def _by_seed(found: Mapping[int | None, tuple[Drawn, Score]]) -> dict[int, Score
 
 
 def _mean(found: Sequence[tuple[Drawn, Score]], headline: str) -> Score:
-    """Return the mean of scores; its headline has the interval of the mean."""
     drawn, scores = zip(*found, strict=True)
     mean = _average([score.model_dump() for score in scores])
     return type(scores[0])(**mean | {headline: Drawn.mean(drawn).interval()})
 
 
 def _average(parts: Sequence[Any]) -> Any:
-    """Return the mean of numbers that stand at the same place; what agrees stays as it is."""
     first = parts[0]
     if isinstance(first, dict):
         return {key: _average([part[key] for part in parts]) for key in first}

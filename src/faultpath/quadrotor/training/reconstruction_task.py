@@ -194,7 +194,6 @@ class ReconstructionTask(Task):
         }
 
     def _corrupted(self, windows: tuple[str, ...]) -> Corruption | None:
-        """Return the way of calibration to the head; `None` where the head has none."""
         if not self._model.calibrated:
             return None
         half_range = self._model.half_range
@@ -204,7 +203,6 @@ class ReconstructionTask(Task):
     def _estimate(
         self, module: nn.Module, calibration: Tensor | None, intervals: int = INTERVALS
     ) -> Tensor:
-        """Return the wind `[3, N]`, m/s, of the validation windows."""
         network, samples = self._scaled, self._validation
         supplied = None if calibration is None else network.calibration(calibration)
         known = samples.intervals[:, INTERVALS - intervals :]
@@ -212,7 +210,6 @@ class ReconstructionTask(Task):
 
 
 def _history(windows: Windows) -> tuple[Tensor, Tensor]:
-    """Return the states `[18, 13, W]` and commands `[4, 12, W]` that the module remembers."""
     parts = (windows.position, windows.velocity, windows.rotation.flatten(0, 1), windows.rate)
     return torch.cat(parts)[:, : HISTORY + 1], windows.command[:, :HISTORY]
 
@@ -230,7 +227,6 @@ def _rms(squared: Tensor) -> float:
 
 
 def _by_speed(squared: Tensor, speed: Tensor) -> dict[str, float]:
-    """Return the error in each band of wind speed that has windows."""
     metrics = {}
     for low, high in zip(BANDS_MPS, (*BANDS_MPS[1:], float("inf")), strict=True):
         inside = (speed >= low) & (speed < high)

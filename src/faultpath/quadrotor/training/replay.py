@@ -51,8 +51,6 @@ def predict(predictor: Predictor, windows: Windows, delivered: DeliveredInputs) 
 
 
 def _taking(windows: Windows, delivered: DeliveredInputs, k: int | slice) -> Take:
-    """Return what takes the readings of state `k`, `[..., W]`, or of some states, `[..., T, W]`."""
-
     def take(channel: str, place: str) -> Tensor:
         if channel in windows.calibration:
             return delivered[channel, f"predictor.{place}"]

@@ -173,6 +173,5 @@ def cut(pool: FlightData, stride: int = STRIDE) -> Windows:
 
 
 def _unit(name: str) -> float:
-    """Return a number in [0, 1) that depends on `name` alone."""
     digest = hashlib.blake2b(name.encode(), digest_size=8, person=b"validation").digest()
     return int.from_bytes(digest, "little") / 2**64

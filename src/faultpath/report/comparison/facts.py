@@ -105,7 +105,6 @@ def _made(runs: Sequence[Compared]) -> Iterator[Fact]:
 
 
 def _recorded(made: RunProvenance, name: str) -> Mapping[str, str] | None:
-    """Return the digests of files by name; `None` from a faultpath that did not note them."""
     found: Mapping[str, str] = getattr(made, name)
     return found if name in made.model_fields_set else None
 
@@ -116,7 +115,6 @@ def _keyed(title: str, each: Sequence[Mapping[str, str]], absent: str) -> Iterat
 
 
 def _state(title: str, each: Sequence[Mapping[str, str] | None]) -> Fact:
-    """Return the state of some files as a short digest, with the names of those that differ."""
     known = [files for files in each if files is not None]
     names = sorted({name for files in known for name in files})
     changed = [name for name in names if len({files.get(name) for files in known}) > 1]

@@ -108,7 +108,6 @@ def page(runs: Sequence[Compared]) -> str:
 
 
 def _panels(runs: Sequence[Compared]) -> list[tuple[str, Rows]]:
-    """Return the title of each path with what every run has there."""
     labels = facts.labels(runs)
     return [
         (title, [(label, _row(run, path)) for label, run in zip(labels, runs, strict=True)])

@@ -56,7 +56,6 @@ def turning(runs: Sequence[Compared]) -> Table | None:
 
 
 def _row(label: str, path: str, known: Sequence[Sized]) -> Line:
-    """Return what is decided from the smallest size on."""
     first = known[0][1].effect(CORRECT)
     start = first.sign if first else 0
     effects = [(size, run.effect(path)) for size, run in known]
@@ -82,7 +81,6 @@ def _until(signs: Sequence[tuple[float, int]], start: int) -> float | None:
 
 
 def _against(first: Effect | None, effects: Sequence[tuple[float, Effect | None]]) -> Iterator[str]:
-    """Yield the sizes at which the estimate has the other sign than without fault."""
     for size, effect in effects:
         if first and effect and first.success.value * effect.success.value < 0.0:
             yield tick_label(size)

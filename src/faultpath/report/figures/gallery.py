@@ -46,7 +46,6 @@ def scene_view(plan: FloorPlan, title: str) -> str:
 
 
 def _away(at: Spot) -> float:
-    """Return the distance from the viewer, up to a constant."""
     x, y, z = at
     deep = math.sin(_YAW) * x + math.cos(_YAW) * y
     return math.cos(_PITCH) * deep - math.sin(_PITCH) * z
@@ -60,7 +59,6 @@ def _flat(at: Spot) -> Point:
 
 
 def _fit(plan: FloorPlan) -> Place:
-    """Return the map from metres to pixels that shows the whole free volume."""
     (x0, y0, z0), (x1, y1, z1) = plan.low, plan.high
     corners = [_flat((x, y, z)) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)]
     left, right = min(p[0] for p in corners), max(p[0] for p in corners)
@@ -83,7 +81,6 @@ def _floor(plan: FloorPlan) -> list[Spot]:
 
 
 def _grid(plan: FloorPlan) -> Iterator[tuple[Spot, Spot]]:
-    """Yield the lines of whole metres on the floor."""
     (x0, y0, z), (x1, y1, _) = plan.low, plan.high
     for x in range(math.ceil(x0), math.ceil(x1)):
         yield (x, y0, z), (x, y1, z)
@@ -107,7 +104,6 @@ def _round(pillar: Pillar) -> tuple[Point, ...]:
 
 
 def _sides(corners: tuple[Point, ...], bottom: float, top: float, look: str) -> Iterator[_Face]:
-    """Yield the top and the sides that face the viewer; the corners may go round either way."""
     yield _Face(tuple((x, y, top) for x, y in corners), "top")
     turn = math.copysign(1.0, _area(corners))
     for i, (ax, ay) in enumerate(corners):
@@ -118,7 +114,6 @@ def _sides(corners: tuple[Point, ...], bottom: float, top: float, look: str) -> 
 
 
 def _area(corners: tuple[Point, ...]) -> float:
-    """Return twice the signed area, positive for corners that go round to the left."""
     after = (*corners[1:], corners[0])
     return sum(ax * by - bx * ay for (ax, ay), (bx, by) in zip(corners, after, strict=True))
 

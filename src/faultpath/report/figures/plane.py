@@ -88,7 +88,6 @@ def _square(x: Axis, y: Axis) -> str:
 
 
 def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
-    """Yield the pieces of the line on which the estimate is zero, cell by cell of the lattice."""
     sizes, heights = record.surface.sizes, record.surface.difference
     for row, column in product(range(len(sizes) - 1), repeat=2):
         around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]

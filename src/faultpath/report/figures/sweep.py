@@ -53,7 +53,6 @@ def _across(series: Sequence[Series]) -> Axis:
 
 
 def _upward(series: Sequence[Series]) -> Axis:
-    """Return an axis from 0, or from the lowest value below it."""
     points = [p for line in series for p in line.points]
     values = [0.0, *(v for p in points for v in (p.y, p.low, p.high) if v is not None)]
     low, high = min(values), max(values)
@@ -81,7 +80,6 @@ def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:
 
 
 def _key_rows(series: Sequence[Series], width: float) -> list[list[tuple[int, str, float]]]:
-    """Return the entries of the key row by row: look, label and where each begins."""
     rows: list[list[tuple[int, str, float]]] = [[]]
     left = 0.0
     for i, line in enumerate(series):

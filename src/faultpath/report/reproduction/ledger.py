@@ -63,7 +63,6 @@ def _scale(unit: str, drawn: Sequence[_Drawn]) -> Scale:
 
 
 def _statements(ledger: Ledger) -> Iterator[tuple[str, ClaimVerdict | Part]]:
-    """Yield every claim and part under its name."""
     for claim in ledger.claims:
         yield claim.id, claim
         yield from ((f"{claim.id}, part {i}", part) for i, part in enumerate(claim.parts, 1))
@@ -96,5 +95,4 @@ def _shown(
 
 
 def _deciding(claim: ClaimVerdict) -> Part:
-    """Return the part whose estimate is the claim's."""
     return next(part for part in claim.parts if part.answer == claim.verdict)

@@ -65,7 +65,6 @@ def reproduction_page(source: ReproductionInput) -> str:
 
 
 def _topics(source: ReproductionInput) -> list[tuple[str, list[ClaimVerdict]]]:
-    """Return the claims by topic; of one topic alone there is no title to give."""
     claims = source.reproduction.ledger.claims
     named = [
         (title, [claim for claim in claims if claim.id in ids])
@@ -77,7 +76,6 @@ def _topics(source: ReproductionInput) -> list[tuple[str, list[ClaimVerdict]]]:
 
 
 def _footnotes(found: Reproduction) -> dict[str, int]:
-    """Return the notes that stand below several tables or figures, numbered as they come."""
     every = [note for part in (*found.tables, *found.figures) for note in dict.fromkeys(part.notes)]
     several = [note for note in dict.fromkeys(every) if every.count(note) > 1]
     return {note: number for number, note in enumerate(several, 1)}

@@ -39,7 +39,6 @@ _FARTHEST = (
 
 
 def _counts(ledger: Ledger) -> Text:
-    """Return `24 confirmed, 6 refuted, 9 undecided`, each in its colour."""
     parts = (
         Text(f"{words.SIGNS[answer]} {ledger.count(answer)} {answer}", STYLES[_TONES[answer]])
         for answer in words.ANSWERS
@@ -48,7 +47,6 @@ def _counts(ledger: Ledger) -> Text:
 
 
 def _table(ledger: Ledger) -> Table:
-    """Return one line a claim: what was claimed, what came of it, and by what estimate."""
     lines = (
         line(claim.id, *(entries[column] for column in _PRINTED))
         for claim in ledger.claims

@@ -28,7 +28,6 @@ _NOISY = published("in_text", "state_noise_and_delay_correct_calibration")
 
 
 def _under(model: str, error: float) -> tuple[Cell, Cell]:
-    """Return the cells whose difference is what an error changes in the success of a model."""
     return table_2.cell(model, error), table_2.cell(model, 0.0)
 
 
@@ -37,7 +36,6 @@ def _under_in_paper(model: str, error: float) -> float:
 
 
 def _error_at_lower_success_in_paper() -> float:
-    """Return WM-A's median error at the sign with less success minus at the other, m."""
     seed_0 = published("table_2_calibration", "WM-A_seed0")
     minus, _, plus = sorted(zip(table_2.ERRORS, seed_0["success"], seed_0["error_cm"], strict=True))
     less, more = sorted((minus[1:], plus[1:]))

@@ -26,7 +26,6 @@ _CHANGES: tuple[tuple[str, Pair, float], ...] = (
 
 
 def _frozen(key: str) -> Printed:
-    """Return the paper's success with a code frozen minus updated, pp."""
     frozen, updated = _PAPER["freeze_history_encoding"][key]
     return Printed(frozen - updated)
 

@@ -40,7 +40,6 @@ def _error(cell: Cell) -> Subject:
 
 
 def _paper(first: Cell, second: Cell, what: str, times: float = 1.0) -> Printed:
-    """Return the difference between two rows of the paper's table, in `times` its unit."""
     one, two = (_PAPER[_KEYS[cell]][what] for cell in (first, second))
     return Printed(times * (one - two))
 

@@ -52,5 +52,4 @@ def _compatible(ours: float, interval: Ends, paper: float, theirs: Ends) -> bool
 
 
 def _side(interval: Ends, of: float) -> int:
-    """Return the side on which a whole interval lies, 0 for neither."""
     return int(interval[0] > of) - int(interval[1] < of)

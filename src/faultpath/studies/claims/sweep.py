@@ -68,7 +68,6 @@ def range_gained(first: str, second: str) -> Quantity:
 
 
 def _sweep(results: Results, *models: str) -> _Sweep:
-    """Return the errors that all of `models` flew; `NotRun` without the middle or an end."""
     errors = [
         error
         for error in figure_3.ERRORS
@@ -86,7 +85,6 @@ def _sweep(results: Results, *models: str) -> _Sweep:
 
 
 def _borne(rates: Floats, middle: int) -> Floats:
-    """Return per row the length of the unbroken range around `middle` that stays at the peak."""
     held = (rates >= PEAK_PERCENT).astype(np.float64)
     up = np.cumprod(held[:, middle:], axis=1).sum(axis=1)
     down = np.cumprod(held[:, middle::-1], axis=1).sum(axis=1)

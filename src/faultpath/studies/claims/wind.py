@@ -26,7 +26,6 @@ _FROZEN = published("in_text", "freeze_reconstructed_wind_at_step_20")
 
 
 def _paper(first: str, second: str, environment: str = OBSTACLES, level: str = L3) -> Printed:
-    """Return the difference between two rows of the paper's Table III, pp."""
     return Printed(paper_rate(first, environment, level) - paper_rate(second, environment, level))
 
 

@@ -92,7 +92,6 @@ def _shown(
 def _changed(
     first: str, second: str, effect: Effect, paper: Mapping[str, Any], digits: int = 1
 ) -> Group:
-    """Return how an effect changes from reconstruction-only to shared error."""
     cells = [cell(method, path) for method in (first, second) for path in list(PATHS)[1:]]
     return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
 

@@ -18,8 +18,6 @@ _PAPER = published("in_text", "ceiling_eight_configurations")
 
 
 def _alike(label: str, key: str, of: Callable[[Bools], Bools]) -> Row:
-    """Return the share of scenes in which every configuration succeeds, or in which none does."""
-
     def make(results: Results) -> Made:
         found = share(CEILING, of)(results)
         ends = MISSING if found.interval is None else bracket(found.interval)

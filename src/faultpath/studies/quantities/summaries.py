@@ -83,6 +83,5 @@ def spearman(one: Floats, two: Floats) -> float | None:
 
 
 def _ranks(values: Floats) -> Floats:
-    """Return ranks from 1; equal values share their mean rank."""
     _, place, times = np.unique(values, return_inverse=True, return_counts=True)
     return (np.cumsum(times) - (times - 1) / 2.0)[place]

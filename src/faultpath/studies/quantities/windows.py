@@ -121,7 +121,6 @@ def _check_windows(results: Results, measurements: list[Measurement]) -> None:
 
 @lru_cache(maxsize=512)
 def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
-    """Return the mean over seeds of a quantile; a claim asks for the same one many times."""
     effects = [_quantile(evidence, measurement, q) for measurement in subject]
     mean = weighted_sum([1 / len(effects)] * len(effects), effects)
     per_seed = tuple(effect.value for effect in effects)
