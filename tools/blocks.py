@@ -192,6 +192,37 @@ def headline(run: Run) -> str:
     return f"> **{wording.typeset(run.record.verdict.headline)}**"
 
 
+def contrast(run: Run) -> str:
+    """Return the two decided effects that point opposite ways: one module alone, and shared."""
+    question, effects = run.record.question, {each.path: each for each in run.record.effects}
+    shared = effects["shared"]
+    opposed = [
+        each
+        for each in run.record.effects
+        if each.detected
+        and each.path not in ("correct", "shared")
+        and each.success.value * shared.success.value < 0
+    ]
+    if not shared.detected or len(opposed) != 1:
+        raise Wrong(f"{run.name} has not decided one reversal: the block has nothing to say")
+
+    def row(name: str, success: Any) -> str:
+        low, high = (wording.signed(end, 1) for end in success.interval)
+        sign = wording.signed(success.value, 1)
+        ahead = question.repair if success.value > 0 else question.baseline
+        return f"| {name} | **{sign}** [{low}, {high}] | `{ahead}` |"
+
+    return "\n".join(
+        [
+            f"| The fault reaches | success of `{question.repair}` minus "
+            f"`{question.baseline}`, pp | ahead |",
+            "| :-- | --: | :-- |",
+            row(f"the {opposed[0].path} alone, as in a test of one module", opposed[0].success),
+            row("every module that reads the estimate, as in deployment", shared.success),
+        ]
+    )
+
+
 def terminal(run: Run) -> str:
     """Return what the command line prints of the record, and by which code the run was flown."""
     console = Console(file=StringIO(), width=100, record=True, color_system=None)
@@ -312,6 +343,7 @@ def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., st
 KINDS: dict[str, Callable[..., str]] = {
     "table": _about(table, first=True),
     "headline": _about(headline),
+    "contrast": _about(contrast),
     "terminal": _about(terminal),
     "command": _about(command),
     "origin": _about(origin),
