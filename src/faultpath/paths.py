@@ -6,15 +6,14 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import Interface, module_of
 from faultpath.record import CORRECT, SHARED, Path
-from faultpath.record.factorial import check_factors, path_of, subsets
 from faultpath.trials import Arm, System, Variant
 
 
 def strikes_of(
-    interface: Interface, fault: AnyFault, variants: Sequence[Variant], full: bool
+    interface: Interface, fault: AnyFault, variants: Sequence[Variant]
 ) -> dict[str, AnyFault | None]:
     """Return the fault of each path; `None` under correct inputs. With a single module there is
-    nothing to share: the isolated fault is all of it. With `full`, of each subset of the modules.
+    nothing to share: the isolated fault is all of it.
 
     `UserError` for a fault that reaches no variant, and a module named like a path.
     """
@@ -29,21 +28,16 @@ def strikes_of(
         places = by_module.setdefault(module_of(consumer), [])
         if consumer not in places:
             places.append(consumer)
-    factors = tuple(sorted(by_module))
-    for reserved in {CORRECT, SHARED} & set(factors):
+    for reserved in {CORRECT, SHARED} & set(by_module):
         raise UserError(
             f"the interface calls a module '{reserved}', which is the name of a path of every "
             "audit: rename the module."
         )
-    if full:
-        check_factors(factors)
-    return {
-        path_of(struck, factors): fault.striking(*(c for each in struck for c in by_module[each]))
-        if struck
-        else None
-        for struck in subsets(factors)
-        if full or len(struck) in (0, 1, len(factors))
-    }
+    paths: dict[str, AnyFault | None] = {CORRECT: None}
+    paths |= {module: fault.striking(*by_module[module]) for module in sorted(by_module)}
+    if len(by_module) > 1:
+        paths[SHARED] = fault.striking(*(c for name in sorted(by_module) for c in by_module[name]))
+    return paths
 
 
 def _struck(interface: Interface, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:

@@ -7,8 +7,6 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault
 from faultpath.paths import arm_struck, path_struck, strikes_of
 from faultpath.record import (
-    CORRECT,
-    SHARED,
     DecisionRecord,
     Generalise,
     Path,
@@ -20,7 +18,6 @@ from faultpath.record import (
     primary_path,
     stops,
 )
-from faultpath.record.factorial import JOINED, factorial
 from faultpath.statistics import IN_FORCE, RuleName
 from faultpath.streams import generator
 from faultpath.taps import TapCount
@@ -50,8 +47,6 @@ class Audit:
     question: Question
     paths: tuple[Path, ...]
     study: Study
-    factors: tuple[str, ...] = ()
-    """Modules of a factorial, where one was asked for."""
 
     def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
         """Return the decision record of a run; raises as `faultpath.record.decide`."""
@@ -65,10 +60,7 @@ class Audit:
             )
             for path in self.paths
         ]
-        record = decide(asked, paths, table, findings=deliveries.findings)
-        if not self.factors:
-            return record
-        return record.model_copy(update={"factorial": factorial(asked, self.factors, table)})
+        return decide(asked, paths, table, findings=deliveries.findings)
 
     def stops(self, table: OutcomeTable) -> bool:
         """Return whether a sequential audit ends with these trials."""
@@ -106,7 +98,6 @@ def plan_audit(
     thresholds: Sequence[float] = (),
     stop_when: StopWhen | None = None,
     margin_pp: float | None = None,
-    full: bool = False,
     rule: RuleName = IN_FORCE,
 ) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
@@ -116,15 +107,13 @@ def plan_audit(
     by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
     trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
     `stop_when` makes the audit sequential: scenes come in a random order, and `scenes` is the most
-    that it takes; `margin_pp` is what counts as no difference then. `full` strikes every subset of
-    the modules, for a factorial. `rule` decides; another than that in force is for scenes that were
-    seen under it.
+    that it takes; `margin_pp` is what counts as no difference then. `rule` decides; another than
+    that in force is for scenes that were seen under it.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
     of scenes that the library does not have, no seed, a fault that reaches neither variant, a
     primary path that does not exist, newly trained models of a system that trains none, from one
-    seed or in a sequential audit, a margin that is none, or a factorial that is sequential or of
-    one module or very many.
+    seed or in a sequential audit, or a margin that is none.
     """
     variants = [variant_of(system, name) for name in (baseline, repair)]
     if baseline == repair:
@@ -134,13 +123,9 @@ def plan_audit(
     chosen = scenes_of(library, scenes, in_order=stop_when is None)
     if not seeds or len(set(seeds)) < len(seeds):
         raise UserError("give at least one seed, each of them once.")
-    if full and stop_when:
-        raise UserError("a factorial flies all of its scenes: leave --stop-when out.")
-    strikes = strikes_of(system.interface, fault, variants, full)
+    strikes = strikes_of(system.interface, fault, variants)
     paths = [
-        path_struck(name, system.interface, struck, variants)
-        for name, struck in strikes.items()
-        if JOINED not in name
+        path_struck(name, system.interface, struck, variants) for name, struck in strikes.items()
     ]
     rows = [
         Row(
@@ -184,8 +169,7 @@ def plan_audit(
         stop=_stop_rule(stop_when, margin_pp, study),
         rule=rule,
     )
-    isolated = (path.name for path in paths if path.name not in (CORRECT, SHARED))
-    return Audit(question, tuple(paths), study, factors=tuple(isolated) if full else ())
+    return Audit(question, tuple(paths), study)
 
 
 def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:

@@ -165,24 +165,3 @@ def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch)
 def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
     monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
     assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}
-
-
-def test_a_factorial_strikes_every_subset_and_its_paths_stay_those_of_an_audit():
-    audit = planned("observed", "logged", "mass:scale=2", full=True)
-    assert _paths(audit) == ["correct", "logger", "observer", "planner", "shared"]
-    assert audit.factors == ("logger", "observer", "planner")
-    more = {row.path for row in audit.study.rows} - set(_paths(audit))
-    assert more == {"logger+observer", "logger+planner", "observer+planner"}
-    assert _struck(audit, "observed", "logger+planner") == {
-        ("mass", "planner.cost"),
-        ("mass", "planner.limit"),
-    }
-    plain = planned("observed", "logged", "mass:scale=2")
-    assert [row for row in audit.study.rows if row.path not in more] == list(plain.study.rows)
-
-
-def test_a_factorial_of_one_module_or_of_open_length_is_refused():
-    with pytest.raises(UserError, match=r"reaches 1 of the modules .planner.: a factorial takes 2"):
-        planned("deaf", "plain", "mass:scale=2", full=True)
-    with pytest.raises(UserError, match="leave --stop-when out"):
-        planned("plain", "observed", "mass:scale=2", full=True, stop_when="decided")

@@ -159,7 +159,6 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--library": ("carts",),
             "--scenes": ("1", "0"),
             "--seeds": ("0", "1,1"),
-            "--factorial": (None,),
             "--out": ("s.yaml", "folder", "text.txt"),
             "--json": (None,),
         },

@@ -81,11 +81,6 @@ def test_mistakes_are_a_sentence(changes: dict[str, object], said: str) -> None:
     assert not list(Path().glob("*"))
 
 
-def test_a_factorial_needs_two_readers() -> None:
-    ended = plan("--factorial", repair="blind", fault="slope:offset=0.2")
-    assert "a factorial takes 2" in ended.refused()
-
-
 def test_a_study_takes_no_options_that_its_file_says() -> None:
     assert "`faultpath audit --help`" in faultpath("audit", TOY, "--study", "s.yaml").refused()
     assert "--seeds" in faultpath("audit", "--study", "s.yaml", "--seeds", "0").refused()

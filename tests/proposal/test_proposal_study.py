@@ -22,7 +22,6 @@ def planned() -> Planned:
         repair="logged",
         library="carts",
         scenes=20,
-        factorial=True,
         progress=False,
     )
 
@@ -59,76 +58,11 @@ def test_a_file_of_ones_own_is_not_written_over(planned, file, tmp_path):
         planned.write(tmp_path)
 
 
-def test_the_factorial_flies_every_subset_of_the_first_source(planned, file, tmp_path):
-    gain, *others = planned.plan.study.audits
-    assert [arm.path for arm in gain.arms if arm.role == "factorial"] == [
-        "controller+logger",
-        "controller+observer",
-        "logger+observer",
-    ]
-    assert not any(other.factorial for other in others)
-    changed(file, lambda data: data["audits"].__delitem__(slice(1, None)))
-    (run,) = fly(file, tmp_path / "runs")
-    held = run.record.factorial
-    assert held is not None
-    assert held.factors == ("controller", "logger", "observer")
-    rates: dict[str, list[float]] = {}
-    for row in run.table().to_pylist():
-        if row["variant"] == "calibrated":
-            rates.setdefault(row["path"], []).append(row["status"] == "success")
-    assert set(rates) == set(held.paths)
-    assert len(rates) == 8
-    mean = {path: 100 * sum(won) / len(won) for path, won in rates.items()}
-    every = "controller", "logger", "observer"
-    names = {path: every if path == "shared" else tuple(path.split("+")) for path in mean}
-    for factor in every:
-        struck = [v for path, v in mean.items() if factor in names[path]]
-        spared = [v for path, v in mean.items() if factor not in names[path]]
-        (told,) = (e for e in held.effects if e.of == "baseline" and e.factors == (factor,))
-        assert told.effect.value == pytest.approx(sum(struck) / 4 - sum(spared) / 4)
-    again = faultpath.open_run(run.folder)
-    assert again.record == run.record
-    page, table = ((run.folder / name).read_text() for name in ("report.html", "table.md"))
-    for text in (page, table):
-        assert "controller × logger × observer" in text
-        assert "Holm&#39;s correction is for these 21 effects" in text or (
-            "Holm's correction is for these 21 effects" in text
-        )
-    plain = faultpath.audit(
-        f"{SYSTEMS}:logged",
-        baseline="calibrated",
-        repair="logged",
-        library="carts",
-        scenes=20,
-        fault=gain.fault,
-        folder=tmp_path / "plain",
-        workers=0,
-        progress=False,
-        after=run.folder,
-    )
-    assert plain.record == run.record.model_copy(update={"factorial": None})
-    assert b"factorial" not in (plain.folder / "record.json").read_bytes()
-
-
-def test_a_run_without_the_arms_of_its_factorial_does_not_open(planned, file, tmp_path):
-    changed(file, lambda data: data["audits"].__delitem__(slice(1, None)))
-    (run,) = fly(file, tmp_path / "runs")
-    record = run.record.factorial.model_copy(update={"paths": run.record.factorial.paths[:-2]})
-    from faultpath.door.saved import _doubts
-
-    lost = run.record.model_copy(update={"factorial": record})
-    held = run._held
-    shown = type("Shown", (), {"variants": held.variants, "interface": held.interface})()
-    assert _doubts(run.record, held.provenance, shown, held.outcomes) == ""
-    assert "different arms" in _doubts(lost, held.provenance, shown, held.outcomes)
-
-
 @pytest.mark.parametrize(
     ("change", "said"),
     [
         (lambda d: d["audits"][0]["arms"].pop(), "plan anew"),
         (lambda d: d["audits"][0]["arms"][1].update(repair=[]), "other arms than the system now"),
-        (lambda d: d["audits"][0].update(factorial=False), "controller[+]logger"),
         (lambda d: d.update(library_hash="other"), "library 'carts' is not the one"),
         (lambda d: d.update(faultpath_study=2), "faultpath_study: is 2, and must be 1"),
         (lambda d: d.update(more=1), "more: is no field"),

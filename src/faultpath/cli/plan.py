@@ -26,14 +26,6 @@ def command(
         list[str] | None,
         typer.Option(help="Module that the repair changes, where its reads do not tell."),
     ] = None,
-    factorial: Annotated[
-        bool,
-        typer.Option(
-            "--factorial",
-            help="Strike every subset of the modules that read the first source, for main effects "
-            "and interactions.",
-        ),
-    ] = False,
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
     scenes: Annotated[int | None, typer.Option(help="Plan for only the first N scenes.")] = None,
     seeds: Annotated[
@@ -62,7 +54,6 @@ def command(
         repair=repair,
         fault=tuple(fault or ()),
         module=tuple(module or ()),
-        factorial=factorial,
         library=library,
         scenes=scenes,
         seeds=drawn,

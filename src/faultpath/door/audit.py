@@ -51,11 +51,9 @@ def audit(
     time_limit_s: float | None = None,
     memory_limit_gib: float | None = None,
     progress: bool | Display = True,
-    after: str | PathLike[str] | None = None,
     metric: str = "",
     thresholds: Sequence[float] = (),
     executor: str = LOCAL,
-    factorial: bool = False,
     share: str | PathLike[str] | None = None,
     signals: bool = True,
 ) -> "Run":
@@ -96,8 +94,6 @@ def audit(
         thresholds: Of that metric, at which success is told anew.
         executor: `local` for processes of this machine, `ray` for the Ray cluster that
             `RAY_ADDRESS` names or that runs here, else one of the call's own, or `ray:HOST:PORT`.
-        after: Folder of another run; what it flew of the same arms, scenes and code is taken over.
-        factorial: Strike every subset of the modules, for main effects and interactions.
         share: Folder in which runs into other folders find what this one flew, and this one what
             they flew, of the same arms and scenes, by the same code, on the same machine. The
             default is `runs/.shared` where `folder` is left out; a folder that you name is flown
@@ -136,7 +132,6 @@ def audit(
         thresholds=thresholds,
         stop_when=_checked_stop(stop_when),
         margin_pp=_checked_margin(margin_pp),
-        full=factorial,
         rule=_checked_rule(rule),
     )
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
@@ -151,15 +146,14 @@ def audit(
     named = [asked.study.name, fault, Path(library).stem]
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
     named += [] if rule == IN_FORCE else [f"rule-{rule}"]
-    named += _until(asked.question.stop) + ["factorial"] * factorial
+    named += _until(asked.question.stop)
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
-    held = None if after is None or chosen.own else Path(after)
     between, before = between_runs(share, folder, executor), provenance_of(place)
     limits = time_limit_s, memory_limit_gib
     with hands(built, chosen.workers, chosen.executor) as workforce:
-        carry_out(built, asked, place, workforce, told, *limits, held, between)
+        carry_out(built, asked, place, workforce, told, *limits, between)
         if signals:
             record_signals(built, asked, place, workforce, told, before, *limits)
     run = Run(place, *read_run(place))

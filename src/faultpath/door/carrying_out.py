@@ -36,13 +36,11 @@ def carry_out(
     told: Display,
     time_limit_s: float | None,
     memory_limit_gib: float | None = None,
-    after: Path | None = None,
     share: Path | None = None,
 ) -> None:
     """Run, decide and write what the run folder's pages are made from.
 
-    Trials that the run in the folder `after` has of the same arms are taken over, and those that
-    runs share in `share`.
+    Trials of the same arms that runs share in `share` are taken over.
 
     What was concluded before in the folder, or in another that shares these trials, is told in the
     record: see `after_looks`.
@@ -56,7 +54,7 @@ def carry_out(
     asked = audit.question
     _check_rule(folder, asked)
     shown = system_shown(system, (asked.baseline, asked.repair), audit.study.scenes)
-    result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, after, share)
+    result = _run(system, audit, folder, hands, told, time_limit_s, memory_limit_gib, share)
     tell_failures(told, result, folder)
     record = audit.conclude(result.outcomes, result.deliveries)
     places = [folder, *(kin(folder) if share is not None else ())]
@@ -95,7 +93,6 @@ def _run(
     told: Display,
     time_limit_s: float | None,
     memory_limit_gib: float | None,
-    after: Path | None,
     share: Path | None,
 ) -> RunResult:
     with told.progress("Running") as show:
@@ -114,7 +111,6 @@ def _run(
                 executor=hands,
                 time_limit_s=time_limit_s,
                 memory_limit_gib=memory_limit_gib,
-                after=after,
                 share=share,
                 stop=audit.stops,
             )

@@ -74,7 +74,6 @@ def plan(
     repair: str,
     fault: str | Sequence[str] = (),
     module: str | Sequence[str] = (),
-    factorial: bool = False,
     library: str = "held-out",
     scenes: int | None = None,
     seeds: int | Sequence[int] = 0,
@@ -96,7 +95,6 @@ def plan(
         fault: Expected errors, as faults of one size (`gain:scale=1.1`): for sources that declare
             none, and in place of what others declare.
         module: Modules that the repair changes, where what the variants read does not tell.
-        factorial: Strike every subset of the modules that read the first source.
         library: Library of scenes.
         scenes: How many of its first scenes; `None` for all.
         seeds: Of the audits.
@@ -135,7 +133,6 @@ def plan(
         drawn,
         given["fault"],
         given["module"],
-        factorial,
     )
     with told.progress("Planning") as show:
 
@@ -163,7 +160,7 @@ def audit_study(
     progress: bool | Display = True,
     **flying: Any,
 ) -> "tuple[Run, ...]":
-    """Carry out the audits of a study, once all fit the system; arms that the first has fly once.
+    """Carry out the audits of a study, once all fit the system; they share what workers fly.
 
     `flying` is what `audit` takes of how to fly: workers and limits. Raises as `audit`, and for a
     file that does not fit the system any more.
@@ -183,7 +180,6 @@ def audit_study(
             fault=parsed(chosen.system, each.fault),
             fault_text=each.fault,
             library=library,
-            full=each.factorial,
             **asked,
         )
         check_arms(study, each, laid)
@@ -193,11 +189,10 @@ def audit_study(
             study.system,
             fault=each.fault,
             library=study.library,
-            factorial=each.factorial,
             options=study.options,
             folder=None if folder is None else Path(folder) / each.name,
             progress=progress,
-            after=runs[0].folder if runs else None,
+            share=None if folder is None else Path(folder) / ".shared",
             **asked,
             **flying,
         )

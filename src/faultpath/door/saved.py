@@ -32,7 +32,7 @@ _Table = TypeVar("_Table")
 
 def as_text(record: DecisionRecord) -> str:
     """Return a record as its file holds it."""
-    absent = {name for name in ("factorial", "earlier") if not getattr(record, name)}
+    absent = set[str]() if record.earlier else {"earlier"}
     return json.dumps(record.model_dump(mode="json", exclude=absent), indent=2) + "\n"
 
 
@@ -98,8 +98,6 @@ def _doubts(
     paths = {path.name for path in record.paths}
     cells = {(cell.variant, cell.path): cell for cell in record.cells}
     wanted = {(variant, path) for variant in arms for path in paths}
-    more = record.factorial.paths if record.factorial else ()
-    flown = wanted | {(variant, path) for variant in arms for path in more}
     trials = Counter((row.variant, row.path) for row in outcomes.rows)
     solved = Counter(
         (row.variant, row.path) for row in outcomes.rows if row.outcome.status == "success"
@@ -110,7 +108,7 @@ def _doubts(
         return "record and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != arms:
         return "the system's variants are not those of the question"
-    if not paths or set(cells) != wanted or set(trials) != flown:
+    if not paths or set(cells) != wanted or set(trials) != wanted:
         return "the record and the outcomes have different arms"
     if any(cells[at].trials != trials[at] or cells[at].success != solved[at] for at in wanted):
         return "the record and the outcomes count different successes"

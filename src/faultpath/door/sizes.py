@@ -23,9 +23,9 @@ def audits(
 ) -> "tuple[Run, ...]":
     """Audit a repair under each size of a fault.
 
-    The arms that the sizes have in common, those under correct inputs for one, fly once. Each size
-    is an audit with a record of its own, which holds within a size; `compare` decides all of them
-    as one family.
+    What worker processes fly for one size, correct inputs for one, the others share. Each size is
+    an audit with a record of its own, which holds within a size; `compare` decides all of them as
+    one family.
 
     Args:
         system: As for `audit`.
@@ -39,10 +39,11 @@ def audits(
     """
     runs: list[Run] = []
     texts = each_size(fault)
+    if folder is not None and len(texts) > 1:
+        asked["share"] = asked.get("share") or Path(folder) / ".shared"
     for number, text in enumerate(texts, 1):
         place = folder if folder is None or len(texts) == 1 else Path(folder) / f"size-{number}"
-        after = runs[0].folder if runs else None
-        runs.append(audit(system, fault=text, folder=place, after=after, **asked))
+        runs.append(audit(system, fault=text, folder=place, **asked))
     return tuple(runs)
 
 

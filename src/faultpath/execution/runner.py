@@ -52,7 +52,6 @@ def run_study(
     time_limit_s: float | None = None,
     memory_limit_gib: float | None = None,
     recheck: bool = True,
-    after: Path | None = None,
     stop: Stop | None = None,
     share: Path | None = None,
 ) -> RunResult:
@@ -68,10 +67,9 @@ def run_study(
     seconds; by default what the system says, or many times as long as the slowest block so far
     took. `memory_limit_gib` is how much a worker may take, in GiB; by default what the system says,
     or what there is. `recheck` flies a few scenes of one block again and tells what differs, see
-    `RunResult.findings`; trials that do not repeat are void. What the run in the
-    folder `after` holds of the same units, flown by the same code, is taken over. So is what runs
-    into other folders left in `share`, and what this one flew is left there, as far as it is sound;
-    without `recheck` nothing is.
+    `RunResult.findings`; trials that do not repeat are void. What
+    runs into other folders left in `share` of the same units, flown by the same code, is taken
+    over, and what this one flew is left there, as far as it is sound; without `recheck` nothing is.
     `stop` is asked at each look of a study that has some, and ends it; the result holds the scenes
     up to that look.
 
@@ -107,8 +105,6 @@ def run_study(
     report = progress or _ignore
     try:
         with run.open(manifest, notice, shared):
-            if after is not None:
-                run.take_over(RunFolder(after), [unit.key for unit in units])
             store = _store(share, system, study)
             if store and (lent := store.lend(run, [unit.key for unit in units])):
                 notice(

@@ -73,7 +73,6 @@ class Proposal:
     """In place of declared sizes."""
     repaired: tuple[str, ...] = ()
     """Modules; empty for what can be seen."""
-    factorial: bool = False
     variants: tuple[Variant, Variant] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -102,7 +101,7 @@ class Proposal:
         first, why = self._reasons(order, repaired)
         named = [each for each in order if each.fault and each.name in why]
         named.sort(key=lambda each: each.name != first)
-        laid = [self._audit(each, self.factorial and each.name == first) for each in named]
+        laid = [self._audit(each) for each in named]
         block_s: dict[str, float] = {}
         block = chosen[: self.system.block_size]
         for variant in self.variants:
@@ -124,7 +123,6 @@ class Proposal:
                         name=each.name,
                         fault=each.fault,
                         why=why[each.name],
-                        factorial=bool(audit.factors),
                         arms=arms_of(audit, repaired),
                     )
                     for each, audit in zip(named, laid, strict=True)
@@ -138,7 +136,7 @@ class Proposal:
             timing=_timing(fresh, block_s, len(block), len(chosen), workers),
         )
 
-    def _audit(self, each: Candidate, full: bool = False) -> Audit:
+    def _audit(self, each: Candidate) -> Audit:
         return plan_audit(
             self.system,
             self.spec,
@@ -149,7 +147,6 @@ class Proposal:
             library=self.library,
             scenes=self.scenes,
             seeds=self.seeds,
-            full=full,
         )
 
     def _probed(

@@ -13,11 +13,10 @@ from faultpath.files.plain import Misread, read_yaml, yaml_text
 from faultpath.frozen import Frozen
 from faultpath.planning import Audit
 from faultpath.record import CORRECT, SHARED
-from faultpath.record.factorial import JOINED
 
 _MOST = 200
 """Audits of a file. Each is a finding of its own, and a file of more asks no one question."""
-Role = Literal["correct", "repaired", "shared", "attribution", "factorial"]
+Role = Literal["correct", "repaired", "shared", "attribution"]
 
 
 class StudyArm(Frozen):
@@ -47,7 +46,6 @@ class StudyAudit(Frozen):
     """Names its folder."""
     fault: str
     why: str = ""
-    factorial: bool = False
     arms: tuple[StudyArm, ...] = Field(min_length=2)
 
     @model_validator(mode="after")
@@ -122,7 +120,7 @@ def _roles(path: str) -> tuple[Role, ...]:
         return ("correct",)
     if path == SHARED:
         return ("shared",)
-    return ("factorial",) if JOINED in path else ("repaired", "attribution")
+    return ("repaired", "attribution")
 
 
 def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:

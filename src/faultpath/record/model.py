@@ -5,7 +5,6 @@ from typing import Any, Literal, cast
 from pydantic import model_validator
 
 from faultpath.record.earlier import EarlierLook
-from faultpath.record.factors import Factorial
 from faultpath.record.question import Question
 from faultpath.record.voids import FailedTrials
 from faultpath.results import Result
@@ -232,8 +231,6 @@ class DecisionRecord(Result):
     """Of a sequential audit."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""
-    factorial: Factorial | None = None
-    """Where one was asked for."""
 
     @property
     def flown(self) -> str:

@@ -9,7 +9,6 @@ from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.record.plain import about, decided_words, plain_words
 from faultpath.report import story, wording
 from faultpath.report.adding import adding
-from faultpath.report.factorial import by_factors
 from faultpath.report.figures.adding import adding_panels, line_key
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
 from faultpath.report.figures.fork import fork_panels
@@ -160,7 +159,6 @@ def _pictures(
         "secondary": _secondary(record),
         "measured": "distance and clearance" if set(asked.metrics) <= set(VEHICLE) else "metrics",
         "thresholds": Markup(html(told)) if (told := by_threshold(record)) else "",
-        "factorial": Markup(html(table)) if (table := by_factors(record)) else "",
     }
 
 

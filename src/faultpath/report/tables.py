@@ -8,7 +8,6 @@ from faultpath.record.plain import not_standing
 from faultpath.record.question import Question
 from faultpath.record.words import adjusted, only_alone
 from faultpath.report import wording
-from faultpath.report.factorial import by_factors
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
@@ -180,7 +179,7 @@ def _corrected(record: DecisionRecord) -> str:
 
 def markdown_table(record: DecisionRecord) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    tables = (whole_table(record), by_threshold(record), by_factors(record))
+    tables = (whole_table(record), by_threshold(record))
     return "\n\n".join(map(block, filter(None, tables)))
 
 

@@ -7,7 +7,6 @@ from rich.text import Text
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
 from faultpath.record.plain import not_standing
-from faultpath.report.factorial import by_factors
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import Line, Table, line
@@ -33,10 +32,8 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     for said in not_standing(record):
         parts += [Text(""), Text(said)]
     told = by_threshold(record)
-    factors = by_factors(record)
-    for table in filter(None, (told, factors)):
-        parts += [Text(""), drawn(table)]
-    parts += [Text(note) for note in factors.notes] if factors else []
+    if told is not None:
+        parts += [Text(""), drawn(told)]
     parts += _list("Found in the run", record.findings, "bold red")
     if details:
         if record.question.ruled:
