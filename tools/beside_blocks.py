@@ -8,8 +8,8 @@ from paper_blocks import load
 
 from faultpath.errors import UserError
 from faultpath.record import Ledger, Part
+from faultpath.record.wording import signed
 from faultpath.report.reproduction import words
-from faultpath.report.wording import signed
 from faultpath.studies import shipped
 from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.claims.rules import (

@@ -15,8 +15,7 @@ from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
-from faultpath.record import DecisionRecord, RunProvenance
-from faultpath.report import wording
+from faultpath.record import DecisionRecord, RunProvenance, wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
 from faultpath.statistics import IN_FORCE, unconditional

@@ -12,11 +12,11 @@ from pictures import IMAGES
 
 from faultpath import tables
 from faultpath.record import RunProvenance
+from faultpath.record.wording import p_value, plain, with_interval
 from faultpath.record.words import capital
 from faultpath.report.figures.effects import directions, mark
 from faultpath.report.scale import covering, draw_uprights
 from faultpath.report.svg import Svg
-from faultpath.report.wording import p_value, plain, with_interval
 from faultpath.tables import MISSING, Entry, Table
 from faultpath.tables.markdown import grid
 

@@ -7,9 +7,8 @@ from typing import TypeVar
 from blocks import REFERENCE, TAKE_AGAIN, parsed
 from machine import Machine
 
-from faultpath.record import DecisionRecord
+from faultpath.record import DecisionRecord, wording
 from faultpath.record.family import CORRECT, SHARED
-from faultpath.report import wording
 from faultpath.studies.entries import bracket
 from faultpath.studies.pages.table_4 import NAMES, paper_contrast, paper_rate
 from faultpath.studies.pages.table_6 import paper_acceleration

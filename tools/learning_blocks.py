@@ -10,7 +10,7 @@ from learning_figures import PICTURES, ZERO_WIND, rows_of
 from pictures import IMAGES
 
 from faultpath.quadrotor.training.quality_results import Quality
-from faultpath.report.wording import signed
+from faultpath.record.wording import signed
 from faultpath.tables import MISSING
 
 ABSENT = "*Nothing has been measured here: the checkpoint is missing.*"

@@ -13,9 +13,9 @@ from faultpath.quadrotor.training.quality_results import (
     Quality,
     ReconstructionScore,
 )
+from faultpath.record.wording import signed
 from faultpath.report.scale import Axis, tick_label
 from faultpath.report.svg import Svg
-from faultpath.report.wording import signed
 
 WIDTH = 880.0
 LEFT = 34.0

@@ -18,8 +18,7 @@ from faultpath.plane.decide import conclude as decide
 from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
-from faultpath.record import RunProvenance
-from faultpath.report import wording
+from faultpath.record import RunProvenance, wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.plane import shown, table_markdown
 from faultpath.report.plane import tables as map_tables

@@ -15,10 +15,10 @@ from command import faultpath, new_folder
 from flown_code import flown_by
 
 from faultpath.record import DecisionRecord, RunProvenance
+from faultpath.record.wording import seeds, typeset
 from faultpath.report.comparison.page import effects
 from faultpath.report.comparison.runs import Compared
 from faultpath.report.comparison.words import CAVEAT
-from faultpath.report.wording import seeds, typeset
 from faultpath.store.folder import OUTCOMES
 from faultpath.tables.markdown import block
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from blocks import tabled
 
-from faultpath.report import wording
+from faultpath.record import wording
 
 Record = Mapping[str, Any]
 SHOWN = 10

@@ -21,7 +21,7 @@ from machine import Machine
 from numpy.typing import NDArray
 
 from faultpath.execution.attempt import Done
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.review.hearing import Values, fly_heard, laid_out, steps_of
 from faultpath.statistics import Contrast, Resamples, median_effect
 from faultpath.studies.cells import SYSTEM

@@ -3,8 +3,7 @@
 import numpy as np
 from outcome_tables import BASELINE, REPAIR, paths, question, record, rows
 
-from faultpath.record import CORRECT, SHARED, decide
-from faultpath.report import wording
+from faultpath.record import CORRECT, SHARED, decide, wording
 from faultpath.trials import OutcomeTable, Status
 
 

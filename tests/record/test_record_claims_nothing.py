@@ -7,11 +7,10 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide
+from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide, wording
 from faultpath.record.headline import MOST_WORDS
 from faultpath.record.model import Change, Effect
 from faultpath.record.plain import about, decided_words, plain_words
-from faultpath.report import wording
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 

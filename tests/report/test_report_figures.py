@@ -8,8 +8,8 @@ from xml.etree import ElementTree
 import pytest
 
 from faultpath.interface import Interface
+from faultpath.record import wording
 from faultpath.record.model import PathBreakEven
-from faultpath.report import wording
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel
 from faultpath.report.figures.frequency import frequency_panel, shared_range
 from faultpath.report.figures.outcomes import outcome_bars

@@ -9,9 +9,8 @@ from rich.console import Console
 
 from faultpath.errors import UserError
 from faultpath.interface import Interface
-from faultpath.record import DecisionRecord
+from faultpath.record import DecisionRecord, wording
 from faultpath.record.model import Effect
-from faultpath.report import wording
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table

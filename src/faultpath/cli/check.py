@@ -65,7 +65,7 @@ def _shown(report: "Report") -> "RenderableType":
     from rich.padding import Padding
     from rich.text import Text
 
-    from faultpath.report import wording
+    from faultpath.record import wording
     from faultpath.tables.terminal import STYLES
 
     styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}

@@ -94,7 +94,7 @@ def _measure(
 
 
 def _table(probe: "Probe") -> "Table":
-    from faultpath.report import wording
+    from faultpath.record import wording
     from faultpath.tables import Table as Figures
     from faultpath.tables.terminal import drawn
 
@@ -113,7 +113,7 @@ def _table(probe: "Probe") -> "Table":
 def _line(row: "ProbeRow") -> "Line":
     from math import exp
 
-    from faultpath.report import wording
+    from faultpath.record import wording
     from faultpath.tables import MISSING, line
 
     found, log = row.response_cm, row.log_ratio

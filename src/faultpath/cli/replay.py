@@ -86,7 +86,7 @@ def fly_again(
     With `signals` what was heard is kept in the run's folder.
     """
     from faultpath.door.replaying import keep_signals, replay
-    from faultpath.report.wording import counted
+    from faultpath.record.wording import counted
     from faultpath.tables.terminal import STYLES
 
     found = replay(held, scenes, paths, lambda said: console.print(said, markup=False))

@@ -58,7 +58,7 @@ def _told(each: "Listed") -> "RenderableType":
 
 
 def _rest(each: "Listed") -> str:
-    from faultpath.report.wording import counted
+    from faultpath.record.wording import counted
 
     parts = (
         each.date and f"{each.date:%Y-%m-%d %H:%M} UTC",

@@ -12,8 +12,8 @@ from faultpath.door.saved import RECORD, as_text, read_provenance, read_run
 from faultpath.errors import UserError
 from faultpath.planning import Audit
 from faultpath.record import RunProvenance
+from faultpath.record.wording import counted
 from faultpath.report.inputs import ReportInput
-from faultpath.report.wording import counted
 from faultpath.store import write_text
 from faultpath.store.folder import OUTCOMES, TRACES
 from faultpath.store.sealed import seal

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import CORRECT
+from faultpath.record import CORRECT, wording
 from faultpath.record.words import where
-from faultpath.report import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair
 from faultpath.report.viewer_choice import choose

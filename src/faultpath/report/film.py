@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from faultpath.errors import UserError
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene, read_pairs
 from faultpath.report.svg import wrapped

@@ -5,9 +5,10 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from faultpath.record import wording
 from faultpath.record.model import Cell, DecisionRecord, Effect
 from faultpath.record.plain import about, decided_words, plain_words
-from faultpath.report import story, wording
+from faultpath.report import story
 from faultpath.report.adding import adding
 from faultpath.report.figures.adding import adding_panels, line_key
 from faultpath.report.figures.effects import effect_rows, forest, secondary_panel

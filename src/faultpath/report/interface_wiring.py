@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from faultpath.interface import Channel, module_of
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, StruckTap
-from faultpath.report import wording
 from faultpath.report.interface_layout import Tap
 from faultpath.trials.shown import VariantShown
 

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.plain import not_standing
 from faultpath.record.question import Question
 from faultpath.record.words import adjusted, only_alone
-from faultpath.report import wording
 from faultpath.report.thresholds import by_threshold
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs

@@ -1,7 +1,7 @@
 """Success by thresholds of a metric, and the metric beside it: described, never decided."""
 
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, Effect
-from faultpath.report import wording
 from faultpath.tables import MISSING, Entry, Table, line
 
 

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import SHARED, DecisionRecord, Path, Question
-from faultpath.report import wording
+from faultpath.record import SHARED, DecisionRecord, Path, Question, wording
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import (

@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.viewer_packing import Whole
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, Signals

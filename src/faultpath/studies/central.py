@@ -6,8 +6,7 @@ What was decided of it besides in a run itself stands in a file that comes with 
 from collections.abc import Iterable
 from pathlib import Path
 
-from faultpath.record import SHARED, DecisionRecord, Ledger, Reproduction
-from faultpath.report import wording
+from faultpath.record import SHARED, DecisionRecord, Ledger, Reproduction, wording
 from faultpath.report.reproduction import words
 from faultpath.studies.entries import bracket
 from faultpath.studies.pages.table_4 import NAMES, PAGE, paper_contrast

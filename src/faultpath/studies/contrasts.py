@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.statistics import Contrast
 from faultpath.studies.cells import Cell
 from faultpath.studies.entries import Figure, Group, Made, bracket, success

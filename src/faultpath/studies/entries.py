@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from faultpath.evidence import Measurement
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.quantities.windows import mean_of_medians
 from faultpath.studies.results import NotRun, Quantity, Results, Undecidable

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from contextlib import suppress
 
 from faultpath.evidence import Measured, Measurement
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import Cell
 from faultpath.studies.results import NotRun, Results
 

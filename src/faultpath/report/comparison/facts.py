@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.code import named
+from faultpath.record import wording
 from faultpath.record.provenance import RunProvenance
-from faultpath.report import wording
 from faultpath.report.comparison.runs import Compared, numbers
 from faultpath.tables import Line, Table, line
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
+from faultpath.record import wording
 from faultpath.record.model import Effect
-from faultpath.report import wording
 from faultpath.report.comparison import sweep
 from faultpath.report.comparison.runs import Compared, joined, numbers, titles
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord
-from faultpath.report import wording
 from faultpath.report.scale import Axis, covering, draw_interval, draw_uprights
 from faultpath.report.svg import Svg, shortened, wrapped
 from faultpath.statistics import Estimate

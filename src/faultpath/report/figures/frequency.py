@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
+from faultpath.record import wording
 from faultpath.record.model import PathBreakEven
-from faultpath.report import wording
 from faultpath.report.scale import Axis, covering, draw_levels, draw_tick
 from faultpath.report.svg import Point, Svg, shortened, wrapped
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.figures.effects import EffectRow, directions, extent, mark
 from faultpath.report.scale import Axis, covering, draw_uprights
 from faultpath.report.svg import Svg, shortened, text_width

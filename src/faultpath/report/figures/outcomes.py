@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+from faultpath.record import wording
 from faultpath.record.model import Cell
-from faultpath.report import wording
 from faultpath.report.svg import Svg, shortened, text_width
 
 _WIDTH = 390.0

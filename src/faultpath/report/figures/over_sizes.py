@@ -1,6 +1,6 @@
 """The effect on one path over the size of the fault: small panels that share both axes."""
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.comparison.sweep import Swept
 from faultpath.report.figures.effects import EffectRow
 from faultpath.report.figures.multiples import Rows

@@ -5,7 +5,7 @@ from itertools import pairwise, product
 
 from faultpath.plane.model import MapRecord
 from faultpath.plane.words import at_point
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
 from faultpath.report.svg import Svg, number, shortened
 

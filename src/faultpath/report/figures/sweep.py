@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
+from faultpath.record import wording
 from faultpath.record.reproduction import Point, Series, Sweep
-from faultpath.report import wording
 from faultpath.report.scale import Axis, draw_levels, draw_tick, tick_label
 from faultpath.report.svg import Svg, text_width
 

@@ -7,8 +7,8 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.record import wording
 from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Size
-from faultpath.report import wording
 from faultpath.report.reproduction import words
 from faultpath.tables import MISSING, Entry, Table, line
 from faultpath.tables.escapes import markdown

@@ -1,7 +1,7 @@
 """How the figures of claims are written, on the page and in the terminal."""
 
+from faultpath.record import wording
 from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part, Size
-from faultpath.report import wording
 
 QUICK = "quick"
 """The profile whose runs are too small to be held against the paper."""

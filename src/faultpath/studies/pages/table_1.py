@@ -1,7 +1,7 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
 from faultpath.evidence import Measurement, Recording
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, Setting
 from faultpath.studies.entries import (
     Group,

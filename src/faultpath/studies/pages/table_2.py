@@ -1,7 +1,7 @@
 """Table II: what calibration errors do to four models, and what uncertainty training recovers."""
 
 from faultpath.evidence import Measurement
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, calibration, of_seed
 from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
 from faultpath.studies.entries import Group, centimetres

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
 from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
 from faultpath.studies.entries import Group, bracket, of_quantity

@@ -1,6 +1,6 @@
 """Table V: from which fault frequency on each repair pays."""
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.statistics import break_even
 from faultpath.studies.cells import Cell
 from faultpath.studies.contrasts import decided

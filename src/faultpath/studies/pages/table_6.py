@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from faultpath.evidence import Measurement
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, calibration
 from faultpath.studies.contrasts import PublishedContrast, difference
 from faultpath.studies.entries import BLANK, Group, measured

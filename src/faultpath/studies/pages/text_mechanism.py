@@ -1,6 +1,6 @@
 """In the text on the mechanism: what errors say of success, and errors of the full prediction."""
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.entries import Group, measured, of_quantity
 from faultpath.studies.page import Page, Row, TableSpec
 from faultpath.studies.pages import table_4

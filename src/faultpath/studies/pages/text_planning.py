@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from faultpath.report import wording
+from faultpath.record import wording
 from faultpath.studies.cells import of_seed
 from faultpath.studies.contrasts import COMPARED, comparison
 from faultpath.studies.entries import Group, Made, bracket
