@@ -10,13 +10,13 @@ from benchmarks.flights import SCENES, WHOLE, ClosedLoop, replaced
 from benchmarks.measure import Running, Work
 from benchmarks.results import Record, record
 from faultpath.quadrotor import native, system
-from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.perception import DepthRenderer, seen
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
     NavigationCost,
 )
 from faultpath.quadrotor.plant import TorchPlant
+from faultpath.quadrotor.predictors import module as prediction
 from faultpath.quadrotor.predictors.network import GatedCell
 from faultpath.quadrotor.scenes.field import DistanceField
 

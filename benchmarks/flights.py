@@ -8,15 +8,15 @@ from itertools import islice
 from typing import Any
 
 from faultpath.loop import Batch, Instant
-from faultpath.quadrotor.modules.clearance import Perception
-from faultpath.quadrotor.modules.wind import WindReconstruction
-from faultpath.quadrotor.native.rollout import HorizonLoop
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
-from faultpath.quadrotor.planner import MPPI, AutoregressiveSampler
+from faultpath.quadrotor.perception.module import Perception
+from faultpath.quadrotor.planners import MPPI, AutoregressiveSampler
+from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.predictors import AnchoredPredictor
+from faultpath.quadrotor.predictors.horizon import HorizonLoop
+from faultpath.quadrotor.reconstruction.module import WindReconstruction
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
 from faultpath.trials import SystemSpec, load_system
 

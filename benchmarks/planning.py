@@ -10,7 +10,7 @@ from benchmarks.measure import Side
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
-from faultpath.quadrotor.planner import Scored, shift
+from faultpath.quadrotor.planners import Scored, shift
 from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library

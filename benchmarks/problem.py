@@ -10,7 +10,7 @@ from torch import Tensor
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import Shelf, predictor
-from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
+from faultpath.quadrotor.planners import AutoregressiveSampler, SamplerSettings
 from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
 from faultpath.quadrotor.state import State

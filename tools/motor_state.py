@@ -20,13 +20,13 @@ from faultpath.quadrotor import native
 from faultpath.quadrotor.evidence.recording import blocks, recorded
 from faultpath.quadrotor.models import Shelf, predictor
 from faultpath.quadrotor.plant import PlantState, TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
-from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.studies.pages.in_text import PROBED
 
 INTERVALS = (0, 1, 2, 4)

@@ -8,10 +8,10 @@ from faultpath.quadrotor.flight_settings import (
     PerturbationSettings,
 )
 from faultpath.quadrotor.perception import PerceptionSettings
-from faultpath.quadrotor.planner import CostWeights
+from faultpath.quadrotor.planners import CostWeights
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import PlannerSettings, Platform, SceneVehicles
 from faultpath.quadrotor.platforms import FIRST
-from faultpath.quadrotor.wind import Winds
 
 SPACE: dict[str, dict[str, Any]] = {
     "goal_running": {"low": 0.1, "high": 0.8, "step": 0.05},

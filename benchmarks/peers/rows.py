@@ -10,7 +10,7 @@ import torch
 from torch import Tensor, nn
 
 from benchmarks import problem
-from faultpath.quadrotor.planner import CostWeights, SamplerSettings
+from faultpath.quadrotor.planners import CostWeights, SamplerSettings
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
 from faultpath.quadrotor.predictors.network import LATENT, Affine, LatentNetwork

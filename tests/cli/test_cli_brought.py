@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lend
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 3)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
     shutil.copy(PARTS, tmp_path / "mine.py")
 
 

@@ -16,7 +16,7 @@ from faultpath.trials import SystemSpec, load_system
 
 def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 3)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
     made = faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2")
     assert made.status == 0
     assert made.err.startswith("Making scenes")

@@ -4,7 +4,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     MPPI,
     AutoregressiveSampler,
     NavigationCost,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.planner import Planner, Scored, Temperature
+from faultpath.quadrotor.planners import Planner, Scored, Temperature
 from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS

@@ -23,7 +23,7 @@ PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 6)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 6)
     monkeypatch.setattr(sys, "path", list(sys.path))
 
 
@@ -196,7 +196,7 @@ def _file(folder: Path, code: str) -> Path:
         sys.path.append({str(PARTS.parent)!r})
         import torch
         from own_parts import Constant, K, planner
-        from faultpath.quadrotor.planner import AutoregressiveSampler, SamplerSettings
+        from faultpath.quadrotor.planners import AutoregressiveSampler, SamplerSettings
         from faultpath.quadrotor.predictors import KinematicIntegrator
         """
     path = folder / "mine.py"

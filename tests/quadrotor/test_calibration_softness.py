@@ -12,12 +12,12 @@ from planning_toys import replan
 
 from faultpath.quadrotor.choices import PlannerName
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import shift
+from faultpath.quadrotor.planners import shift
 from faultpath.quadrotor.plant import TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 ERRORS = (0.0, 0.1, -0.1)
 SECONDS = 4.0

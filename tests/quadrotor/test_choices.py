@@ -3,7 +3,7 @@
 from faultpath.quadrotor import choices, models
 from faultpath.quadrotor.choices import QuadrotorChoices
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import SamplerSettings
+from faultpath.quadrotor.planners import SamplerSettings
 
 
 def test_the_predictors_on_offer_are_those_that_load():

@@ -21,10 +21,10 @@ from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
 from faultpath.quadrotor import models, native, so3, system
 from faultpath.quadrotor.checkpoint import shipped_folder
-from faultpath.quadrotor.modules.vehicle import ACTION
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
-from faultpath.quadrotor.planner import SamplerSettings
+from faultpath.quadrotor.planners import SamplerSettings
+from faultpath.quadrotor.plant.module import ACTION
 from faultpath.quadrotor.platform import PlannerSettings
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import AnchoredPredictor
@@ -149,8 +149,8 @@ def test_the_simulation_notices(sin, error, gpu):
 @pytest.fixture
 def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
     """Return what sends the program the way of an accelerator while tensors are on the CPU."""
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.LOOK_EVERY", 5)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.LOOK_EVERY", 5)
 
     def take() -> None:
         monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
@@ -250,7 +250,7 @@ def test_cuda_without_a_gpu_is_a_mistake_of_the_user():
 @pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
 def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts, monkeypatch):
     """To 1 mm after a second of flight; torch itself raises where a step waits."""
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 20)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 20)
     here, there = quadrotor(**options), quadrotor(**options, device="cuda")
     with torch.no_grad():
         taps = _wired(there, variant, texts, HELD_OUT)

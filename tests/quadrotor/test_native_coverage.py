@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     NavigationCost,
     Scored,
     TerminalGoal,

@@ -11,13 +11,13 @@ from test_native_rollout import commands_of, inputs_of, predictor
 from torch import Tensor
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native import clearance, costs, encoder
-from faultpath.quadrotor.native.clearance import CompiledClearance
-from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.lending import lend
-from faultpath.quadrotor.native.recurrent import recur
-from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step
+from faultpath.quadrotor.perception import compiled as seeing
+from faultpath.quadrotor.perception.compiled import CompiledClearance, CompiledEncoder
+from faultpath.quadrotor.planners import compiled as planning
+from faultpath.quadrotor.predictors.horizon import HorizonLoop, Kind, Step
 from faultpath.quadrotor.predictors.network import GatedCell
+from faultpath.quadrotor.predictors.recurrent import recur
 from faultpath.quadrotor.predictors.rollout import Rollout, rolling
 
 pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was compiled")
@@ -85,8 +85,8 @@ def test_a_layer_of_another_size_never_reaches_the_kernel(name: str) -> None:
 
 def test_perception_kernels_check_their_weights() -> None:
     kernels = native.load(native.available()[0])
-    weights = [torch.zeros(shape) for shape in encoder.SHAPES]
-    biases = [torch.zeros(shape[0]) for shape in encoder.SHAPES]
+    weights = [torch.zeros(shape) for shape in seeing.ENCODER_SHAPES]
+    biases = [torch.zeros(shape[0]) for shape in seeing.ENCODER_SHAPES]
     CompiledEncoder(kernels, weights, biases, (6.0, 0.2, 0.4))
     for i in range(len(weights)):
         wrong = [*weights[:i], torch.zeros(3, 3), *weights[i + 1 :]]
@@ -95,8 +95,8 @@ def test_perception_kernels_check_their_weights() -> None:
         wrong = [*biases[:i], torch.zeros(3), *biases[i + 1 :]]
         with pytest.raises(ValueError, match=f"biases of layer {i}"):
             CompiledEncoder(kernels, weights, wrong, (6.0, 0.2, 0.4))
-    makers = [torch.zeros(rows * columns, 65) for rows, columns in clearance.SHAPES]
-    bounds = clearance.Bounds(-0.3, 1.0, 0.25, 0.4, 1.0, 0.5)
+    makers = [torch.zeros(rows * columns, 65) for rows, columns in seeing.QUERY_SHAPES]
+    bounds = seeing.Bounds(-0.3, 1.0, 0.25, 0.4, 1.0, 0.5)
     CompiledClearance(kernels, makers, bounds)
     with pytest.raises(ValueError, match="makers"):
         CompiledClearance(kernels, [makers[0], makers[0], makers[2]], bounds)
@@ -104,7 +104,7 @@ def test_perception_kernels_check_their_weights() -> None:
 
 def test_a_cost_without_one_of_its_terms_is_refused() -> None:
     case = scored(torch.Generator().manual_seed(0), 16)
-    paths = costs.Paths(
+    paths = planning.Paths(
         case.rollout.positions,
         case.rollout.velocities,
         case.rollout.final.rotation,
@@ -113,10 +113,10 @@ def test_a_cost_without_one_of_its_terms_is_refused() -> None:
         case.goal,
         case.hover,
     )
-    terms = dict.fromkeys(costs.TERMS, 1.0)
+    terms = dict.fromkeys(planning.TERMS, 1.0)
     del terms["hit"]
     with pytest.raises(ValueError, match="it takes running, goal, risk, hit"):
-        costs.cost(native.load(native.available()[0]), terms, paths)
+        planning.cost(native.load(native.available()[0]), terms, paths)
 
 
 @torch.inference_mode()

@@ -10,7 +10,7 @@ from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
     BlendedGoal,
     CostWeights,

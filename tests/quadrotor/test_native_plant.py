@@ -10,6 +10,8 @@ from torch import Tensor
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.plant import PlantState, TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
+from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
 from faultpath.quadrotor.state import State
@@ -19,8 +21,6 @@ from faultpath.quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
-from faultpath.quadrotor.world import World
 
 F64 = torch.float64
 LANES = 37

@@ -4,8 +4,8 @@ import pytest
 import torch
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native.recurrent import recur
 from faultpath.quadrotor.predictors.network import GatedCell, draw_weights
+from faultpath.quadrotor.predictors.recurrent import recur
 
 
 @pytest.fixture(params=native.available())

@@ -7,7 +7,7 @@ from planning_toys import replan
 from scipy import stats
 
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
     RunningGoal,
     SamplerSettings,
@@ -17,7 +17,7 @@ from faultpath.quadrotor.planner import (
     goal_cost,
     shift,
 )
-from faultpath.quadrotor.planner.sampler import standard_normals
+from faultpath.quadrotor.planners.sampler import standard_normals
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.state import State

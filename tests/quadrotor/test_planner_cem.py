@@ -3,7 +3,7 @@
 import pytest
 import torch
 
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     CEM,
     AutoregressiveSampler,
     CEMSettings,

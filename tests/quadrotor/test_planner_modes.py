@@ -3,14 +3,14 @@
 import torch
 from planning_toys import Even
 
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
     BundledSampler,
     SamplerSettings,
     WithinBundle,
     weighted_mean,
 )
-from faultpath.quadrotor.planner.modes import BUNDLES, SHARED
+from faultpath.quadrotor.planners.modes import BUNDLES, SHARED
 
 SETTINGS = SamplerSettings(candidates=512)
 

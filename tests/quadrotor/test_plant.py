@@ -9,6 +9,7 @@ from torch import Tensor
 
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import PlantState, TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -18,7 +19,6 @@ from faultpath.quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 F64 = torch.float64
 

@@ -7,9 +7,9 @@ import torch
 
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import PlantState, TorchPlant, rigid_body
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 F64 = torch.float64
 NO_DRAG = (1e-12,) * 3

@@ -14,6 +14,9 @@ from torch import Tensor
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
+from faultpath.quadrotor.plant.wind import Winds
+from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import (
@@ -22,9 +25,6 @@ from faultpath.quadrotor.vehicle import (
     STEPS_PER_CONTROL,
     draw,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
-from faultpath.quadrotor.wind import Winds
-from faultpath.quadrotor.world import World
 from faultpath.trials import SystemSpec, load_system
 
 pytest.importorskip("mujoco")
@@ -180,7 +180,7 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
 def test_an_audit_s_trials_are_their_own_and_of_their_plant(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
     scenes = [scene.id for scene in SCENES[:4]]
     system, other = (quadrotor(wind="L3", plant=plant) for plant in ("mujoco", "torch"))
     whole, alone, torch_s = (

@@ -13,7 +13,8 @@ from faultpath.quadrotor import models
 from faultpath.quadrotor.checkpoint import checkpoint_path, shipped_folder
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import PerceptionSettings
-from faultpath.quadrotor.planner import BlendedGoal, CostWeights, NavigationCost
+from faultpath.quadrotor.planners import BlendedGoal, CostWeights, NavigationCost
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import PlannerSettings, Platform, SceneVehicles
 from faultpath.quadrotor.platform_name import PlatformName
 from faultpath.quadrotor.platforms import FIRST, PLATFORMS, name_of
@@ -22,7 +23,6 @@ from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.collection import different, recipe
 from faultpath.quadrotor.training.predictor_task import PredictorTask
 from faultpath.quadrotor.vehicle import VehicleParameters, VehicleRanges
-from faultpath.quadrotor.wind import Winds
 
 FROZEN = Path(__file__).parents[2] / "docs/design/platform-search"
 DAMPED = FIRST.with_drag((0.5, 0.5, 1.2))
@@ -196,7 +196,7 @@ def test_the_planner_of_a_platform_is_its_own_and_both_ends_keep_their_names():
 
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.mark.usefixtures("short")

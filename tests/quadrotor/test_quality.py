@@ -15,6 +15,7 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
 from faultpath.quadrotor.checkpoint import save_checkpoint
 from faultpath.quadrotor.models import PREDICTORS, Shelf
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.presets import calibration
@@ -33,7 +34,6 @@ from faultpath.quadrotor.training.reconstruction_task import (
 )
 from faultpath.quadrotor.training.windows import windows_of
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
-from faultpath.quadrotor.wind import Winds
 
 ROOT = Path(__file__).resolve().parents[2]
 EPISODES = {"nominal": 48, "wind": 10}

@@ -7,9 +7,9 @@ import torch
 
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.models import PACKAGE, PREDICTORS, RECONSTRUCTIONS
-from faultpath.quadrotor.modules import prediction
 from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import PredictorInputs
+from faultpath.quadrotor.predictors import module as prediction
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import replay
 from faultpath.quadrotor.training.closed_loop import record_flights

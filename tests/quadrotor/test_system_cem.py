@@ -10,7 +10,7 @@ STEPS = 4
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 def test_every_iteration_asks_through_the_taps() -> None:

@@ -8,8 +8,8 @@ import torch
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
 from faultpath.quadrotor.models import predictor, reconstruction
-from faultpath.quadrotor.modules.history import STEPS as HISTORY
 from faultpath.quadrotor.predictors import History
+from faultpath.quadrotor.predictors.history import STEPS as HISTORY
 from faultpath.quadrotor.presets import STATE_NOISE_STD
 from faultpath.quadrotor.variants import setups
 
@@ -20,7 +20,7 @@ VARIANTS = ("zero-wind", "gru", "gru+dcc", "dob", "wm-a", "wm-u", "dki-drag/gru"
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -115,7 +115,7 @@ def test_without_noise_a_noisy_state_is_only_late():
 @torch.inference_mode()
 def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
     """After 12 intervals the code is that of the last 12 states and commands, oldest first."""
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", HISTORY + 2)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", HISTORY + 2)
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "wm-a")
     now = HISTORY + 1

@@ -10,9 +10,9 @@ from flights import HELD_OUT, STEPS, WatchedTaps, fault, fly, quadrotor
 from faultpath.execution.attempt import taps_of
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Graph, consumers
+from faultpath.quadrotor.estimators.exact import ExactEstimator
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
-from faultpath.quadrotor.modules.estimator import ExactEstimator
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.taps import Query, Trace, TracedTaps
 from faultpath.trials import Arm
@@ -29,7 +29,7 @@ FLOWN = [
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.fixture(scope="module")

@@ -5,7 +5,7 @@ import pytest
 import torch
 from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
 
-from faultpath.quadrotor.modules.vehicle import VehiclePlant
+from faultpath.quadrotor.plant.module import VehiclePlant
 from faultpath.taps import IllegalRead
 
 VARIANTS = ("zero-wind", "dob", "true-wind")
@@ -13,7 +13,7 @@ VARIANTS = ("zero-wind", "dob", "true-wind")
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 def _mistake(monkeypatch, source, wrong):
@@ -110,7 +110,7 @@ def test_levels_of_wind_differ_in_the_disturbance():
 
 
 def test_the_observer_sees_most_of_a_steady_wind(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 30)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 30)
     system = quadrotor(wind="L2")
     _, truth = fly(system, "true-wind", HELD_OUT)
     _, seen = fly(system, "dob", HELD_OUT)
@@ -130,7 +130,7 @@ CHOICES = [
 
 
 def test_every_option_flies_its_own_way(monkeypatch):
-    monkeypatch.setattr("faultpath.quadrotor.modules.vehicle.CONTROL_STEPS", 4)
+    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 4)
     flights = {}
     for choice in CHOICES:
         system = quadrotor(**choice)

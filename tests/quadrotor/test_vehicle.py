@@ -5,9 +5,9 @@ import pytest
 import torch
 from pydantic import ValidationError
 
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters, VehicleRanges, draw
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 DRAWS = [draw(np.random.default_rng(seed)) for seed in range(400)]
 

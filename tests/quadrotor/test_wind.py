@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from faultpath.quadrotor import wind
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
-from faultpath.quadrotor.wind import Winds
 
 LEVELS = ["L0", "L1", "L2", "L3"]
 

@@ -19,7 +19,7 @@ from faultpath.blame import explained, located
 from faultpath.errors import SystemMistake
 from faultpath.quadrotor import brought_checks as checks
 from faultpath.quadrotor.device import CPU
-from faultpath.quadrotor.planner import Planner, SamplerSettings
+from faultpath.quadrotor.planners import Planner, SamplerSettings
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.trials import SystemSpec

@@ -8,7 +8,7 @@ from torch import Tensor
 
 from faultpath.errors import SystemMistake
 from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.planner import Planner, SamplerSettings, Scored
+from faultpath.quadrotor.planners import Planner, SamplerSettings, Scored
 from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor
 from faultpath.quadrotor.predictors.places import PLACES, history, predictor_inputs
 from faultpath.quadrotor.predictors.rollout import rollout

@@ -16,7 +16,7 @@ from faultpath.quadrotor.choices import (
     SamplerName,
 )
 from faultpath.quadrotor.device import device_of, require
-from faultpath.quadrotor.planner import (
+from faultpath.quadrotor.planners import (
     CEM,
     MPPI,
     AutoregressiveSampler,

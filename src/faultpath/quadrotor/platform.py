@@ -12,7 +12,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.perception import PerceptionSettings, camera
-from faultpath.quadrotor.planner import CostWeights, SamplerSettings
+from faultpath.quadrotor.planners import CostWeights, SamplerSettings
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.vehicle import (
     NOMINAL_DRAG_KGPS,
@@ -20,7 +21,6 @@ from faultpath.quadrotor.vehicle import (
     VehicleParameters,
     VehicleRanges,
 )
-from faultpath.quadrotor.wind import Winds
 
 CLEARANCE = "clearance"
 TRAJECTORY = "gru-trajectory"

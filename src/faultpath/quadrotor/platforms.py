@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from faultpath.quadrotor.perception import PerceptionSettings
-from faultpath.quadrotor.planner import CostWeights
+from faultpath.quadrotor.planners import CostWeights
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import PlannerSettings, Platform, SceneVehicles
 from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
-from faultpath.quadrotor.wind import Winds
 
 FIRST = Platform()
 

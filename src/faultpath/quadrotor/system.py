@@ -19,20 +19,19 @@ from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
 from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import Shelf, clearance_model
-from faultpath.quadrotor.modules.clearance import Perception
-from faultpath.quadrotor.modules.planning import Planning
-from faultpath.quadrotor.modules.prediction import modelled
-from faultpath.quadrotor.modules.vehicle import VehiclePlant
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
+from faultpath.quadrotor.perception.module import Perception
+from faultpath.quadrotor.planners.module import Planning
+from faultpath.quadrotor.plant.module import VehiclePlant
+from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.variants import setups
+from faultpath.quadrotor.variants import modelled, setups
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.world import World
 from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath.trials.metrics import VEHICLE

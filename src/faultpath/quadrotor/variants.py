@@ -13,9 +13,11 @@ from typing import Any
 
 import torch
 
+from faultpath.loop import Module
 from faultpath.quadrotor.brought import Brought
 from faultpath.quadrotor.choices import ClearanceName
 from faultpath.quadrotor.device import CPU
+from faultpath.quadrotor.estimators import ExactEstimator
 from faultpath.quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
@@ -25,9 +27,12 @@ from faultpath.quadrotor.models import (
     reconstruction,
 )
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planner import Planner
+from faultpath.quadrotor.planners import Planner
 from faultpath.quadrotor.predictors import Predictor
+from faultpath.quadrotor.predictors.history import HistoryEncoder
+from faultpath.quadrotor.predictors.module import Prediction
 from faultpath.quadrotor.reconstruction import Reconstruction
+from faultpath.quadrotor.reconstruction.module import WindReconstruction
 from faultpath.trials import Wiring
 
 ZERO_WIND = "zero-wind"
@@ -149,3 +154,18 @@ def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:
 def _has_wind(name: str, brought: Mapping[str, Brought]) -> bool:
     reads = brought[name].reads if name in brought else predictor(name, None).reads
     return "wind_map" in reads
+
+
+def modelled(
+    predictor: Predictor, reconstruction: Reconstruction | None, device: torch.device
+) -> list[Module]:
+    """Return the estimator and the modules of a predictor and a wind reconstruction, if any.
+
+    A flight has them before its planner, a recorded window before what was executed.
+    """
+    found: list[Module] = [ExactEstimator(), Prediction(predictor, device)]
+    if reconstruction is not None:
+        found.append(WindReconstruction(reconstruction, device))
+    if "history" in predictor.reads:
+        found.append(HistoryEncoder(predictor, device))
+    return found

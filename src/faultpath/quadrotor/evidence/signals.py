@@ -8,9 +8,9 @@ import torch
 from torch import Tensor
 
 from faultpath.execution.attempt import Done
-from faultpath.quadrotor.chunks import Chunk
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.evidence.components import WORLD
+from faultpath.quadrotor.lanes import Chunk
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.hearing import Heard, Values, laid_out, steps_of

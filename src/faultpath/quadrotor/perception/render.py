@@ -22,8 +22,8 @@ from torch import Tensor
 from faultpath.quadrotor import native
 from faultpath.quadrotor.device import CPU, host_readable
 from faultpath.quadrotor.native.lending import covered
-from faultpath.quadrotor.native.render import CompiledRenderer
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
+from faultpath.quadrotor.perception.compiled_camera import CompiledRenderer
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State

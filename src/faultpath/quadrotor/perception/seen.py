@@ -9,11 +9,10 @@ from torch import Tensor, nn
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.device import CPU, host_readable
-from faultpath.quadrotor.native.clearance import Bounds, CompiledClearance
-from faultpath.quadrotor.native.encoder import CompiledEncoder
 from faultpath.quadrotor.native.lending import covered, is_exactly, tell_portable, unlike
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
 from faultpath.quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
+from faultpath.quadrotor.perception.compiled import Bounds, CompiledClearance, CompiledEncoder
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 

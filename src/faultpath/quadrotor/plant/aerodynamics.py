@@ -4,7 +4,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.vehicle_batch import Vehicle
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 
 
 def relaxation(vehicle: Vehicle, dt_s: float) -> Tensor:

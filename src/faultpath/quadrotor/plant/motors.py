@@ -9,8 +9,8 @@ import math
 import torch
 from torch import Tensor
 
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.vehicle import ARM_LENGTH_M, TORQUE_COEFFICIENT_M
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 _ARM = ARM_LENGTH_M * math.sqrt(0.5)
 WRENCH_PER_THRUST = (

@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from torch import Tensor
 
 from faultpath.quadrotor.plant.protocol import Plant, PlantState
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
     ARM_LENGTH_M,
@@ -36,7 +37,6 @@ from faultpath.quadrotor.vehicle import (
     TORQUE_COEFFICIENT_M,
     VehicleParameters,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 Array = NDArray[np.float64]
 

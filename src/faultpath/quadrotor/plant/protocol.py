@@ -9,8 +9,8 @@ from typing import ClassVar
 from torch import Tensor
 
 from faultpath.quadrotor.plant.contact import Contact, Progress
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.plant.motors import WRENCH_PER_THRUST, column
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.vehicle import MOTOR_THRUST_MAX_N, RATE_GAIN_PER_S
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 
 class RateLoop:

@@ -9,11 +9,12 @@ from torch import Tensor
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native.lending import covered
-from faultpath.quadrotor.native.plant import CompiledPlant, watch
 from faultpath.quadrotor.plant import aerodynamics, motors, rigid_body
+from faultpath.quadrotor.plant.compiled import CompiledPlant, watch
 from faultpath.quadrotor.plant.contact import Contact, Progress
 from faultpath.quadrotor.plant.protocol import Plant, PlantState
 from faultpath.quadrotor.plant.rate_loop import RateLoop
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -23,7 +24,6 @@ from faultpath.quadrotor.vehicle import (
     PLANT_RATE_HZ,
     RATE_LIMIT_RADPS,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 _WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
 """What the compiled contact checks change, in the order in which `watch` takes it."""

@@ -11,7 +11,6 @@ from torch import Tensor
 from faultpath.quadrotor.device import host_readable
 from faultpath.quadrotor.native.lending import is_exactly, unlike
 from faultpath.quadrotor.native.library import Kernels
-from faultpath.quadrotor.native.rollout import HorizonLoop, Kind, Step, misfit
 from faultpath.quadrotor.predictors.anchored import (
     ANGULAR_BOUND_RADPS2,
     LINEAR_BOUND_MPS2,
@@ -19,6 +18,7 @@ from faultpath.quadrotor.predictors.anchored import (
 )
 from faultpath.quadrotor.predictors.base import Predictor, PredictorInputs
 from faultpath.quadrotor.predictors.drag import LinearDrag
+from faultpath.quadrotor.predictors.horizon import HorizonLoop, Kind, Step, misfit
 from faultpath.quadrotor.predictors.kinematic import KinematicIntegrator
 from faultpath.quadrotor.predictors.network import ACTION_EMBEDDING, FoldedNetwork, LatentNetwork
 from faultpath.quadrotor.predictors.unanchored import (

@@ -13,8 +13,8 @@ from torch import Tensor, nn
 
 from faultpath.quadrotor.native.lending import covered, tell_portable
 from faultpath.quadrotor.native.library import kernels_on
-from faultpath.quadrotor.native.recurrent import fits, recur
 from faultpath.quadrotor.predictors.base import Calibration, History
+from faultpath.quadrotor.predictors.recurrent import fits, recur
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 

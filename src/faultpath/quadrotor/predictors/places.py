@@ -9,9 +9,10 @@ from collections.abc import Callable, Collection
 import torch
 from torch import Tensor
 
-from faultpath.loop import Port
+from faultpath.loop import Inputs, Port
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.device import host_readable
+from faultpath.quadrotor.lanes import lanes_last
 from faultpath.quadrotor.predictors.base import Calibration, History, Physics, PredictorInputs
 from faultpath.quadrotor.state import State
 
@@ -32,6 +33,15 @@ PLACES: dict[str, tuple[str, ...]] = {
 
 Take = Callable[[str, str], Tensor]
 """`take(channel, place)`: what a tap delivered, lanes last, single precision."""
+
+
+def taking(inputs: Inputs, lanes: Tensor) -> Take:
+    """Return what gives a predictor the readings of a step, lanes last, single precision."""
+
+    def take(channel: str, place: str) -> Tensor:
+        return lanes_last(inputs[Port(channel, place)], lanes).float()
+
+    return take
 
 
 def ports(places: Collection[str]) -> frozenset[Port]:

@@ -27,8 +27,8 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native.field import CompiledField
 from faultpath.quadrotor.native.lending import covered
+from faultpath.quadrotor.scenes.compiled import CompiledField
 from faultpath.quadrotor.scenes.geometry import rectangle_distance
 from faultpath.quadrotor.scenes.prisms import Prism, arena, solids
 from faultpath.quadrotor.scenes.scene import Scene

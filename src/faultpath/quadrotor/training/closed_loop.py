@@ -8,12 +8,12 @@ import torch
 from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Instant
 from faultpath.quadrotor.device import CPU
-from faultpath.quadrotor.modules.vehicle import Flying
 from faultpath.quadrotor.plant.contact import Progress
+from faultpath.quadrotor.plant.module import Flying
+from faultpath.quadrotor.plant.world import CONTROL_STEPS, World
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.recorded import Flights, record
 from faultpath.quadrotor.vehicle import CONTROL_RATE_HZ
-from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Taps
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor import wind
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
@@ -21,7 +22,6 @@ from faultpath.quadrotor.training.provenance import (
     code_sha256,
     read_provenance,
 )
-from faultpath.quadrotor.wind import Winds
 from faultpath.store import atomic
 from faultpath.store.lock import locked
 

@@ -16,6 +16,7 @@ from torch import Tensor
 
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.flight_settings import ControllerSettings
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.perturbation import Perturbation
 from faultpath.quadrotor.vehicle import (
@@ -24,7 +25,6 @@ from faultpath.quadrotor.vehicle import (
     GRAVITY_MPS2,
     RATE_LIMIT_RADPS,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
 
 LEAST_LIFT = 0.3
 """The wanted vertical specific force is at least this part of gravity: the vehicle never turns

@@ -28,6 +28,7 @@ from faultpath.quadrotor.flight_settings import FlightSettings
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.state import State, padded_lanes
@@ -42,7 +43,6 @@ from faultpath.quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
 from faultpath.streams import generator
 from faultpath.taps import Taps
 

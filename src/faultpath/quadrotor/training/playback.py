@@ -27,16 +27,16 @@ from faultpath.loop import (
     consumers,
     graph,
 )
-from faultpath.quadrotor.chunks import Chunk
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.modules.candidates import Candidates, Predicted
-from faultpath.quadrotor.modules.prediction import modelled
-from faultpath.quadrotor.modules.vehicle import ACTION
+from faultpath.quadrotor.lanes import Chunk
+from faultpath.quadrotor.plant.module import ACTION
 from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor
+from faultpath.quadrotor.predictors.candidates import Candidates, Predicted
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.state import padded_lanes
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows
+from faultpath.quadrotor.variants import modelled
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.taps import Reading, Taps
 

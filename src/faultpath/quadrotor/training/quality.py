@@ -16,6 +16,7 @@ from faultpath.quadrotor.models import (
     Shelf,
     clearance_model,
 )
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.training import quality_rows
@@ -37,7 +38,6 @@ from faultpath.quadrotor.training.quality_rows import (
 )
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, cut
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.quadrotor.wind import Winds
 
 POOLS = ("nominal", "wind")
 _LEARNED = frozenset(entry.name for entry in ALL)

@@ -11,6 +11,7 @@ from torch import Tensor
 
 from faultpath.faults import AnyFault
 from faultpath.quadrotor.interface import quadrotor_interface
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.presets import calibration
 from faultpath.quadrotor.reconstruction import Reconstruction
@@ -25,7 +26,6 @@ from faultpath.quadrotor.training.quality_results import (
     ReconstructionUnderError,
 )
 from faultpath.quadrotor.training.windows import HISTORY, Windows
-from faultpath.quadrotor.wind import Winds
 
 ERRORS = (-0.2, -0.1, 0.0, 0.1, 0.2)
 """Coupled calibration errors e: m~ = m (1 + e), T~ = T (1 - e) (paper, Section IV-B)."""

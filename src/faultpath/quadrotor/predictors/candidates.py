@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from torch import Tensor
 
-from faultpath.quadrotor.chunks import Chunk
+from faultpath.quadrotor.lanes import Chunk
 from faultpath.quadrotor.predictors.rollout import Rollout
 
 

@@ -9,12 +9,12 @@ from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
 from faultpath.quadrotor.device import host_readable
-from faultpath.quadrotor.modules.clearance import geometric_clearance
-from faultpath.quadrotor.modules.lanes import lanes_last, scenes_first
+from faultpath.quadrotor.lanes import lanes_last, scenes_first
 from faultpath.quadrotor.perception import DepthRenderer, mounted
+from faultpath.quadrotor.perception.module import geometric_clearance
+from faultpath.quadrotor.plant.world import CONTROL_STEPS, World
 from faultpath.quadrotor.predictors import Physics
 from faultpath.quadrotor.scenes.field import DistanceField
-from faultpath.quadrotor.world import CONTROL_STEPS, World
 from faultpath.taps import Query
 from faultpath.trials.metrics import VEHICLE
 

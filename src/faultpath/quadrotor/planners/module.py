@@ -9,11 +9,10 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.quadrotor.chunks import Chunk, chunks
 from faultpath.quadrotor.device import host_readable, send
-from faultpath.quadrotor.modules.candidates import Candidates, Predicted
-from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of
-from faultpath.quadrotor.planner import Planner, Scored, shift
+from faultpath.quadrotor.lanes import Chunk, chunks, lanes_last, lanes_of
+from faultpath.quadrotor.planners import Planner, Scored, shift
+from faultpath.quadrotor.predictors.candidates import Candidates, Predicted
 
 ROLLOUT = Port("rollout", "candidates")
 HOVER = Port("hover", "reference")

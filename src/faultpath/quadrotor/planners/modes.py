@@ -11,8 +11,8 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.quadrotor.planner.mppi import Temperature
-from faultpath.quadrotor.planner.sampler import Sampler
+from faultpath.quadrotor.planners.mppi import Temperature
+from faultpath.quadrotor.planners.sampler import Sampler
 
 BUNDLES = 8
 """Divides every number of candidates that the options offer."""

@@ -9,9 +9,9 @@ from functools import lru_cache
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.quadrotor.chunks import Chunk
-from faultpath.quadrotor.modules.candidates import Predicted
+from faultpath.quadrotor.lanes import Chunk
 from faultpath.quadrotor.perception import DepthClearance, mounted
+from faultpath.quadrotor.predictors.candidates import Predicted
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.taps import Query
 

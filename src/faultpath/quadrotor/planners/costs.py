@@ -9,8 +9,8 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native import costs
 from faultpath.quadrotor.native.lending import covered
+from faultpath.quadrotor.planners import compiled
 from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -119,7 +119,7 @@ class NavigationCost:
     def __call__(self, scored: Scored) -> Tensor:
         """Return the cost `[S, K]`."""
         rollout, commands = scored.rollout, scored.commands
-        paths = costs.Paths(
+        paths = compiled.Paths(
             rollout.positions,
             rollout.velocities,
             rollout.final.rotation,
@@ -133,7 +133,7 @@ class NavigationCost:
             return self._portable(scored)
         terms = self.weights.model_dump()
         terms |= {"radius_m": COLLISION_RADIUS_M, "running": self.goal.running}
-        return costs.cost(built, terms, paths)
+        return compiled.cost(built, terms, paths)
 
     def _has_kernel(self, commands: Tensor) -> bool:
         goal, others = self.goal, (RunningGoal, BlendedGoal)

@@ -7,9 +7,9 @@ from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.quadrotor.planner.costs import NavigationCost, Scored
-from faultpath.quadrotor.planner.protocol import Planner, Search
-from faultpath.quadrotor.planner.sampler import Sampler, bound, scales
+from faultpath.quadrotor.planners.costs import NavigationCost, Scored
+from faultpath.quadrotor.planners.protocol import Planner, Search
+from faultpath.quadrotor.planners.sampler import Sampler, bound, scales
 
 
 class CEMSettings(BaseModel):

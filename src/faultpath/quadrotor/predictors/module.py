@@ -1,17 +1,13 @@
-"""The predictor as a module of the loop, a query from commands to motion, and its company."""
+"""The predictor as a module of the loop: a query from commands to motion."""
 
 import torch
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
-from faultpath.quadrotor.modules.candidates import Candidates, Predicted
-from faultpath.quadrotor.modules.estimator import ExactEstimator
-from faultpath.quadrotor.modules.history import HistoryEncoder
-from faultpath.quadrotor.modules.lanes import lanes_of, scenes_first, taking
-from faultpath.quadrotor.modules.wind import WindReconstruction
+from faultpath.quadrotor.lanes import lanes_of, scenes_first
 from faultpath.quadrotor.predictors import Predictor
-from faultpath.quadrotor.predictors.places import ports, predictor_inputs
+from faultpath.quadrotor.predictors.candidates import Candidates, Predicted
+from faultpath.quadrotor.predictors.places import ports, predictor_inputs, taking
 from faultpath.quadrotor.predictors.rollout import rolling
-from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.taps import Query
 
@@ -49,18 +45,3 @@ class Prediction(Module):
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
         return {"predicted_motion": motion, "hover_thrust": scenes_first(hover, count)}, memory
-
-
-def modelled(
-    predictor: Predictor, reconstruction: Reconstruction | None, device: torch.device
-) -> list[Module]:
-    """Return the estimator and the modules of a predictor and a wind reconstruction, if any.
-
-    A flight has them before its planner, a recorded window before what was executed.
-    """
-    found: list[Module] = [ExactEstimator(), Prediction(predictor, device)]
-    if reconstruction is not None:
-        found.append(WindReconstruction(reconstruction, device))
-    if "history" in predictor.reads:
-        found.append(HistoryEncoder(predictor, device))
-    return found

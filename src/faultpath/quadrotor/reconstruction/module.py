@@ -7,7 +7,7 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.quadrotor.modules.lanes import lanes_last, lanes_of, scenes_first
+from faultpath.quadrotor.lanes import lanes_last, lanes_of, scenes_first
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.reconstruction.base import Read
 

@@ -8,8 +8,8 @@ from os import PathLike
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.planner.costs import Scored
-from faultpath.quadrotor.planner.sampler import Sampler
+from faultpath.quadrotor.planners.costs import Scored
+from faultpath.quadrotor.planners.sampler import Sampler
 
 
 @dataclass(frozen=True)

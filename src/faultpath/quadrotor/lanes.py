@@ -1,4 +1,4 @@
-"""Which scenes are planned together."""
+"""Batch axes: taps have scenes first, arithmetic has lanes last, planners take chunks of scenes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -7,12 +7,29 @@ from itertools import pairwise
 import torch
 from torch import Tensor
 
+from faultpath.loop import Batch
 from faultpath.quadrotor.device import host_readable, send
+from faultpath.quadrotor.state import padded_lanes
 
 CHUNK = 13
 """Most scenes planned at once on the CPU: they share the cost of each kernel's start, and their
 candidates still stay in cache. A scene's result is the same in a chunk of any size, because its 512
 candidates fill whole vectors."""
+
+
+def lanes_of(batch: Batch, device: torch.device) -> Tensor:
+    """Return the scene of each lane of a batch, long `[L]`; the last lanes only fill it up."""
+    return padded_lanes(len(batch.scenes)).to(device)
+
+
+def scenes_first(value: Tensor, count: int) -> Tensor:
+    """Turn `[..., L]` lanes into `[B, ...]` scenes."""
+    return value[..., :count].movedim(-1, 0)
+
+
+def lanes_last(value: Tensor, lanes: Tensor) -> Tensor:
+    """Turn `[B, ...]` scenes into contiguous `[..., L]` lanes."""
+    return value.movedim(0, -1)[..., lanes]
 
 
 @dataclass(frozen=True)

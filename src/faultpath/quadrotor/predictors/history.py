@@ -6,9 +6,9 @@ import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
-from faultpath.quadrotor.modules.lanes import lanes_of, scenes_first, taking
+from faultpath.quadrotor.lanes import lanes_of, scenes_first
 from faultpath.quadrotor.predictors import Predictor
-from faultpath.quadrotor.predictors.places import Take, calibration, history, ports
+from faultpath.quadrotor.predictors.places import Take, calibration, history, ports, taking
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 
 STEPS = 12  # paper, Section IV-A

@@ -1,7 +1,7 @@
 """The planners, with their samplers and costs as objects."""
 
-from faultpath.quadrotor.planner.cem import CEM, CEMSettings
-from faultpath.quadrotor.planner.costs import (
+from faultpath.quadrotor.planners.cem import CEM, CEMSettings
+from faultpath.quadrotor.planners.costs import (
     BlendedGoal,
     CostWeights,
     GoalCost,
@@ -11,15 +11,15 @@ from faultpath.quadrotor.planner.costs import (
     TerminalGoal,
     goal_cost,
 )
-from faultpath.quadrotor.planner.modes import BundledSampler, WithinBundle
-from faultpath.quadrotor.planner.mppi import (
+from faultpath.quadrotor.planners.modes import BundledSampler, WithinBundle
+from faultpath.quadrotor.planners.mppi import (
     MPPI,
     ScaledTemperature,
     Temperature,
     weighted_mean,
 )
-from faultpath.quadrotor.planner.protocol import Planner, Search, shift
-from faultpath.quadrotor.planner.sampler import AutoregressiveSampler, Sampler, SamplerSettings
+from faultpath.quadrotor.planners.protocol import Planner, Search, shift
+from faultpath.quadrotor.planners.sampler import AutoregressiveSampler, Sampler, SamplerSettings
 
 __all__ = [
     "CEM",

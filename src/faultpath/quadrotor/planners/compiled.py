@@ -1,9 +1,10 @@
-"""Costs of candidates, compiled."""
+"""Noise and costs of candidates, compiled."""
 
 import ctypes
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import torch
 from torch import Tensor
 
 from faultpath.quadrotor.native.lending import lend
@@ -72,3 +73,33 @@ def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
         lend("costs", costs, scenes, count),
     )
     return costs
+
+
+def noise(
+    kernels: Kernels,
+    keys: Tensor,
+    step: int,
+    size: tuple[int, int],
+    correlation: tuple[float, float],
+) -> Tensor:
+    """Return normals `[H, 4, S, K]`, correlated along the horizon; candidate 0 has none.
+
+    Args:
+        kernels: Compiled kernels.
+        keys: Of the Philox stream of each scene, `[S, 2]`, uint64.
+        step: Which part of the streams.
+        size: Steps of the horizon H and candidates K; whole vectors.
+        correlation: What a step keeps of the one before, and how much of it is drawn afresh.
+    """
+    horizon, candidates = size
+    scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
+    drawn = torch.empty(horizon, 4, len(keys), candidates)
+    kernels.call(
+        "faultpath_noise",
+        lend("keys", keys, len(keys), 2, dtype=torch.uint64),
+        *(step, horizon, len(keys), candidates),
+        (ctypes.c_float * 2)(*correlation),
+        lend("scratch", scratch, len(scratch), dtype=torch.int32),
+        lend("noise", drawn, *drawn.shape),
+    )
+    return drawn

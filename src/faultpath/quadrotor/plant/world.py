@@ -11,6 +11,8 @@ from torch import Tensor
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.plant import Plant, TorchPlant
 from faultpath.quadrotor.plant.contact import Contact, Progress
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
+from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
@@ -20,8 +22,6 @@ from faultpath.quadrotor.vehicle import (
     PLANT_RATE_HZ,
     STEPS_PER_CONTROL,
 )
-from faultpath.quadrotor.vehicle_batch import Vehicle
-from faultpath.quadrotor.wind import Winds
 
 GOAL_RADIUS_M = 0.5  # paper, Section IV-B
 TIME_LIMIT_S = 12.0  # paper, Section IV-B
@@ -32,7 +32,7 @@ class World:
     """Plant, wind and geometry of a block of scenes, padded to whole groups of lanes.
 
     Evaluation code: it knows the truth and passes through no tap. What modules get of it are the
-    readings that `modules/vehicle.py` makes of `state`, `wind_mps` and `vehicle`.
+    readings that `plant/module.py` makes of `state`, `wind_mps` and `vehicle`.
     """
 
     def __init__(

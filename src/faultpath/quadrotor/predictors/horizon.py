@@ -12,9 +12,8 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.device import host_readable
-from faultpath.quadrotor.native.lending import Block, Lent, fields, lend
+from faultpath.quadrotor.native.lending import BLOCK, Block, Lent, fields, lend, pack
 from faultpath.quadrotor.native.library import Kernels
-from faultpath.quadrotor.native.packing import BLOCK, pack
 
 LATENT, EMBEDDING, COMMAND, INCREMENTS = 32, 16, 4, 12
 MOST_HIDDEN = 128

@@ -8,9 +8,9 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.quadrotor.planner.costs import NavigationCost, Scored
-from faultpath.quadrotor.planner.protocol import Planner, Search
-from faultpath.quadrotor.planner.sampler import Sampler
+from faultpath.quadrotor.planners.costs import NavigationCost, Scored
+from faultpath.quadrotor.planners.protocol import Planner, Search
+from faultpath.quadrotor.planners.sampler import Sampler
 
 
 class Temperature(ABC):

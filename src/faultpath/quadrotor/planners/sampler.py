@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.native import sampling
+from faultpath.quadrotor.planners import compiled
 from faultpath.quadrotor.vehicle import RATE_LIMIT_RADPS
 from faultpath.streams import generator, key, words
 
@@ -81,7 +81,7 @@ class AutoregressiveSampler(Sampler):
             drawn = [words(key(purpose, scene, seed)) for scene in scenes]
             keys = torch.from_numpy(np.array(drawn, dtype=np.uint64).reshape(-1, 2))
             kept = (rho, math.sqrt(1 - rho**2))
-            return sampling.noise(built, keys, step, (shape[0], shape[2]), kept)
+            return compiled.noise(built, keys, step, (shape[0], shape[2]), kept)
         noise = torch.empty(shape[0], 4, len(scenes), shape[2])
         for i, scene in enumerate(scenes):
             draws = generator(purpose, scene, seed, step)
