@@ -10,7 +10,7 @@ import torch
 
 import faultpath
 from faultpath.evidence import Measurement
-from faultpath.quadrotor import native, wind
+from faultpath.quadrotor import native
 from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.evidence.inputs import Subject
@@ -18,6 +18,7 @@ from faultpath.quadrotor.evidence.measuring import measure
 from faultpath.quadrotor.evidence.quantities import of_windows
 from faultpath.quadrotor.evidence.recording import STRIDE
 from faultpath.quadrotor.options import QuadrotorOptions
+from faultpath.quadrotor.plant import wind
 from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.closed_loop import record_flights

@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
-from faultpath.quadrotor import world
+from faultpath.quadrotor.plant import world
 from faultpath.quadrotor.scenes import soundness
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import (

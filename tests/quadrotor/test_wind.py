@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from faultpath.quadrotor import wind
+from faultpath.quadrotor.plant import wind
 from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
-from faultpath.quadrotor import wind
+from faultpath.quadrotor.plant import wind
 from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.platforms import DEFAULT
