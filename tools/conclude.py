@@ -54,10 +54,6 @@ def conclude_all(tell: Callable[[str], None]) -> None:
         before = json.loads((folder / "record.json").read_bytes())
         record = _audit(folder, before)
         tell(f"{folder.name}: {before['verdict']['headline']}\n    now: {record.verdict.headline}")
-    for place in sorted(REFERENCE.glob("new-scenes/*/decided.json")):
-        _, record, _ = _decided(place.parent, json.loads(place.read_bytes()))
-        place.write_text(as_text(record), "utf-8")
-        tell(f"{place.parent.name} of new scenes: {record.verdict.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
         tell(f"{folder.name}: {map_blocks.conclude(folder).headline}")
     for platform in shipped.shipped():
@@ -199,8 +195,6 @@ def _tracks(page: Path) -> dict[TrialAddress, NDArray[np.float32]]:
     if held is None:  # a system that leaves no traces
         return {}
     content = json.loads(held[1])
-    if "packed" not in content:  # a page as it was made before all scenes were in it
-        return _loose_tracks(content)
     data, series = unpack(content["packed"])
     tracks: dict[TrialAddress, NDArray[np.float32]] = {}
     for scene in data["scenes"]:
@@ -212,18 +206,6 @@ def _tracks(page: Path) -> dict[TrialAddress, NDArray[np.float32]]:
                 centimetres = np.stack(series[place : place + 3], axis=1).astype(np.float32)
                 tracks[key] = centimetres / np.float32(100.0)
     return tracks
-
-
-def _loose_tracks(data: Mapping[str, Any]) -> dict[TrialAddress, NDArray[np.float32]]:
-    return {
-        TrialAddress(data[arm], pair["path"], scene["seed"], scene["scene"]): np.array(
-            pair[arm]["track_cm"], np.float32
-        ).reshape(-1, 3)
-        / np.float32(100.0)
-        for scene in data["scenes"]
-        for pair in scene["pairs"]
-        for arm in ("baseline", "repair")
-    }
 
 
 def _reseal(folder: Path, origin: RunProvenance) -> RunProvenance:

@@ -3,10 +3,8 @@
     python tools/documents.py                          write what is stale
     python tools/documents.py --check                  exit 1 when something is
     python tools/documents.py --take NAME=RUN_FOLDER   make a run folder a reference run first
-    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first, under
-                                                       the platform that it was flown on
+    python tools/documents.py --paper RUN_FOLDER       ship a run of the whole paper first
     python tools/documents.py --conclude               decide all reference runs anew first
-    python tools/documents.py --freeze                 freeze the platform as the code has it first
     python tools/documents.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
@@ -22,27 +20,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import beside_blocks
 import blocks
-import central_blocks
-import drift_blocks
-import erring_blocks
-import fault_pictures
-import learning_blocks
 import map_blocks
-import new_scenes
 import paper_blocks
-import paper_time
-import platform_blocks
-import ray_cost
-import replayed
-import training_time
-import wind_error
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
 from faultpath.door.saved import MADE_FROM, MAP
-from faultpath.selfcheck import Report, failures, page
 from faultpath.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
@@ -53,22 +37,10 @@ TAKEN = (*MADE_FROM, "provenance.json", "report.html", "table.md", "table.tex")
 
 KINDS: Mapping[str, Any] = {
     **blocks.KINDS,
-    "drift": drift_blocks.KIND,
-    "learning": learning_blocks.KIND,
     "map": map_blocks.KIND,
-    "beside": beside_blocks.KIND,
-    "erring": erring_blocks.fill,
-    "central": central_blocks.fill,
-    "faults": fault_pictures.KIND,
-    "new-scenes": new_scenes.fill,
+    "central": paper_blocks.central_claim,
     "paper": paper_blocks.KIND,
-    "paper-time": paper_time.fill,
     "performance": performance.KIND,
-    "platform": platform_blocks.fill,
-    "ray-cost": ray_cost.fill,
-    "replayed": replayed.fill,
-    "training-time": training_time.fill,
-    "wind-error": wind_error.fill,
 }
 """What fills a block, by its kind, or by kind and part; takes the other words of its name."""
 
@@ -79,28 +51,13 @@ BLOCK = re.compile(
 MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 
 
-def statistics_check() -> Mapping[Path, str]:
-    """Return the page on what the statistics keep, from `faultpath selfcheck statistics`."""
-    report = Report.model_validate_json((REFERENCE / "statistics-check.json").read_bytes())
-    return {ROOT / "docs" / "statistics-check.md": page(report, failures(report))}
-
-
-PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
-    statistics_check,
-    drift_blocks.pictures,
-    central_blocks.files,
-    fault_pictures.pictures,
-    learning_blocks.pictures,
-    map_blocks.pictures,
-    performance.files,
-)
+PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (map_blocks.pictures, performance.files)
 """What makes whole files, by their path."""
 
 
 def documents() -> list[Path]:
     """Return the documents that may have blocks."""
-    docs = ROOT / "docs"
-    return [ROOT / "README.md", *sorted(docs.glob("*.md")), docs / "design" / "platform.md"]
+    return [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
 
 def fill(name: str, document: Path) -> str:
@@ -171,7 +128,8 @@ def write() -> None:
 def leftover(files: Mapping[Path, str]) -> list[Path]:
     """Return the drawn pictures that no measurement gives."""
     pages = {IMAGES / name_of(*each) for each in pictures()} | {IMAGES / n for n in made_from()}
-    return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages)
+    kept = set(IMAGES.glob("fault-*.svg"))
+    return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages - kept)
 
 
 def pictures() -> list[tuple[str, str]]:
@@ -180,7 +138,7 @@ def pictures() -> list[tuple[str, str]]:
     names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
     runs = {(name[1], name[2]) for name in names if name[0] == "picture" and load(name[1])}
     drawn = {("paper", name[2]) for name in names if name[:2] == ["paper", "picture"]}
-    return sorted(runs | (drawn if paper_blocks.present() else set()))
+    return sorted(runs | drawn)
 
 
 def take(what: str) -> None:
@@ -204,7 +162,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--check", action="store_true", help="exit 1 when something is stale")
     parser.add_argument("--images", action="store_true", help="make the pictures too")
     parser.add_argument("--conclude", action="store_true", help="decide stored runs anew first")
-    parser.add_argument("--freeze", action="store_true", help="freeze the platform as it is first")
     parser.add_argument("--paper", type=Path, metavar="RUN_FOLDER")
     parser.add_argument("--take", action="append", default=[], metavar="NAME=RUN_FOLDER")
     asked = parser.parse_args(arguments)
@@ -217,9 +174,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for what in asked.take:
             take(what)
         if asked.paper is not None:
-            paper_blocks.take(asked.paper, REFERENCE)
-        if asked.freeze:
-            platform_blocks.freeze()
+            paper_blocks.take(asked.paper)
         if asked.conclude:
             from conclude import conclude_all
 

@@ -1,4 +1,4 @@
-"""What the documents show of reference runs of `faultpath map`, and of its self-check."""
+"""What the documents show of reference runs of `faultpath map`."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -20,10 +20,7 @@ from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
 from faultpath.record import RunProvenance, wording
 from faultpath.report.figures.plane import correlation_picture, map_picture
-from faultpath.report.plane import shown, table_markdown
-from faultpath.report.plane import tables as map_tables
-from faultpath.selfcheck import Report, failures
-from faultpath.selfcheck.pages import tables
+from faultpath.report.plane import shown, table_markdown, tables
 from faultpath.store import read_outcomes
 from faultpath.store.folder import OUTCOMES
 from faultpath.store.sealed import seal
@@ -31,7 +28,6 @@ from faultpath.tables.markdown import grid
 from faultpath.trials import SystemSpec, library_of, load_system
 
 TAKEN = (*MADE_FROM, "provenance.json")
-CHECK = REFERENCE / "map-check.json"
 PICTURES = {"map": map_picture, "correlation": correlation_picture}
 
 
@@ -131,30 +127,8 @@ def _said(run: Mapped) -> str:
 
 
 def _turns(run: Mapped) -> str:
-    flips = next(each for each in map_tables(run.record) if each.name == "flips")
+    flips = next(each for each in tables(run.record) if each.name == "flips")
     return "\n\n".join([grid(flips), *flips.notes])
-
-
-def _check() -> str:
-    if not CHECK.is_file():
-        return (
-            f"*`faultpath selfcheck map --out docs/reference/{CHECK.name}` has not been run yet.*"
-        )
-    report = parsed(CHECK, Report, "run faultpath selfcheck map again")
-    broken = failures(report)
-    (runs,) = {float(cell["runs"]) for each in report.sections for cell in each.cells()}
-    precision = (
-        f"{runs:.0f} maps a setting: a rate near .05 or .95 has a standard error of "
-        f"{(0.05 * 0.95 / runs) ** 0.5:.3f}."
-    )
-    said = "\n".join(f"- {each}" for each in broken)
-    kept = (
-        f"Promises broken:\n\n{said}"
-        if said
-        else "No promise is broken by more than three of them."
-    )
-    shown_ = [f"**{table.title}**\n\n{table.notes[0]}\n\n{grid(table)}" for table in tables(report)]
-    return "\n\n".join([precision, kept, *shown_])
 
 
 def _about(fill: Callable[..., str], *, first: bool = False) -> Callable[..., str]:
@@ -173,6 +147,5 @@ KIND: dict[str, Callable[..., str]] = {
     "picture": _about(_picture),
     "said": _about(_said),
     "turns": _about(_turns),
-    "check": _check,
 }
 """What fills the kinds of blocks about maps."""

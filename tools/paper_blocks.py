@@ -1,16 +1,10 @@
-"""What the marked blocks of the documents show of the shipped reproductions of the paper.
+"""What the marked blocks of the documents show of the shipped reproduction of the paper."""
 
-A block shows the run of the default platform, or of the newest that has one; a platform as its last
-word names another: `paper:claim:C01:first`.
-"""
-
-import json
-from collections.abc import Callable, Iterable
-from functools import cache, partial
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
-from typing import TypeVar
 
-from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed, tabled
+from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from flown_code import flown_by
 
 from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
@@ -18,45 +12,50 @@ from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import read_outcomes
 from faultpath.studies import shipped
 from faultpath.studies.cells import SYSTEM, Setting
+from faultpath.studies.central import ELSEWHERE, central, of_run, state
 from faultpath.tables import Table
 from faultpath.tables.markdown import block
 
-T = TypeVar("T")
+RUN = shipped.shipped_run()
+PLACE = REFERENCE / "paper" / "matched"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.tex", "tables.md", "ledger.md")
-"""What of a run stands in `docs/reference/paper`, below the name of its platform."""
-
-
+"""What of a run stands in `docs/reference/paper`."""
 AGAIN = "quadrotor-L3-seeds"
 """The reference run that asks what Table IV asks, of the same scenes."""
 _FAULT, _MODULE = "calibration=+0.1", "reconstruction"
 
 
-def present() -> str | None:
-    """Return the platform whose run documents show, `None` where none has been flown."""
-    there = shipped.shipped()
-    default = shipped.default_platform()
-    return default if default in there else there[-1] if there else None
-
-
 @cache
-def load(platform: str) -> tuple[Reproduction, RunProvenance]:
-    """Return the shipped run of a platform; `Wrong` for a damaged one."""
-    folder = shipped.RUNS / platform
-    found = parsed(folder / FILES[0], Reproduction, TAKE_AGAIN)
-    return found, parsed(folder / FILES[1], RunProvenance, TAKE_AGAIN)
+def load() -> tuple[Reproduction, RunProvenance]:
+    """Return the shipped run; `Wrong` for a damaged one."""
+    found = parsed(RUN / FILES[0], Reproduction, TAKE_AGAIN)
+    return found, parsed(RUN / FILES[1], RunProvenance, TAKE_AGAIN)
 
 
-def _part(fill: Callable[..., str], *names: str) -> str:
-    platform = present()
-    if names and names[-1] in shipped.shipped():
-        names, platform = names[:-1], names[-1]
-    return fill(*load(platform), *names) if platform else "*The paper has not been flown yet.*"
+def take(folder: Path) -> None:
+    """Ship a run of the whole paper; `Wrong` when it is not finished."""
+    found = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
+    if found.profile != "paper":
+        raise Wrong(f"{folder} is a {found.profile} run: what is shipped is one of profile paper")
+    copied(FILES, folder, RUN)
+    copied(PAGES, folder, PLACE)
+    load.cache_clear()
 
 
-def _counts(found: Reproduction, origin: RunProvenance) -> str:
-    ledger = found.ledger
+def central_claim() -> str:
+    """Return the paper's central claim, its numbers and where it holds."""
+    found, asked = load()[0], load()[0].ledger
+    seeds = ", ".join(map(str, asked.seeds))
+    own = of_run(found, f"At the paper's error, {asked.scenes} held-out scenes, seeds {seeds}")
+    besides = Table.model_validate_json(ELSEWHERE.read_bytes()).lines
+    table = central([*([own] if own else []), *besides])
+    return f"{block(table)}\n{state(asked, run='the shipped run')}"
+
+
+def _counts() -> str:
+    found, ledger = load()[0], load()[0].ledger
     return (
         f"Of the paper's {len(ledger.claims)} claims, {ledger.count('confirmed')} are confirmed, "
         f"{ledger.count('refuted')} refuted and {ledger.count('undecided')} undecided on "
@@ -65,77 +64,41 @@ def _counts(found: Reproduction, origin: RunProvenance) -> str:
     )
 
 
-def _claim(found: Reproduction, origin: RunProvenance, name: str) -> str:
-    claim = _named(found.ledger.claims, name, "id")
-    lines = [f"**{claim.id}, {claim.verdict}.** {claim.claim}. The paper: {claim.paper}.", ""]
-    for part in claim.parts:
-        numbers = "" if part.estimate is None else f": {part.estimate:.3g} {part.unit}"
-        if part.interval is not None:
-            numbers += f" [{part.interval[0]:.3g}, {part.interval[1]:.3g}]"
-        lines.append(f"- {part.answer}: {part.words}{numbers}")
-    return "\n".join(lines)
+def _ledger() -> str:
+    found = load()[0]
+    return ledger_markdown(found.ledger, found.profile)
 
 
-def _table(found: Reproduction, origin: RunProvenance, name: str) -> str:
-    return block(_named(found.tables, name, "name"))
+def _table(name: str) -> str:
+    tables = {table.name: table for table in load()[0].tables}
+    if name not in tables:
+        raise Wrong(f"the paper has no table '{name}': use {', '.join(tables)}")
+    return block(tables[name])
 
 
-def _named(parts: Iterable[T], name: str, key: str) -> T:
-    known = {getattr(part, key): part for part in parts}
-    if name not in known:
-        raise Wrong(f"the paper has no '{name}': use {', '.join(known)}")
-    return known[name]
-
-
-def _motors(_: Reproduction, origin: RunProvenance) -> str:
-    try:
-        measured = json.loads((REFERENCE / "motor-state.json").read_text("utf-8"))
-    except FileNotFoundError:
-        return "*Not measured yet: run tools/motor_state.py.*"
-    rows = [{"name": "true-parameter predictor", "error": measured["predictor_cm"]}] + [
-        {"name": f"plant, motors followed for {intervals} intervals", "error": error}
-        for intervals, error in measured["plant_cm"].items()
-    ]
-    columns = {"Median 20-step position error (cm)": "{error:1}"}
-    return (
-        f"{tabled('Predicted by', rows, columns)}\n\n"
-        f"{measured['windows']:,} windows of the selection library, flown with the "
-        "true-parameter model. Made by `python tools/motor_state.py RUN_FOLDER`."
-    )
-
-
-def _frozen(_: Reproduction, origin: RunProvenance) -> str:
-    try:
-        table = Table.model_validate_json((REFERENCE / "frozen-wind.json").read_bytes())
-    except FileNotFoundError:
-        return "*Not flown yet: run tools/frozen_wind.py.*"
-    return f"{block(table)}\n\nMade by `python tools/frozen_wind.py RUN_FOLDER`."
-
-
-def _picture(found: Reproduction, origin: RunProvenance, part: str) -> str:
+def _picture(part: str) -> str:
+    found = load()[0]
     titles = {each.name: each.title for each in (*found.tables, *found.figures)}
     return f"![{titles.get(part, part)}]({{images}}/paper-{part}.svg)"
 
 
-def _origin(found: Reproduction, origin: RunProvenance) -> str:
+def _origin() -> str:
+    found, origin = load()
     first, last = (end[:16].replace("T", " ") for end in found.flown or ("", ""))
-    platform = found.ledger.platform
+    place = f"[`docs/reference/{PLACE.relative_to(REFERENCE)}`]"
     return (
-        f"Flown on platform `{platform}` between {first} and {last} UTC, "
-        f"with {origin.workers} workers on {origin.processor.replace('(R)', '')}, and concluded "
-        "anew by the code that is here, which a test repeats. "
-        f"{flown_by(origin, SYSTEM, {shipped.PLATFORM: platform})} "
-        f"{_flown_again(platform)}"
-        "Everything is in "
-        f"[`docs/reference/paper/{platform}`]({{reference}}/paper/{platform}): the report, the "
-        "ledger and all tables."
+        f"Run between {first} and {last} UTC, with {origin.workers} workers on "
+        f"{origin.processor.replace('(R)', '')}, and concluded anew by the code that is here, "
+        f"which a test repeats. {flown_by(origin, SYSTEM, {})} {_run_again()}Everything is in "
+        f"{place}({{reference}}/{PLACE.relative_to(REFERENCE)}): the report, the ledger and all "
+        "tables."
     )
 
 
-def _flown_again(platform: str) -> str:
-    """Say how many trials of a run a reference run has flown again, and how many came out alike."""
+def _run_again() -> str:
+    """Say how many trials a reference run has repeated, and how many came out alike."""
     again = REFERENCE / AGAIN
-    if platform != shipped.default_platform() or not again.is_dir():
+    if not again.is_dir():
         return ""
     paths = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
@@ -146,39 +109,21 @@ def _flown_again(platform: str) -> str:
     }
     there = {
         (row.variant, row.path, row.seed, row.outcome.scene): row.outcome
-        for row in read_outcomes(shipped.RUNS / platform / FILES[2]).rows
+        for row in read_outcomes(RUN / FILES[2]).rows
     }
     pairs = [(here[key], there[key]) for key in here.keys() & there.keys()]
     alike = sum(one == other for one, other in pairs)
     return (
-        f"{len(pairs):,} of its trials were flown again by the reference run [`{AGAIN}`]"
+        f"{len(pairs):,} of its trials were repeated by the reference run [`{AGAIN}`]"
         f"({{reference}}/{AGAIN}): {alike:,} came out alike to the last bit. "
     )
 
 
-def take(folder: Path, reference: Path) -> None:
-    """Ship a run of the whole paper under its platform: `Wrong` when it is not finished."""
-    found = parsed(folder / FILES[0], Reproduction, "give the folder of a finished run")
-    platform = found.ledger.platform
-    if found.profile != "paper" or platform not in shipped.platforms():
-        raise Wrong(
-            f"{folder} is a {found.profile} run on platform '{platform}': what is shipped is a run "
-            f"of profile paper on {' or '.join(shipped.platforms())}"
-        )
-    copied(FILES, folder, shipped.RUNS / platform)
-    copied(PAGES, folder, reference / "paper" / platform)
-
-
 KIND: dict[str, Callable[..., str]] = {
-    name: partial(_part, fill)
-    for name, fill in {
-        "counts": _counts,
-        "ledger": lambda found, origin: ledger_markdown(found.ledger, found.profile),
-        "claim": _claim,
-        "table": _table,
-        "origin": _origin,
-        "motors": _motors,
-        "frozen": _frozen,
-        "picture": _picture,
-    }.items()
+    "counts": _counts,
+    "ledger": _ledger,
+    "table": _table,
+    "origin": _origin,
+    "picture": _picture,
 }
+"""What fills the kinds of blocks about the paper."""

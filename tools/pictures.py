@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from blocks import FILM, PARTS, REFERENCE, ROOT, Wrong
-from paper_blocks import present
+from paper_blocks import PLACE
 
 from faultpath.door.replaying import chosen_scenes
 from faultpath.door.saved import read_run
@@ -42,7 +42,7 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-backg
 def report(run: str) -> Path:
     """Return the page of a reference run; `paper` is the run of the paper that is shown."""
     if run == "paper":
-        return REFERENCE / run / str(present()) / "reproduction.html"
+        return PLACE / "reproduction.html"
     return REFERENCE / run / "report.html"
 
 
