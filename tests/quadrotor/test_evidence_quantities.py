@@ -17,7 +17,6 @@ from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import fly
 from faultpath.quadrotor.training.playback import CODE
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath.quadrotor.training.quality_rows import position_errors
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
@@ -71,14 +70,6 @@ def test_an_identity_fault_gives_exactly_no_response_and_changes_no_error(record
         assert not ask(recorded, "position-response", subject, fault).any()
     plain = ask(recorded, "acceleration-error", "gru")
     assert np.array_equal(plain, ask(recorded, "acceleration-error", "gru", "calibration=0"))
-
-
-def test_position_errors_are_those_of_the_one_replay(recorded):
-    subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
-    with torch.inference_mode():
-        every = position_errors(subject.predictor, recorded.windows)
-    found = ask(recorded, "position-error", "wm-a")
-    assert np.array_equal(found, every[-1].double().numpy())
 
 
 def test_the_wind_input_is_the_variant_s(recorded):
