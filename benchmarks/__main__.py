@@ -1,50 +1,129 @@
-"""Measure; `tools/documents.py` makes the page of it.
+"""Measure everything side by side; `tools/documents.py` makes the page of it.
 
-python -m benchmarks [--only NAME ...]   what is not asked for keeps its numbers
+python -m benchmarks [--rounds N] [ROW ...]   rows that are named are shown and not kept
 """
 
 import argparse
+import os
+import platform
+import subprocess
 import sys
-import time
+import tempfile
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from importlib.metadata import distributions
+from pathlib import Path
 
-from benchmarks import machine, page
-from benchmarks.comparison import Effort
-from benchmarks.quiet import Others
-from benchmarks.results import RESULTS, Record, Results, load, save
-from benchmarks.table import COMPARISONS
+import pyperf
 
-TRY = Effort(share=0.02)
+import faultpath
+from benchmarks import page
+from benchmarks.results import ROOT, Machine, Record, Results, record, save
+from benchmarks.rows import ROWS, SIDES, Row
+from faultpath.execution.provenance import checkout, processor
+from faultpath.quadrotor import native
 
-
-def measure(only: list[str], effort: Effort, keep: bool) -> None:
-    """Take comparisons one after the other; what is kept is saved after each."""
-    here, others = machine.describe(), Others()
-    results = load() if RESULTS.exists() else Results(machine=here)
-    for name in only or COMPARISONS:
-        start, comparison = time.monotonic(), COMPARISONS[name]
-        found = list(comparison.take(effort))
-        if keep:
-            here = here.model_copy(update={"others": others.share()})
-            results = results.replaced(here, name, found, bool(only), comparison.edition)
-            save(results)
-        print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
-        for each in found:
-            if isinstance(each, Record):
-                print("   ", page.told(each), flush=True)
+ONE_THREAD = {
+    "OMP_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
+    "JAX_PLATFORMS": "cpu",
+}
+PACKAGES = ["numpy", "scipy", "torch", "jax", "mujoco", "pytorch-mppi", "rotorpy", "torchrl"]
 
 
-def main() -> int:
-    """Do what was asked; return the exit status."""
+class NotMeasured(Exception):
+    """A side that could not be built, or that gives other numbers than ours."""
+
+
+def timed(side: str, loops: int) -> tuple[float, int]:
+    """Time one side with pyperf in processes of its own, on the last processor.
+
+    Return units of work a second, and the calls that make a value, for the next round; `loops` 0
+    lets pyperf find them.
+    """
+    where, environment = SIDES[side]
+    with tempfile.TemporaryDirectory() as folder:
+        found = Path(folder) / "found.json"
+        command = [sys.executable, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
+        command += ["--warmups=1", "--min-time=0.1", f"--loops={loops}", f"--output={found}"]
+        command += ["--quiet", "--copy-env", f"--affinity={max(os.sched_getaffinity(0))}"]
+        done = subprocess.run(
+            command,
+            cwd=ROOT,
+            env={**os.environ, **ONE_THREAD, **environment},
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode:
+            said = [line for line in done.stderr.splitlines() if not line.startswith("ERROR:")]
+            raise NotMeasured(f"{side}: {said[-1] if said else 'no message'}")
+        bench = pyperf.Benchmark.load(str(found))
+    amount = float(bench.get_metadata()["amount"])
+    return amount / bench.median(), bench.get_total_loops() // bench.get_nvalue()
+
+
+def measure(rows: Sequence[Row], rounds: int) -> list[Record]:
+    """Let the sides of some rows take turns and return the records."""
+    sides = dict.fromkeys(side for row in rows for side in (row.ours, row.peer) if side)
+    rates: dict[str, list[float]] = {side: [] for side in sides}
+    loops, missing = dict.fromkeys(sides, 0), dict[str, str]()
+    for number in range(rounds):
+        for side in sides:
+            if side in missing:
+                continue
+            try:
+                rate, loops[side] = timed(side, loops[side])
+            except NotMeasured as reason:
+                missing[side] = f"Not measured: {reason}"
+                continue
+            rates[side].append(rate)
+            print(f"round {number + 1}, {side}: {page.number(rate)} /s", flush=True)
+    return [_record(row, rates, missing) for row in rows]
+
+
+def _record(row: Row, rates: dict[str, list[float]], missing: dict[str, str]) -> Record:
+    for side in (row.ours, row.peer):
+        if side in missing:
+            return Record(name=row.name, unit=row.unit, target=row.target, note=missing[side])
+    ours, peer = (rates.get(side, []) for side in (row.ours, row.peer))
+    if row.unit == "ms":
+        ours, peer = ([1e3 / rate for rate in side] for side in (ours, peer))
+    return record(row.name, row.unit, ours, peer, row.peer, row.target)
+
+
+def describe() -> Machine:
+    """Return this machine and the code on it."""
+    kernels = native.kernels()
+    commit, _ = checkout(Path(faultpath.__file__).parent)
+    installed = {each.name.replace("_", "-"): each.version for each in distributions()}
+    return Machine(
+        date=datetime.now(UTC).date().isoformat(),
+        processor=processor(),
+        cores=len(os.sched_getaffinity(0)),
+        system=platform.platform(aliased=True),
+        python=platform.python_version(),
+        packages={name: installed[name] for name in PACKAGES if name in installed},
+        kernels=native.PORTABLE if kernels is None else kernels.isa,
+        commit=commit,
+    )
+
+
+def main() -> None:
+    """Do what was asked."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
-    parser.add_argument(
-        "--only", nargs="+", default=[], metavar="NAME", choices=COMPARISONS,
-        help=f"these comparisons, of {', '.join(COMPARISONS)}",
-    )  # fmt: skip
-    parser.add_argument("--try", dest="tried", action="store_true", help="a little, kept nowhere")
+    parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
+    parser.add_argument("--rounds", type=int, default=7)
     asked = parser.parse_args()
-    measure(asked.only, TRY if asked.tried else Effort(), keep=not asked.tried)
-    return 0
+    chosen = [row for row in ROWS if not asked.rows or row.name in asked.rows]
+    if len(chosen) < len(asked.rows):
+        parser.error(f"choose rows from {', '.join(repr(row.name) for row in ROWS)}")
+    found = measure(chosen, asked.rounds)
+    print("\n".join(map(page.told, found)))
+    if not asked.rows:
+        save(Results(machine=describe(), records=tuple(found)))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

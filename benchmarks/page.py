@@ -3,93 +3,59 @@
 As of every document, `tools/documents.py` fills the blocks that are marked in it.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from benchmarks import pictures
-from benchmarks.pictures import number
-from benchmarks.quiet import QUIET, busy
-from benchmarks.results import ROOT, Machine, Record, Results, Target, load
-from benchmarks.table import COMPARISONS
+from benchmarks.results import ROOT, Record, Target, load
+from faultpath.report.scale import Axis, tick_label
+from faultpath.report.svg import Svg, shortened
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.markdown import grid
 
 IMAGES = ROOT / "docs" / "images"
-
 _COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
+_WIDTH, _NAMES, _ROW, _TOP = 880.0, 330.0, 24.0, 58.0
 
 
 def files() -> Mapping[Path, str]:
-    """Return the pictures that the results decide, by their path."""
-    results, order = load(), list(COMPARISONS)
-    records = sorted(results.records, key=lambda record: order.index(record.comparison))
-    return {
-        IMAGES / "performance.svg": pictures.ratios(records) + "\n",
-        IMAGES / "performance-scaling.svg": pictures.scaling(results.curves) + "\n",
-    }
+    """Return the picture that the results decide, by its path."""
+    return {IMAGES / "performance.svg": picture(load().records) + "\n"}
 
 
-def rows(results: Results, *names: str) -> Iterator[str]:
-    """Yield the table of some comparisons, what there is to say of its rows, and of what age."""
-    records = [record for record in results.records if record.comparison in names]
-    for name in names:
-        asked = COMPARISONS[name]
-        if results.editions.get(name, 1) < asked.edition:
-            yield (
-                f"**Out of date.** Since this was measured, {asked.changed}. "
-                f'`make bench ARGS="--only {name}"` measures it again.'
-            )
-    yield grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
+def rows(records: Sequence[Record]) -> str:
+    """Return the table of all rows and, below it, why some were not measured."""
+    table = grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
     notes = [f"- {record.name}: {record.note}" for record in records if record.note]
-    if notes:
-        yield "\n".join(notes)
-    for name in names:
-        if name in results.apart:
-            yield from _machine(results.apart[name])
+    return "\n\n".join([table, *(["\n".join(notes)] if notes else [])])
 
 
 def told(record: Record) -> str:
     """Return a record in one line, for the terminal."""
-    ratio = "" if record.ratio is None else f", ratio {_ratio(record)}"
-    against = "" if record.peer is None else f" against {number(record.peer)} ({record.peer_name})"
     if record.ours is None:
         return f"{record.name}: {record.note}"
+    against = "" if record.peer is None else f" against {number(record.peer)} ({record.peer_name})"
     met = {True: ", met", False: ", MISSED", None: ""}[record.met]
-    return f"{record.name}: {number(record.ours)} {record.unit}{against}{ratio}{met}"
+    return f"{record.name}: {number(record.ours)} {record.unit}{against}, {_ratio(record)}{met}"
 
 
-def _machine(machine: Machine) -> Iterator[str]:
-    packages = ", ".join(f"{name} {version}" for name, version in machine.packages.items())
-    changed = ", with uncommitted changes" if machine.dirty else ""
-    commit = f"commit `{machine.commit[:12]}`{changed}" if machine.commit else "no commit known"
-    yield (
-        f"Measured on {machine.date}: {machine.processor}, {machine.cores} cores, "
-        f"{machine.memory_gib:.0f} GiB, {machine.system}; Python {machine.python}, {packages}; "
-        f"kernels `{machine.kernels}`, compiler {machine.compiler or 'unknown'}; {commit}."
+def machine() -> str:
+    """Return what the numbers were measured on, in a sentence."""
+    here = load().machine
+    packages = ", ".join(f"{name} {version}" for name, version in here.packages.items())
+    commit = f"commit `{here.commit[:12]}`" if here.commit else "no commit known"
+    return (
+        f"Measured on {here.date}: {here.processor}, {here.cores} cores, {here.system}; "
+        f"Python {here.python}, {packages}; kernels `{here.kernels}`; {commit}."
     )
-    yield busy(machine.others)
-    if machine.others > QUIET:
-        yield (
-            "Rows by the clock on the wall (one vehicle, workers, start-up) are then too slow, and "
-            "all rates suffer from sharing caches and memory: measure again on a quiet machine."
-        )
 
 
-def _summary(results: Results) -> Iterator[str]:
-    judged = [record for record in results.records if record.target is not None]
-    missed = [record for record in judged if record.met is False]
-    yield f"Targets met: {sum(record.met is True for record in judged)} of {len(judged)}."
-    if missed:
-        yield "Missed:\n\n" + "\n".join(
-            f"- {record.name}: {_reached(record)}, asked {_target(record.target)}"
-            for record in missed
-        )
-
-
-def _reached(record: Record) -> str:
-    if record.target is not None and record.target.of == "ratio":
-        return f"ratio {_ratio(record)}"
-    return f"{number(record.ours or 0.0)} {record.unit}"
+def number(value: float) -> str:
+    """Return three significant digits, thousands apart."""
+    if value >= 1000:
+        digits = 10 ** (len(str(int(value))) - 3)
+        return f"{round(value / digits) * digits:,}".replace(",", " ")
+    return f"{value:.3g}"
 
 
 def _line(record: Record) -> Line:
@@ -117,9 +83,44 @@ def _target(target: Target | None) -> str:
     return f"{target.sense} {number(target.value)}{of}"
 
 
-KIND: Mapping[str, Callable[..., str]] = {
-    "machine": lambda: "\n\n".join(_machine(load().machine)),
-    "summary": lambda: "\n\n".join(_summary(load())),
-    "rows": lambda *names: "\n\n".join(rows(load(), *names)),
+def picture(records: Sequence[Record]) -> str:
+    """Return bars of how many times as fast faultpath is, on a logarithmic axis, with targets."""
+    shown = {record: record.ratio for record in records if record.ratio}
+    high = math.ceil(math.log10(max([10.0, *shown.values()])))
+    across = Axis(-1.0, high, _NAMES, _WIDTH - 60.0)
+    bottom = _TOP + _ROW * len(shown)
+    svg = Svg(
+        _WIDTH,
+        bottom + 8,
+        "How many times as fast faultpath is",
+        "One bar a comparison; the mark on a bar's row is its target; at 1 both are as fast.",
+    )
+    svg.text(0, 16, "How many times as fast faultpath is as the software beside it", "head")
+    svg.text(0, _TOP - 14, "1: as fast as the other; marks: targets", "small soft")
+    for power in range(-1, high + 1):
+        x = across(power)
+        svg.line((x, _TOP - 8), (x, bottom), "zero" if power == 0 else "axis")
+        svg.text(x, _TOP - 14, tick_label(10.0**power), "small soft", "middle")
+    for i, (record, ratio) in enumerate(shown.items()):
+        y = _TOP + _ROW * i
+        named = record.peer_name.split()[0].strip(",") in record.name
+        name = record.name if named else f"{record.name}, {record.peer_name}"
+        svg.text(0, y + 15, shortened(name, _NAMES - 12, 12), tip=name)
+        one, end = across(0.0), across(math.log10(max(ratio, 0.1)))
+        look = {True: "success", False: "failed", None: "both"}[record.met]
+        tip = f"{record.name}: {number(ratio)}"
+        svg.rect(min(one, end), y + 4, abs(end - one), 14, look, tip=tip)
+        right = max(one, end)
+        if record.target is not None and record.target.of == "ratio":
+            mark = across(math.log10(record.target.value))
+            svg.line((mark, y + 1), (mark, y + 21), "range")
+            right = max(right, mark)
+        svg.text(right + 6, y + 15, number(ratio), "small")
+    return svg.render(standalone=True)
+
+
+KIND: Mapping[str, Callable[[], str]] = {
+    "machine": machine,
+    "rows": lambda: rows(load().records),
 }
-"""The blocks of the page; `rows` takes the names of comparisons."""
+"""The blocks of the page."""

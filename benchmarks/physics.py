@@ -1,54 +1,45 @@
-"""Our sides of the plant's and the camera's comparisons."""
+"""Our sides of the plant's, the camera's and the statistics' comparisons."""
 
 from collections.abc import Callable, Sequence
 
+import numpy as np
 import torch
 from torch import Tensor
 
-from benchmarks.measure import Side
+from benchmarks.side import Side
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.perception.camera import mounted
-from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
+from faultpath.quadrotor.plant import Plant, TorchPlant
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
-from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, VehicleParameters, draw
+from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, draw
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
+from faultpath.statistics import Resamples, success_effect
 from faultpath.streams import generator
 
 VEHICLES = 100
 SCENES = 25
+RESAMPLES = 10_000
 
 
-def vehicles() -> list[VehicleParameters]:
-    """Return vehicles drawn from the ranges of the collected flights."""
-    return [draw(generator("benchmark-vehicle", f"vehicle/{i}", 0)) for i in range(VEHICLES)]
-
-
-def full_plant(build: Callable[[Vehicle], Plant] = TorchPlant) -> Side:
-    """A control interval of every vehicle; the unit is a vehicle's step of 2 ms, float64.
+def plant(build: Callable[[Vehicle], Plant] = TorchPlant) -> Side:
+    """A control interval of 100 vehicles; the unit is a vehicle's step of 2 ms, float64.
 
     Rate loop, mixer, motors, drag and wind; lanes are padded as in a flight, padding not counted.
     """
+    drawn = [draw(generator("benchmark-vehicle", f"vehicle/{i}", 0)) for i in range(VEHICLES)]
     lanes = padded_lanes(VEHICLES)
-    vehicle = Vehicle.stack(vehicles()).take(lanes)
-    plant = build(vehicle)
+    vehicle = Vehicle.stack(drawn).take(lanes)
+    flown = build(vehicle)
     still = torch.zeros(3, len(lanes), dtype=torch.float64)
-    start = plant.start(State.hover(still, still[0]))
+    start = flown.start(State.hover(still, still[0]))
     command = vehicle.hover_command()
     command[1:] += torch.tensor([[1.0], [-0.5], [0.2]])
     shape = (STEPS_PER_CONTROL, 3, len(lanes))
     winds = torch.from_numpy(generator("benchmark-wind", "all", 0).uniform(-5.0, 5.0, shape))
-
-    def flown() -> PlantState:
-        return plant.advance(start, command, winds)
-
-    def ends() -> Sequence[float]:
-        """Return where the vehicles are after the interval, m."""
-        return flown().state.position.flatten().tolist()
-
-    return Side(flown, VEHICLES * STEPS_PER_CONTROL, ends)
+    return Side(lambda: flown.advance(start, command, winds), VEHICLES * STEPS_PER_CONTROL)
 
 
 def scenes() -> Sequence[Scene]:
@@ -64,17 +55,33 @@ def camera_poses(chosen: Sequence[Scene]) -> State:
     return State(state.position, state.velocity, mounted(so3.from_yaw(yaw)), state.rate)
 
 
+def images() -> Tensor:
+    """Return the depth images of the block, `[25, 36, 64]`, m."""
+    chosen = scenes()
+    return DepthRenderer(chosen).render(camera_poses(chosen))
+
+
 def rendering() -> Side:
     """The depth images of a block of scenes; the unit is an image of 64 x 36."""
     chosen = scenes()
     renderer, poses = DepthRenderer(chosen), camera_poses(chosen)
-
-    def drawn() -> Tensor:
-        return renderer.render(poses)
-
-    return Side(drawn, len(chosen), lambda: depths(drawn()))
+    return Side(lambda: renderer.render(poses), len(chosen))
 
 
-def depths(images: Tensor) -> list[float]:
-    """Return the mean depth of each image, m: a pixel on an edge may fall on either side."""
-    return images.flatten(1).double().mean(1).tolist()
+def outcomes() -> tuple[np.ndarray, np.ndarray]:
+    """Return successes of two arms, 100 scenes and 3 seeds."""
+    draws = generator("benchmark-outcomes", "all", 0)
+    return draws.random((100, 3)) < 0.6, draws.random((100, 3)) < 0.7
+
+
+def interval() -> tuple[float | None, float | None]:
+    """Return the ends of our interval of the effect, percentage points."""
+    arms = outcomes()
+    resamples = Resamples.draw("benchmark", len(arms[0]), n_resamples=RESAMPLES)
+    found = success_effect(*arms, resamples).estimate()
+    return found.low, found.high
+
+
+def bootstrap() -> Side:
+    """An effect and its interval, with the draw of its resamples."""
+    return Side(interval)

@@ -1,112 +1,149 @@
-"""Our sides of the planning comparisons, and the machine's own rate of multiplication."""
+"""The planning problem, WM-A with wind, 512 candidates, 20 steps, and our sides of it.
 
-from collections.abc import Callable, Sequence
+States, calibrations and commands are drawn about what flights have; how long a rollout takes does
+not depend on them.
+"""
+
+from collections.abc import Callable
 
 import torch
 from torch import Tensor
 
-from benchmarks import problem
-from benchmarks.measure import Side
-from faultpath.quadrotor.models import clearance_model
+from benchmarks.side import Side
+from faultpath.quadrotor import native, so3
+from faultpath.quadrotor.models import clearance_model, predictor
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
-from faultpath.quadrotor.planners import Scored, shift
+from faultpath.quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored, shift
+from faultpath.quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import rolling
-from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.streams import generator
+
+CANDIDATES = 512
+HORIZON = 20
+CHECKED = 32
+"""Candidates whose positions are compared between planners."""
+DRAG_KGPS = 0.3
+"""Alike along all axes, so that peers may write it as a constant force."""
+GOAL_M = (6.0, 0.5, 1.2)
 
 
-def rollout(
-    scenes: int = 1, candidates: int = problem.CANDIDATES, steps: int = problem.HORIZON
-) -> Side:
-    """The candidates of some scenes rolled out; the unit is one scene's."""
-    roll, inputs = rolling(problem.model()), problem.inputs(scenes)
-    commands = problem.commands(scenes, candidates, steps)
-
-    def answer() -> Sequence[float]:
-        """Return positions `[3, H, 32]` of the first scene, m."""
-        found = roll(inputs, commands).positions
-        return found[:, 0, :, : problem.CHECKED].flatten().tolist()
-
-    return Side(lambda: roll(inputs, commands), scenes, answer)
+def model() -> AnchoredPredictor:
+    """Return the shipped predictor, seed 0, with `DRAG_KGPS`."""
+    found = predictor("wm-a-wind", 0)
+    assert isinstance(found, AnchoredPredictor)
+    return AnchoredPredictor(found.network, wind=True, drag_kgps=(DRAG_KGPS,) * 3)
 
 
-def replan(scenes: int = 1) -> Side:
-    """Noise, rollout, all costs and the update, for some scenes at once.
+def inputs() -> PredictorInputs:
+    """Return what the taps would deliver for one scene, batch `[1, 1]`, float32."""
+    draw = generator("benchmark", "scene/0", 0)
+
+    def column(rows: int, low: float, high: float) -> Tensor:
+        return torch.from_numpy(draw.uniform(low, high, (rows, 1))).float()[..., None]
+
+    calibration = Calibration(column(1, 0.8, 1.2)[0], column(1, 0.8, 1.2)[0])
+    return PredictorInputs(
+        state=State(
+            position=column(3, 1.0, 2.0),
+            velocity=column(3, -2.0, 2.0),
+            rotation=so3.exp(column(3, -0.4, 0.4)),
+            rate=column(3, -1.0, 1.0),
+        ),
+        trim=calibration,
+        dynamics=calibration,
+        wind_map_mass_kg=calibration.mass_kg,
+        wind_mps=column(3, -5.0, 5.0),
+        thrust_mass_kg=calibration.mass_kg,
+        code=column(32, -0.8, 0.8),
+    )
+
+
+def commands() -> Tensor:
+    """Return candidates about hover, `[H, 4, 1, K]`."""
+    sampler = AutoregressiveSampler(SamplerSettings(candidates=CANDIDATES, horizon=HORIZON))
+    hover = inputs().trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    plan = torch.zeros(HORIZON, 4, 1)
+    plan[:, 0] = hover
+    with native.using(native.PORTABLE):  # the same numbers for every side
+        return sampler.candidates(plan, hover, sampler.noise(["scene/0"], 0, 0))
+
+
+def positions() -> list[float]:
+    """Return what every planner must predict, `[3, H, 32]` flat, m."""
+    found = rolling(model())(inputs(), commands()).positions
+    return found[:, 0, :, :CHECKED].flatten().tolist()
+
+
+def rollout() -> Side:
+    """The candidates of one scene rolled out."""
+    roll, given, candidates = rolling(model()), inputs(), commands()
+    return Side(lambda: roll(given, candidates))
+
+
+def replan() -> Side:
+    """Noise, rollout, all costs and the update for one scene.
 
     The clearance is a constant here: no peer has one. Everything else is the planner of an audit.
     """
-    goal = torch.tensor(problem.GOAL_M)[:, None].expand(3, scenes).contiguous()
-    near = torch.ones(scenes, problem.HORIZON, problem.CANDIDATES)
-    names = [f"scene/{i}" for i in range(scenes)]
-    return Side(_replans(names, goal, lambda positions: near), scenes, rollout().answer)
+    near = torch.ones(1, HORIZON, CANDIDATES)
+    return Side(_replans(torch.tensor(GOAL_M)[:, None].contiguous(), lambda positions: near))
 
 
-def one_vehicle(clearance: str = "field") -> Side:
+def one_vehicle() -> Side:
     """One vehicle's replan, as a flight computer would run it.
 
-    `clearance` is `field`, a query of the baked distance field, or `depth`: the image is encoded
-    and the model asked along all candidates. Rendering an image is no work of the vehicle's.
+    The depth image is encoded and the model asked along all candidates; rendering an image is no
+    work of the vehicle's.
     """
     scene = load_library("selection").scenes[0]
-    state = problem.inputs(1).state
-    pose = State(*(part[..., 0] for part in vars(state).values()))
+    pose = State(*(part[..., 0] for part in vars(inputs().state).values()))
     image = DepthRenderer([scene]).render(pose)
     place, mount = pose.position.T.contiguous(), mounted(pose.rotation).movedim(-1, 0)
-    field, seen = DistanceField.bake(scene), DepthClearance(clearance_model())
+    seen = DepthClearance(clearance_model())
 
     def along(positions: Tensor) -> Tensor:
-        points = positions.flatten(2)
-        if clearance == "field":
-            return field.query(points).view(positions.shape[1:])
         seen.capture(image, place, mount)
-        return seen.query(points, [0]).view(positions.shape[1:])
+        return seen.query(positions.flatten(2), [0]).view(positions.shape[1:])
 
-    return Side(_replans(["scene/0"], torch.tensor(scene.goal_m)[:, None], along))
+    return Side(_replans(torch.tensor(scene.goal_m)[:, None], along))
 
 
-def _replans(
-    names: Sequence[str], goal: Tensor, clearance: Callable[[Tensor], Tensor]
-) -> Callable[[], None]:
+def _replans(goal: Tensor, clearance: Callable[[Tensor], Tensor]) -> Callable[[], None]:
     """Return what takes one step of the planner outside the loop, from the step before's plan.
 
-    `clearance` gives `[S, H, K]`, metres, along positions `[3, S, H, K]`.
+    `clearance` gives `[1, H, K]`, metres, along positions `[3, 1, H, K]`.
     """
-    planner, roll = QuadrotorOptions().build_planner(), rolling(problem.model())
-    inputs = problem.inputs(len(names))
-    hover = inputs.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
-    plan, step = problem.commands(len(names))[..., 0].clone(), 0
+    planner, roll, given = QuadrotorOptions().build_planner(), rolling(model()), inputs()
+    hover = given.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+    plan, step = commands()[..., 0].clone(), 0
 
     def work() -> None:
         nonlocal plan, step
         search = planner.init(plan, hover)
         for iteration in range(planner.iterations):
-            commands = planner.propose(search, planner.noise(names, 0, step, iteration))
-            rolled = roll(inputs, commands)
+            candidates = planner.propose(search, planner.noise(["scene/0"], 0, step, iteration))
+            rolled = roll(given, candidates)
             near = clearance(rolled.positions)
-            search = planner.update(search, Scored(rolled, commands, near, goal, hover))
+            search = planner.update(search, Scored(rolled, candidates, near, goal, hover))
         plan, step = shift(search.plan), step + 1
 
     return work
 
 
-def matrix_product(rows: int = 1024, inner: int = 1024, columns: int = 1024) -> Side:
-    """torch's product of two float32 matrices; the unit is a GFLOP."""
-    one, other = torch.rand(rows, inner), torch.rand(inner, columns)
-    out = torch.empty(rows, columns)
-    return Side(lambda: torch.mm(one, other, out=out), 2e-9 * rows * inner * columns)
+def network_product() -> Side:
+    """torch's product of two square matrices that counts as many operations as a rollout.
 
-
-def gflop_per_replan() -> float:
-    """Return the floating-point operations, 1e9, of the network's affine maps in one replan.
-
-    The kinematics and the activations are left out, so that a share of the rate of multiplication
-    errs on the low side.
+    Only the network's affine maps count: kinematics and activations are left out, so that a
+    rollout's share of the rate of multiplication errs on the low side.
     """
-    network = problem.model().network
+    network = model().network
     layers = [network.embed, network.cell.from_input, network.cell.from_latent]
     layers += [network.first, network.second, network.last]
     each = sum(2 * layer.weight.numel() + layer.bias.numel() for layer in layers)
-    return 1e-9 * each * problem.CANDIDATES * problem.HORIZON
+    one, other, out = torch.rand(1024, 1024), torch.rand(1024, 1024), torch.empty(1024, 1024)
+    rollouts = 2 * 1024**3 / (each * CANDIDATES * HORIZON)
+    return Side(lambda: torch.mm(one, other, out=out), rollouts)

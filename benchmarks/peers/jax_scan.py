@@ -1,7 +1,6 @@
 """WM-A's rollout written by hand in JAX: one jitted `lax.scan` over the horizon.
 
-The kinematics work on single components `[K]`, which the compiler fuses. Only the network's layout
-differs between the two forms: features `[F, K]` or `[K, F]`.
+The kinematics work on single components `[K]`, which the compiler fuses; features are `[F, K]`.
 """
 
 from collections.abc import Sequence
@@ -11,9 +10,9 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from benchmarks import problem
-from benchmarks.measure import Side
+from benchmarks import planning
 from benchmarks.peers import rows
+from benchmarks.side import Side, check_same
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
 
@@ -21,51 +20,46 @@ Array = jax.Array
 DT = CONTROL_DT_S
 
 
-def scan(layout: str = "FK") -> Side:
+def scan() -> Side:
     """The rollout of one scene's 512 candidates: positions and velocities of every step."""
     state = jnp.asarray(rows.initial().numpy())
     start, code = state[: rows.CODE.start], state[rows.CODE]
-    commands = jnp.asarray(problem.commands()[:, :, 0].numpy())
-    rollout = jax.jit(_rollout(rows.RowsModel(), layout == "FK"))
-
-    def answer() -> Sequence[float]:
-        """Return positions `[3, H, 32]`, m."""
-        positions, _ = rollout(start, code, commands)
-        return np.asarray(positions)[:, :, : problem.CHECKED].swapaxes(0, 1).ravel().tolist()
-
-    return Side(lambda: jax.block_until_ready(rollout(start, code, commands)), answer=answer)
+    commands = jnp.asarray(planning.commands()[:, :, 0].numpy())
+    rollout = jax.jit(_rollout(rows.RowsModel()))
+    positions = np.asarray(rollout(start, code, commands)[0])[:, :, : planning.CHECKED]
+    check_same(positions.swapaxes(0, 1).ravel(), planning.positions(), 1e-3)
+    return Side(lambda: jax.block_until_ready(rollout(start, code, commands)))
 
 
-def _rollout(model: rows.RowsModel, feature_first: bool):
+def _rollout(model: rows.RowsModel):
     def layer(linear) -> tuple[Array, Array]:
         weight = jnp.asarray(linear.weight.detach().numpy())
         bias = jnp.asarray(linear.bias.detach().numpy())
-        return (weight, bias[:, None]) if feature_first else (weight.T, bias)
+        return weight, bias[:, None]
 
     cell = model.cell
     layers = [layer(part) for part in (model.embed, *(model.head[i] for i in (0, 2, 4)))]
     from_input = layer(SimpleNamespace(weight=cell.weight_ih, bias=cell.bias_ih))
     from_latent = layer(SimpleNamespace(weight=cell.weight_hh, bias=cell.bias_hh))
-    axis = 0 if feature_first else 1
     constant = [float(value) for value in model.constant]
     gain, weight_n = model.gain, model.weight_n
 
     def product(affine: tuple[Array, Array], x: Array) -> Array:
         weight, bias = affine
-        return (weight @ x if feature_first else x @ weight) + bias
+        return weight @ x + bias
 
     def network(latent: Array, motion: Sequence[Array], action: Sequence[Array]):
-        acted = jnp.stack(action, axis)
+        acted = jnp.stack(action, 0)
         embedded = jax.nn.relu(product(layers[0], acted))
-        ri, zi, ni = jnp.split(product(from_input, embedded), 3, axis)
-        rh, zh, nh = jnp.split(product(from_latent, latent), 3, axis)
+        ri, zi, ni = jnp.split(product(from_input, embedded), 3, 0)
+        rh, zh, nh = jnp.split(product(from_latent, latent), 3, 0)
         reset, update = jax.nn.sigmoid(ri + rh), jax.nn.sigmoid(zi + zh)
         candidate = jnp.tanh(ni + reset * nh)
         latent = candidate + update * (latent - candidate)
-        hidden = jnp.concatenate((latent, jnp.stack([*motion, *action], axis)), axis)
+        hidden = jnp.concatenate((latent, jnp.stack([*motion, *action], 0)), 0)
         hidden = jax.nn.relu(product(layers[1], hidden))
         outputs = jnp.tanh(product(layers[3], jax.nn.relu(product(layers[2], hidden))))
-        return latent, [jnp.take(outputs, i, axis) for i in range(6)]
+        return latent, [jnp.take(outputs, i, 0) for i in range(6)]
 
     def step(carry, command: Array):
         p, v, r, w, latent = carry
@@ -91,8 +85,7 @@ def _rollout(model: rows.RowsModel, feature_first: bool):
     def run(start: Array, code: Array, commands: Array):
         count = commands.shape[-1]
         spread = [jnp.broadcast_to(value, (count,)) for value in start]
-        shape = (len(code), count) if feature_first else (count, len(code))
-        latent = jnp.broadcast_to(code[:, None] if feature_first else code, shape)
+        latent = jnp.broadcast_to(code[:, None], (len(code), count))
         carry = (spread[0:3], spread[3:6], spread[6:15], spread[15:18], latent)
         return jax.lax.scan(step, carry, commands)[1]
 

@@ -1,49 +1,22 @@
 """MuJoCo: its integrator under our vehicle, and its ray caster on our scenes."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import mujoco
 import numpy as np
-import torch
 
 from benchmarks import physics
-from benchmarks.measure import Side
+from benchmarks.side import Side, check_same
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
+from faultpath.quadrotor.perception.camera import RANGE_M
 from faultpath.quadrotor.perception.camera import rays as camera_rays
-from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant, build_model
+from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
 from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, STEPS_PER_CONTROL
 
 
-def steps(control: str = "none") -> Side:
-    """A control interval of every vehicle; the unit is a step of 2 ms.
-
-    `control` `none` holds the motors' commands over the interval, so that one call of MuJoCo makes
-    all steps of a vehicle: body, motors' lag and drag, but no rate loop. `python` is the plant of
-    audits, with rate loop and mixer at every step.
-    """
-    if control == "python":
-        return physics.full_plant(MujocoPlant)
-    chosen = physics.vehicles()
-    models = [build_model(vehicle) for vehicle in chosen]
-    for model in models:
-        model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER  # a quarter of the work
-    datas = [mujoco.MjData(model) for model in models]
-    hover = [v.mass_kg * GRAVITY_MPS2 / v.thrust_scale / 4 for v in chosen]
-
-    def prepare() -> None:
-        """Go back to the start: a vehicle without control would tumble off."""
-        for model, data, thrust in zip(models, datas, hover, strict=True):
-            mujoco.mj_resetData(model, data)
-            data.act[:] = thrust
-
-    def work() -> None:
-        for model, data, thrust in zip(models, datas, hover, strict=True):
-            data.ctrl[:4] = thrust
-            mujoco.mj_step(model, data, STEPS_PER_CONTROL)
-
-    return Side(work, physics.VEHICLES * STEPS_PER_CONTROL, prepare=prepare)
+def steps() -> Side:
+    """A control interval of every vehicle with rate loop and mixer, as audits can fly it."""
+    return physics.plant(MujocoPlant)
 
 
 def rays() -> Side:
@@ -70,11 +43,11 @@ def rays() -> Side:
                 geom[i], distance[i], None, count, reach,
             )  # fmt: skip
 
-    def answer() -> Sequence[float]:
-        found = np.where(geom >= 0, distance / length, RANGE_M).clip(0, RANGE_M)
-        return physics.depths(torch.from_numpy(found).view(-1, HEIGHT, WIDTH))
-
-    return Side(work, len(chosen), answer)
+    work()
+    found = np.where(geom >= 0, distance / length, RANGE_M).clip(0, RANGE_M)
+    # The mean of each image: a pixel on an edge may fall on either side.
+    check_same(found.mean(1), physics.images().flatten(1).double().mean(1), 0.02)
+    return Side(work, len(chosen))
 
 
 def _model(scene: Scene) -> mujoco.MjModel:

@@ -8,8 +8,8 @@ import torch
 from rotorpy.vehicles.hummingbird_params import quad_params
 from rotorpy.vehicles.multirotor import BatchedMultirotor, BatchedMultirotorParams
 
-from benchmarks.measure import Side
 from benchmarks.physics import VEHICLES
+from benchmarks.side import Side
 from faultpath.quadrotor.vehicle import PLANT_DT_S, STEPS_PER_CONTROL
 
 

@@ -9,7 +9,7 @@ import math
 import torch
 from torch import Tensor, nn
 
-from benchmarks import problem
+from benchmarks import planning
 from faultpath.quadrotor.planners import CostWeights, SamplerSettings
 from faultpath.quadrotor.predictors import anchored
 from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
@@ -17,7 +17,6 @@ from faultpath.quadrotor.predictors.network import LATENT, Affine, LatentNetwork
 from faultpath.quadrotor.vehicle import (
     CONTROL_DT_S,
     GRAVITY_MPS2,
-    NOMINAL_DRAG_KGPS,
     RATE_LIMIT_RADPS,
 )
 
@@ -54,7 +53,7 @@ class RowsModel(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        network: LatentNetwork = problem.model().network
+        network: LatentNetwork = planning.model().network
         mean, std = network.feature_mean, network.feature_std
         self.embed = linear(network.embed, over=(mean[15:19], std[15:19]))
         self.cell = nn.GRUCell(16, LATENT)
@@ -70,13 +69,13 @@ class RowsModel(nn.Module):
         first = linear(network.first, over=(mean, std), at=LATENT)
         second, last = linear(network.second), linear(network.last)
         self.head = nn.Sequential(first, nn.ReLU(), second, nn.ReLU(), last)
-        given = problem.inputs(1)
+        given = planning.inputs()
         assert given.dynamics is not None
         assert given.wind_mps is not None
         assert given.thrust_mass_kg is not None
         self.gain = float(given.dynamics.thrust_scale / given.dynamics.mass_kg)
         self.weight_n = float(given.thrust_mass_kg) * GRAVITY_MPS2
-        constant = NOMINAL_DRAG_KGPS[0] * given.wind_mps[:, 0, 0] / given.dynamics.mass_kg[0]
+        constant = planning.DRAG_KGPS * given.wind_mps[:, 0, 0] / given.dynamics.mass_kg[0]
         constant[2] -= GRAVITY_MPS2
         self.register_buffer("constant", constant)
         self.register_buffer("eye", torch.eye(3))
@@ -112,7 +111,7 @@ class RowsModel(nn.Module):
 
 def initial() -> Tensor:
     """Return the first scene's state, `[50]`."""
-    given = problem.inputs(1)
+    given = planning.inputs()
     state = given.state
     assert given.code is not None
     parts = (state.position, state.velocity, state.rotation.flatten(0, 1), state.rate, given.code)
@@ -122,9 +121,9 @@ def initial() -> Tensor:
 @torch.inference_mode()
 def positions(step: RowsModel) -> list[float]:
     """Return the positions `[3, H, 32]` under the problem's candidates, m."""
-    state = initial().expand(problem.CHECKED, -1)
+    state = initial().expand(planning.CHECKED, -1)
     found = []
-    for command in problem.commands()[:, :, 0, : problem.CHECKED]:
+    for command in planning.commands()[:, :, 0, : planning.CHECKED]:
         state = step(state, command.T)
         found.append(state[:, POSITION].T)
     return torch.stack(found, 1).flatten().tolist()
@@ -132,7 +131,7 @@ def positions(step: RowsModel) -> list[float]:
 
 def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Return centre, spread and bounds of the planner's commands, `[4]` each."""
-    hover = float(problem.inputs(1).trim.hover_thrust(GRAVITY_MPS2))
+    hover = float(planning.inputs().trim.hover_thrust(GRAVITY_MPS2))
     sampler = SamplerSettings()
     centre = torch.tensor([hover, 0.0, 0.0, 0.0])
     sigma = torch.tensor([sampler.thrust_sigma * hover, *sampler.rate_sigma_radps])
@@ -140,7 +139,7 @@ def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
     return centre, sigma, torch.cat((torch.zeros(1), -high[1:])), high
 
 
-_GOAL = torch.tensor(problem.GOAL_M)
+_GOAL = torch.tensor(planning.GOAL_M)
 _WEIGHTS = CostWeights()
 
 

@@ -1,0 +1,66 @@
+"""All that is measured: which sides run against which, and what is asked of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from benchmarks.results import Target
+from faultpath.quadrotor.native import library
+
+_PORTABLE = {library.VARIABLE: library.PORTABLE}
+
+SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
+    "fused rollout": ("benchmarks.planning:rollout", {}),
+    "portable": ("benchmarks.planning:rollout", _PORTABLE),
+    "JAX scan": ("benchmarks.peers.jax_scan:scan", {}),
+    "torch.mm": ("benchmarks.planning:network_product", {}),
+    "fused replan": ("benchmarks.planning:replan", {}),
+    "portable replan": ("benchmarks.planning:replan", _PORTABLE),
+    "pytorch_mppi": ("benchmarks.peers.pytorch_mppi_side:command", {}),
+    "torchrl": ("benchmarks.peers.torchrl_side:replan", {}),
+    "one vehicle": ("benchmarks.planning:one_vehicle", {}),
+    "plant": ("benchmarks.physics:plant", {}),
+    "portable plant": ("benchmarks.physics:plant", _PORTABLE),
+    "RotorPy": ("benchmarks.peers.rotorpy_side:hummingbirds", {}),
+    "MuJoCo": ("benchmarks.peers.mujoco_side:steps", {}),
+    "rendering": ("benchmarks.physics:rendering", {}),
+    "mj_multiRay": ("benchmarks.peers.mujoco_side:rays", {}),
+    "bootstrap": ("benchmarks.physics:bootstrap", {}),
+    "scipy.stats.bootstrap": ("benchmarks.peers.scipy_side:percentile", {}),
+}
+"""What builds each side, as `module:function`, and its environment."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Two sides, or ours alone, and the target that was set."""
+
+    name: str
+    unit: str
+    ours: str
+    peer: str = ""
+    target: Target | None = None
+
+
+def _ratio(value: float) -> Target:
+    return Target(of="ratio", sense="at least", value=value)
+
+
+def _at_most(value: float) -> Target:
+    return Target(of="ours", sense="at most", value=value)
+
+
+_STEPS = "vehicle-steps/s"
+ROWS = (
+    Row("Fused rollout, JAX scan", "replans/s", "fused rollout", "JAX scan", _ratio(1.4)),
+    Row("Fused rollout, portable", "replans/s", "fused rollout", "portable"),
+    Row("Fused rollout, torch.mm", "replans/s", "fused rollout", "torch.mm", _ratio(0.75)),
+    Row("Fused replan, pytorch_mppi", "replans/s", "fused replan", "pytorch_mppi", _ratio(5.0)),
+    Row("Portable replan, pytorch_mppi", "replans/s", "portable replan", "pytorch_mppi"),
+    Row("Fused replan, torchrl", "replans/s", "fused replan", "torchrl"),
+    Row("One vehicle, depth image encoded and queried", "ms", "one vehicle", target=_at_most(5.0)),
+    Row("Full plant, RotorPy", _STEPS, "plant", "RotorPy"),
+    Row("Full plant, MuJoCo", _STEPS, "plant", "MuJoCo"),
+    Row("Portable plant, RotorPy", _STEPS, "portable plant", "RotorPy"),
+    Row("Depth image 64 x 36", "images/s", "rendering", "mj_multiRay", _ratio(1.0)),
+    Row("Bootstrap with its draw", "ms", "bootstrap", "scipy.stats.bootstrap", _at_most(20.0)),
+)
