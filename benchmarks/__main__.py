@@ -30,7 +30,7 @@ ONE_THREAD = {
     "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
     "JAX_PLATFORMS": "cpu",
 }
-PACKAGES = ["numpy", "scipy", "torch", "jax", "mujoco", "pytorch-mppi", "rotorpy", "torchrl"]
+PACKAGES = ["numpy", "scipy", "torch", "jax", "mujoco", "pytorch-mppi", "rotorpy"]
 
 
 class NotMeasured(Exception):

@@ -11,11 +11,11 @@ from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.perception.camera import mounted
 from faultpath.quadrotor.plant import Plant, TorchPlant
+from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, draw
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.statistics import Resamples, success_effect
 from faultpath.streams import generator
 
