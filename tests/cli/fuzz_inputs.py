@@ -62,7 +62,7 @@ FAULTS = (
     *("gain:erase", "gain:scale=0.6,for=1,recover=-1"),
 )
 
-OF_SYSTEMS = ("audit", "check", "interface", "map", "plan", "trace")
+OF_SYSTEMS = ("audit", "check", "map", "plan", "trace")
 
 VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
     "audit": (
@@ -81,11 +81,10 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--no-signals": (None,),
         },
     ),
-    "interface": (
-        [TOY],
-        {"--svg": ("a.svg", "folder"), "--yaml": ("a.yaml", "text.txt/a"), "--set": ("a=1",)},
+    "report": (
+        ["folder", "text.txt"],
+        {"--out": ("page.html", "folder", "nowhere/page.html"), "--json": (None,)},
     ),
-    "report": (["folder"], {}),
     "replay": (
         ["folder"],
         {
@@ -96,11 +95,6 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--seed": ("0", "7"),
             "--speed": ("2", "0", "nan"),
         },
-    ),
-    "runs": (["folder"], {"--json": (None,)}),
-    "compare": (
-        ["folder", "text.txt"],
-        {"--out": ("page.html", "folder", "nowhere/page.html"), "--json": (None,)},
     ),
     "log": (
         ["text.csv"],
@@ -165,23 +159,13 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
     ),
     "probe": ([TOY], {"--variants": ("a,b",), "--seeds": ("0",), "--out": ("probe",)}),
     "init": (["my_rover"], {"--with": ("numpy", "gymnasium", "jax")}),
-    "claims": ([], {"--run": ("folder", "text.txt"), "--profile": ("x",), "--device": ("cuda",)}),
-    "reproduce": (["table-99"], {"--profile": ("x", "quick"), "--out": ("r",), "--device": ("x",)}),
-    "scenes list": (["text.txt"], {}),
-    "scenes generate": (["folder"], {"--seed": ("x", "-1"), "--count": ("0", "-5")}),
-    "selfcheck statistics": (
-        [],
-        {
-            "--profile": ("quick", "fast"),
-            "--out": ("found.json", "folder"),
-            "--processes": ("1", "0", "x"),
-        },
+    "reproduce": (
+        ["table-99"],
+        {"--profile": ("x", "quick"), "--out": ("r",), "--device": ("x",), "--judge": (None,)},
     ),
-    "selfcheck map": (["too much"], {"--profile": ("quick", "fast"), "--processes": ("0", "x")}),
     "train quadrotor": (["nobody"], {"--seed": ("77", "x"), "--out": ("t",)}),
 }
 """Each verb with arguments that end soon: right ones for the toy, wrong ones for what is costly.
-The self-check may be given what is right, since the test leaves next to nothing in its profiles.
 `None` stands for the value of an option that takes none."""
 
 NO_VERB = "fly"
@@ -220,7 +204,7 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
             name: rng.choice(values) for name, values in options.items()
         }
         words = list(positional)
-        fixed = {"--workers", *(() if verb == "audit" else ("--seed", "--count", "--profile"))}
+        fixed = {"--workers", *(() if verb == "audit" else ("--seed", "--profile"))}
         for _ in range(rng.randint(0, 2)):
             name = rng.choice([*options, "system", "more", "less"] if options else ["system"])
             if name == "system" and words:
@@ -234,8 +218,6 @@ def commands(seed: int, count: int) -> Iterator[list[str]]:
                 given.pop(rng.choice(sorted(options)), None)
             elif name not in fixed:
                 given[name] = rng.choice(JUNK)
-        if verb == "claims" and "--run" not in given:
-            given["--run"] = "nowhere"
         line = [*verb.split(), *words]
         line += [part for pair in given.items() for part in pair if part is not None]
         yield line

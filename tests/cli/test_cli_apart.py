@@ -62,7 +62,7 @@ def test_however_the_work_ends_the_command_ends(line: str, status: int, says: st
 def test_a_system_that_ends_its_process_is_named(lines: str, says: str, tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text(f"{lines}\n")
     code = "from faultpath.cli.main import main; main()"
-    asked = [sys.executable, "-c", code, "interface", "mine.py:create"]
+    asked = [sys.executable, "-c", code, "trace", "mine.py:create"]
     done = subprocess.run(asked, capture_output=True, text=True, timeout=60, cwd=tmp_path)
     assert done.returncode == 2
     (sentence,) = done.stderr.splitlines()
@@ -87,7 +87,7 @@ sys.stdout.write("unfinished")
 def test_what_a_system_prints_while_it_loads_is_escaped_line_by_line(tmp_path: Path) -> None:
     mine = tmp_path / "mine.py"
     mine.write_text(NOISY)
-    ended = faultpath("interface", f"{mine}:create")
+    ended = faultpath("trace", f"{mine}:create")
     assert ended.status == 0
     assert "[31mred" not in ended.out
     lines = ended.err.splitlines()

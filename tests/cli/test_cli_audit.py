@@ -12,7 +12,6 @@ from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
 
 from faultpath.door.listing import runs
 from faultpath.door.run import open_run
-from faultpath.interface import read_interface
 from faultpath.record import SHARED
 
 FILES = {
@@ -80,7 +79,7 @@ def _columns(file: str) -> list[list[str]]:
     return [table.column(name).to_pylist() for name in ("variant", "path", "scene")]
 
 
-@pytest.mark.parametrize("verb", ["interface", "trace", "check"])
+@pytest.mark.parametrize("verb", ["trace", "check"])
 def test_a_file_alone_is_a_system_for_every_verb(verb):
     ended = faultpath(verb, TOY.removesuffix(":create"))
     assert ended.status == 0, ended.err
@@ -143,7 +142,7 @@ def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):
     assert {name: (run / name).read_bytes() for name in before} == before
 
 
-@pytest.mark.parametrize("name", ["record.json", "provenance.json", "outcomes.parquet"])
+@pytest.mark.parametrize("name", ["record.json", "outcomes.parquet"])
 @pytest.mark.parametrize("damage", ["missing", "cut"])
 def test_a_damaged_run_is_not_reported(name, damage, run, monkeypatch):
     monkeypatch.chdir(ROOT)
@@ -268,7 +267,7 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     (before,) = (tmp_path / "runs").iterdir()
     outcomes = (before / "outcomes.parquet").read_bytes()
     again = audit(system=f"{system}:create").out
-    (run,) = runs([tmp_path / "runs"])
+    (run,) = runs(tmp_path / "runs")
     assert f"Kept {run.trials} of {run.trials} trials, from 20" in again
     assert f"Running: {run.trials} of {run.trials} trials" in again
     assert f"{run.trials} trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
@@ -321,13 +320,3 @@ def test_workers_change_nothing(toy_run, tmp_path, monkeypatch):
 def test_zero_workers_run_in_this_process(tmp_path, monkeypatch):
     monkeypatch.setattr("faultpath.work.processes.Processes", None)
     assert audit(workers=0, out=tmp_path / "run").status == 0
-
-
-def test_interfaces_are_printed_and_written(tmp_path):
-    ended = faultpath("interface", TOY, "--svg", "a.svg", "--yaml", "a.yaml", "--schema", "a.json")
-    assert (ended.status, ended.err) == (0, "")
-    assert read_interface(tmp_path / "a.yaml").name == "toy"
-    assert "<svg" in (tmp_path / "a.svg").read_text()
-    assert json.loads((tmp_path / "a.json").read_text())["title"] == "Interface"
-    for name in ("a.svg", "a.yaml", "a.json"):
-        assert f"Written: {name}" in ended.out

@@ -29,8 +29,6 @@ from faultpath.cli.app import build
 from faultpath.errors import UserError
 from faultpath.interface import interface_yaml, read_interface
 from faultpath.proposal.study import read_study
-from faultpath.selfcheck import PROFILES
-from faultpath.selfcheck.run import Profile, Task
 
 pytestmark = pytest.mark.fuzz
 CHUNKS, EACH = 4, 70
@@ -69,13 +67,6 @@ def create():
 NAMES = ("name", "end", "unit", "words", "title", "first", "second", "variant", "scene", "kind")
 
 
-class OneOfEach(Profile):
-    """One setting of each simulation, in place of 786 and more."""
-
-    def tasks(self) -> list[Task]:
-        return list({type(task): task for task in super().tasks()}.values())
-
-
 @pytest.fixture
 def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A working directory with things in it that are not what their names say."""
@@ -91,8 +82,6 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (place / "loop").symlink_to("loop")
     monkeypatch.chdir(place)
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
-    for name in PROFILES:
-        monkeypatch.setitem(PROFILES, name, OneOfEach((10,), 2, 2, 1, 1, 1, 1, 1, 1, 1))
     return place
 
 
@@ -120,7 +109,6 @@ def test_names_and_messages_of_a_system(draw: int, here: Path, fuzz_seed: int) -
     (here / "named.py").write_text(text)
     asked = ["--baseline", "calibrated", "--repair", given["variant"], "--fault", "gain:scale=0.6"]
     lines = (
-        ["interface", "named.py:create"],
         ["trace", "named.py:create"],
         ["audit", "named.py:create", *asked, "--seeds", "0,1", "--workers", "0", "--out", "r"],
     )
@@ -210,24 +198,9 @@ def test_run_folders(run: Path, here: Path, fuzz_seed: int) -> None:
     assert not found, "\n".join((f"seed {fuzz_seed}", *found))
 
 
-def test_libraries_of_scenes(here: Path, fuzz_seed: int) -> None:
-    from faultpath.quadrotor.scenes.library import frozen_file
-
-    rng = random.Random(fuzz_seed)
-    library = json.loads(frozen_file("selection").read_text())
-    library["scenes"] = library["scenes"][:2]
-    found: list[str] = []
-    for number, text in enumerate(documents(rng, library, 60)):
-        path = here / f"library{number}.json"
-        path.write_text(text, errors="surrogatepass")
-        if fault := wrong(["scenes", "list", path.name], here):
-            found.append(f"{fault} for {text:.500}")
-    assert not found, "\n".join((f"seed {fuzz_seed}", *found))
-
-
 @pytest.mark.parametrize(
     "line",
-    [["audit", "\udcff"], ["report", "x" * 5000], ["interface", "broken.py:create"]],
+    [["audit", "\udcff"], ["report", "x" * 5000], ["trace", "broken.py:create"]],
     ids=str,
 )
 def test_in_a_process_of_its_own(line: list[str], here: Path) -> None:

@@ -7,20 +7,20 @@ import typer
 from cli_runs import faultpath
 
 import faultpath as package
-from faultpath.cli.app import EXAMPLES, build
+from faultpath.cli.app import VERBS, build
 
 
 def test_every_verb_stands_in_a_group_with_an_example() -> None:
     command = typer.main.get_command(build())
-    assert set(EXAMPLES) == set(command.commands)
+    assert set(VERBS) == set(command.commands)
     shown = faultpath("--help").out
-    assert all(f"│ {verb} " in shown for verb in EXAMPLES)
+    assert all(f"│ {verb} " in shown for verb in VERBS)
     assert shown.index("Your system") < shown.index("│ check") < shown.index("Audits")
 
 
-@pytest.mark.parametrize("verb", EXAMPLES)
+@pytest.mark.parametrize("verb", VERBS)
 def test_an_example_can_be_typed(verb: str) -> None:
-    first, *line = shlex.split(EXAMPLES[verb])
+    first, *line = shlex.split(VERBS[verb].example)
     assert (first, line[0]) == ("faultpath", verb)
     command = typer.main.get_command(build(line))
     while line and line[0] in getattr(command, "commands", ()):
@@ -44,7 +44,7 @@ def create(
 """
 
 
-@pytest.mark.parametrize("verb", EXAMPLES)
+@pytest.mark.parametrize("verb", VERBS)
 def test_help_shows_every_text_as_it_is_written(verb: str, tmp_path, monkeypatch) -> None:
     """Once `my.py:factory: dki` showed a factory in place of its name."""
     monkeypatch.setenv("COLUMNS", "200")
@@ -57,7 +57,7 @@ def test_help_shows_every_text_as_it_is_written(verb: str, tmp_path, monkeypatch
     for line in lines:
         shown = faultpath(*line, "--help").out
         assert not [c for c in shown if ord(c) > 0x2600], shown
-        assert EXAMPLES[verb].replace(" ", "")[:60] in "".join(shown.split()) or len(line) > 1
+        assert VERBS[verb].example.replace(" ", "")[:60] in "".join(shown.split()) or len(line) > 1
     if system:
         assert "file.py:factory: or [bold]x[/bold], at [0, 1]; default a:star:b" in shown
         assert "Options of mine.py:create" in shown

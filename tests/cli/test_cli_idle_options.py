@@ -4,17 +4,13 @@ import pytest
 from cli_runs import audit, faultpath
 
 IDLE = {
-    "profile": (["claims", "--profile", "nonsense"], "--profile would do nothing", "--library"),
-    "device": (["claims", "--device", "cuda"], "--device would do nothing", "--library"),
-    "out": (["claims", "--out", "x"], "--out would do nothing", "--library"),
-    "workers": (["claims", "--workers", "2", "--json"], "--workers would do nothing", "--library"),
-    "limit": (["claims", "--time-limit", "9"], "--time-limit would do nothing", "--library"),
-    "two": (
-        ["claims", "--device", "cuda", "--profile", "nonsense"],
-        "--profile and --device would do nothing",
-        "--library",
+    "judged": (["reproduce", "--judge", "--profile", "x"], "--profile would do", "--judge"),
+    "judged pages": (
+        ["reproduce", "table-4", "--judge", "--workers", "2"],
+        "--pages and --workers would do nothing",
+        "--judge",
     ),
-    "with a run": (["claims", "--run", ".", "--profile", "quick"], "--profile would", "--library"),
+    "page of one run": (["report", ".", "--out", "a.html"], "--out takes", "two or more"),
     "listed models": (["train", "quadrotor", "--list", "--force"], "--force would", "--list"),
     "listed seeds": (["train", "quadrotor", "--list", "--seed", "1"], "--seed would", "--list"),
     "listed names": (["train", "quadrotor", "gru", "--list"], "--names would", "--list"),
@@ -43,14 +39,10 @@ def test_an_option_given_by_its_name_and_by_set():
 @pytest.mark.parametrize(
     ("arguments", "says"),
     [
-        (["scenes", "generate", "a.json", "--seed", "-1"], "--seed"),
-        (["scenes", "generate", "a.json", "--seed", str(2**63)], "9223372036854775807"),
-        (["scenes", "generate", "a.json", "--seed", "1", "--count", "9" * 5000], "more"),
-        (["scenes", "generate", "a.json", "--seed", "1", "--count", "10001"], "10000"),
         (["train", "quadrotor", "--seed", str(2**64)], "9223372036854775807"),
         (["reproduce", "x" * 5000], "too long"),
         (["reproduce", "\udcff"], "UTF-8"),
-        (["interface", "a\x1b[31mb.py:create"], "\\x1b[31m"),
+        (["trace", "a\x1b[31mb.py:create"], "\\x1b[31m"),
         (["report", "a\u2028b"], "\\u2028"),
     ],
     ids=lambda value: str(value)[:20],
@@ -63,9 +55,6 @@ def test_numbers_and_names_beyond_all_bounds(arguments, says, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "verb", [["reproduce", "table-4"], ["claims", "--library", "selection"]], ids=lambda v: v[0]
-)
-@pytest.mark.parametrize(
     ("limit", "workers", "says"),
     [
         ("0", 1, "the time limit is 0 s"),
@@ -73,9 +62,11 @@ def test_numbers_and_names_beyond_all_bounds(arguments, says, tmp_path):
         ("5", 0, "a time limit needs worker processes"),
     ],
 )
-def test_a_time_limit_that_cannot_be_kept(verb, limit, workers, says, tmp_path):
+def test_a_time_limit_that_cannot_be_kept(limit, workers, says, tmp_path):
     """Refused where the trials fly, and so it has got there; nothing is flown or written."""
-    sentence = faultpath(*verb, "--time-limit", limit, "--workers", workers).refused()
+    sentence = faultpath(
+        "reproduce", "table-4", "--time-limit", limit, "--workers", workers
+    ).refused()
     assert says in sentence
     assert list(tmp_path.iterdir()) == []
 

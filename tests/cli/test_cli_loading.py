@@ -16,9 +16,8 @@ MAP = ["--baseline", "calibrated", "--repair", "blind", "--fault", "gain", "--ag
 MAY_LOAD = {
     "help": (["--help"], set[str]()),
     "help of a verb": (["audit", "--help"], set[str]()),
-    "scenes": (["scenes", "list"], {"numpy"}),
     "models": (["train", "quadrotor", "--list"], set[str]()),
-    "no such run": (["report", "nowhere"], {"numpy"}),
+    "no such run": (["report", "nowhere"], {"jinja2", "numpy", "pyarrow", "scipy"}),
     "help of the quadrotor": (["audit", "quadrotor", "--help"], {"numpy"}),
     "no such system": (["audit", "quadcopter", *AUDIT], {"numpy"}),
     "no such variant": (["audit", TOY, *AUDIT, "--library", "carts"], {"numpy"}),
@@ -26,9 +25,7 @@ MAY_LOAD = {
     "nothing to check": (["check", TOY, "--variants", "a"], {"numpy", "pyarrow", "scipy"}),
     "nothing to trace": (["trace", TOY, "--variant", "a"], {"numpy", "pyarrow", "jinja2", "scipy"}),
     "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
-    "interface": (["interface", TOY], {"numpy", "pyarrow"}),
-    "quadrotor": (["interface", "quadrotor"], {"numpy", "pyarrow"}),
-    "claims": (["claims"], {"numpy", "pyarrow"}),
+    "claims": (["reproduce", "--judge"], {"numpy", "pyarrow"}),
 }
 
 CODE = """

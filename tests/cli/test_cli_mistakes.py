@@ -1,7 +1,5 @@
 """Every mistake ends in one sentence that says what there is, with status 2, and harms nothing."""
 
-import json
-import os
 from pathlib import Path
 
 import pytest
@@ -122,17 +120,10 @@ def test_a_mistake_about_the_quadrotor(options, says, tmp_path):
         (["fly"], ["'fly'", "`faultpath --help`"]),
         (["audit"], ["system", "`faultpath audit --help`"]),
         (["audit", TOY], ["--baseline"]),
-        (["scenes", "bake"], ["'bake'", "`faultpath scenes --help`"]),
         (["report"], ["folder"]),
-        (["report", "nowhere"], ["nowhere", "provenance.json"]),
-        (["interface", "nothing"], ["'nothing'", "quadrotor"]),
-        (["interface", TOY, "--svg", "no/such/place/x.svg"], ["no/such/place/x.svg"]),
-        (["scenes", "list", "nothing"], ["'nothing'", "held-out"]),
-        (["scenes", "generate", "a.json", "--seed", "1", "--count", "0"], ["0 scenes", "1"]),
-        (["scenes", "generate", "a.json", "--seed", "one"], ["--seed"]),
-        (["scenes", "generate", "held-out.json", "--seed", "1"], ["'held-out'", "another name"]),
-        (["scenes", "generate", ".json", "--seed", "1"], ["no name", "mine.json"]),
-        (["scenes", "generate", "/proc/none/a.json", "--seed", "1", "--count", "1"], ["a.json"]),
+        (["report", "nowhere"], ["nowhere", "holds runs"]),
+        (["trace", "nothing"], ["'nothing'", "quadrotor"]),
+        (["trace", TOY, "--svg", "no/such/place/x.svg"], ["no/such/place/x.svg"]),
     ],
     ids=" ".join,
 )
@@ -143,7 +134,7 @@ def test_a_mistake_about_the_command_itself(arguments, says, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("arguments", [[], ["scenes"]])
+@pytest.mark.parametrize("arguments", [[], ["train"]])
 def test_without_a_verb_there_is_help_and_no_traceback(arguments):
     ended = faultpath(*arguments)
     assert ended.status == 2
@@ -151,7 +142,7 @@ def test_without_a_verb_there_is_help_and_no_traceback(arguments):
     assert ended.err == ""
 
 
-@pytest.mark.parametrize("verb", [[], ["audit"], ["interface"], ["report"], ["scenes"]])
+@pytest.mark.parametrize("verb", [[], ["audit"], ["trace"], ["report"], ["train"]])
 def test_help_is_whole(verb):
     """Square brackets in a help text would be taken for markup and vanish."""
     ended = faultpath(*verb, "--help")
@@ -186,7 +177,7 @@ YAMLS = {
 def test_a_malformed_or_unsafe_interface_file(text, says, tmp_path):
     (tmp_path / "interface.yaml").write_text(text)
     system = f"{SLOW_TOY}:from_yaml"
-    sentence = faultpath("interface", system, "--set", "interface=interface.yaml").refused()
+    sentence = faultpath("trace", system, "--set", "interface=interface.yaml").refused()
     assert "interface.yaml" in sentence
     assert says in sentence
     assert not (tmp_path / "harm").exists()
@@ -194,49 +185,4 @@ def test_a_malformed_or_unsafe_interface_file(text, says, tmp_path):
 
 def test_a_missing_interface_file():
     system = f"{SLOW_TOY}:from_yaml"
-    assert "none.yaml" in faultpath("interface", system, "--set", "interface=none.yaml").refused()
-
-
-def _library(path: Path) -> dict[str, object]:
-    from faultpath.quadrotor.scenes.library import write_library
-
-    write_library(path, seed=7, count=1, name="mine")
-    return json.loads(path.read_text())
-
-
-@pytest.mark.parametrize("damage", ["cut", "binary", "format", "edited", "field", "text"])
-def test_a_damaged_library_file(damage, tmp_path):
-    path = tmp_path / "mine.json"
-    content = _library(path)
-    text = path.read_text()
-    scene = content["scenes"][0]
-    if damage == "cut":
-        path.write_text(text[: len(text) // 2])
-    elif damage == "binary":
-        path.write_bytes(os.urandom(400))
-    elif damage == "text":
-        path.write_text("[1, 2, 3]")
-    else:
-        change = {
-            "format": lambda: content.update(format="faultpath-scenes/9"),
-            "edited": lambda: scene.update(start_yaw_rad=1.25),
-            "field": lambda: scene.pop("goal_m"),
-        }
-        change[damage]()
-        path.write_text(json.dumps(content))
-    before = path.read_bytes()
-    for sentence in (
-        audit(
-            system="quadrotor",
-            baseline="zero-wind",
-            repair="observer",
-            fault="calibration=0.1",
-            library="mine.json",
-            scenes=1,
-        ).refused(),
-        faultpath("scenes", "list", "mine.json").refused(),
-    ):
-        assert "mine.json" in sentence
-        assert "scenes generate" in sentence
-    assert path.read_bytes() == before
-    assert [item.name for item in tmp_path.iterdir()] == ["mine.json"]
+    assert "none.yaml" in faultpath("trace", system, "--set", "interface=none.yaml").refused()

@@ -214,7 +214,7 @@ def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
         """
     system, _ = _system(tmp_path, dedent(code))
     line = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
-    asked = [*line, "interface", system]
+    asked = [*line, "trace", system]
     done = subprocess.run(asked, capture_output=True, text=True, timeout=60)
     assert done.returncode == 1
     assert "Traceback" in done.stderr
@@ -224,13 +224,13 @@ def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
 def test_a_wrong_argument_names_the_line_and_leaves_open_whose_fault_it_is(tmp_path):
     code = "from faultpath.interface import read_interface\nread_interface(7)  # here"
     system, place = _system(tmp_path, code)
-    sentence = faultpath("interface", system).refused()
+    sentence = faultpath("trace", system).refused()
     _check(sentence, place, "whether the fault is faultpath's")
 
 
 @pytest.mark.parametrize("before", [True, False])
 def test_traceback_goes_before_and_after_the_verb(before):
-    asked = ["interface", "quadcopter"]
+    asked = ["trace", "quadcopter"]
     told = faultpath("--traceback", *asked) if before else faultpath(*asked, "--traceback")
     assert told.status == 2
     assert re.search(r"^Traceback.*\nfaultpath: there is no system", told.err, re.DOTALL)

@@ -12,9 +12,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.app import build
 from faultpath.cli.options import path
-from faultpath.interface import read_interface
-from faultpath.selfcheck.model import Report
-from faultpath.store.outputs import DRAWING, NUMBERS, PAGE
+from faultpath.store.outputs import DRAWING, PAGE
 
 
 @pytest.fixture(autouse=True)
@@ -63,31 +61,24 @@ THINGS = {"a device": _device, "a pipe": os.mkfifo, "a folder": Path.mkdir}
 
 
 @pytest.mark.parametrize("what", THINGS)
-@pytest.mark.parametrize("option", ["--svg", "--yaml", "--schema"])
-def test_a_drawing_replaces_nothing_but_a_file(what: str, option: str, tmp_path: Path):
+def test_a_drawing_replaces_nothing_but_a_file(what: str, tmp_path: Path):
     place = tmp_path / "place"
     THINGS[what](place)
     before = place.lstat().st_mode
-    assert f"it is {what}" in faultpath("interface", TOY, option, place).refused()
+    assert f"it is {what}" in faultpath("trace", TOY, "--svg", place).refused()
     assert place.lstat().st_mode == before
     assert os.listdir(tmp_path) == ["place"]
 
 
 REFERENCE = ROOT / "docs" / "reference"
 OUTPUTS = {
-    "interface --svg": ["interface", TOY, "--svg"],
-    "interface --yaml": ["interface", TOY, "--yaml"],
-    "interface --schema": ["interface", TOY, "--schema"],
-    "trace --svg": ["trace", TOY, "--steps", 1, "--library", "carts", "--svg"],
-    "compare --out": ["compare", REFERENCE / "toy", REFERENCE / "dock", "--out"],
-    "selfcheck statistics --out": ["selfcheck", "statistics", "--profile", "quick", "--out"],
-    "selfcheck map --out": ["selfcheck", "map", "--profile", "quick", "--out"],
-    "scenes generate": ["scenes", "generate", "--seed", 1, "--count", 1],
+    "trace --svg": ["trace", TOY, "--library", "carts", "--svg"],
+    "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],
     "plan --out": ["plan", TOY, "--baseline=calibrated", "--repair=blind", "--out"],
     "replay --out": ["replay", REFERENCE / "toy", "--out"],
 }
 """Every option that takes the name of a file to write, and a command that ends with it."""
-ENDINGS = {"svg": "svg", "yaml": "yaml", "schema": "json", "compare": "html", "selfcheck": "json"}
+ENDINGS = {"svg": "svg", "report": "html"}
 
 
 @pytest.mark.parametrize("option", OUTPUTS)
@@ -104,50 +95,27 @@ def test_a_file_that_faultpath_did_not_write_is_not_replaced(
     assert os.listdir(tmp_path) == [place.name]
 
 
-@pytest.mark.parametrize("option", ["interface --svg", "interface --yaml", "interface --schema"])
-def test_what_faultpath_wrote_is_replaced(option: str, tmp_path: Path):
-    place = tmp_path / f"mine.{ENDINGS[option.split('--')[1]]}"
+def test_what_faultpath_wrote_is_replaced(tmp_path: Path):
+    place = tmp_path / "mine.svg"
     place.touch()
     for _ in range(2):
-        ended = faultpath(*OUTPUTS[option], place)
+        ended = faultpath(*OUTPUTS["trace --svg"], place)
         assert (ended.status, ended.err) == (0, "")
         assert place.stat().st_size > 100
 
 
 def test_what_faultpath_writes_is_known_again():
-    assert NUMBERS.begins(Report(profile="quick", seconds=1.0, sections=()).text().encode())
     assert PAGE.begins((REFERENCE / "toy" / "report.html").read_bytes()[:4096])
     assert DRAWING.begins((ROOT / "docs" / "images" / "dock-interface.svg").read_bytes())
 
 
-def test_an_interface_with_comments_is_not_replaced(tmp_path: Path):
-    place = tmp_path / "mine.yaml"
-    place.write_text("name: toy  # of mine\n")
-    assert "without comments" in faultpath("interface", TOY, "--yaml", place).refused()
-
-
-@pytest.mark.parametrize("what", THINGS)
-def test_a_library_replaces_nothing(what: str, tmp_path: Path):
-    place = tmp_path / "mine.json"
-    THINGS[what](place)
-    before = place.lstat().st_mode
-    faultpath("scenes", "generate", place, "--seed", 1, "--count", 1).refused()
-    assert place.lstat().st_mode == before
-
-
 def test_a_drawing_goes_where_a_link_leads(tmp_path: Path):
     (tmp_path / "deep").mkdir()
-    (tmp_path / "link").symlink_to("deep/interface.yaml")
-    ended = faultpath("interface", TOY, "--yaml", "link")
+    (tmp_path / "link").symlink_to("deep/interface.svg")
+    ended = faultpath(*OUTPUTS["trace --svg"], "link")
     assert (ended.status, ended.err) == (0, "")
     assert (tmp_path / "link").is_symlink()
-    assert read_interface(tmp_path / "deep" / "interface.yaml").name == "toy"
-
-
-def test_one_file_is_not_written_twice(tmp_path: Path):
-    sentence = faultpath("interface", TOY, "--svg", "a", "--yaml", "./a").refused()
-    assert "--svg" in sentence
-    assert list(tmp_path.iterdir()) == []
+    assert "<svg" in (tmp_path / "deep" / "interface.svg").read_text()
 
 
 AUDIT = "--baseline calibrated --repair blind --fault gain:scale=0.6 --library carts --scenes 2"

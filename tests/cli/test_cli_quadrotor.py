@@ -3,32 +3,17 @@
 import json
 
 from cli_runs import audit, faultpath
-from rich.console import Console
 
 from faultpath.door.run import open_run
-from faultpath.interface import Interface
 from faultpath.quadrotor import native
-from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.scenes.library import write_library
-from faultpath.report.terminal import interface_table
 from faultpath.trials import SystemSpec, load_system
 
 
 def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
-    made = faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2")
-    assert made.status == 0
-    assert made.err.startswith("Making scenes")
-    listed = faultpath("scenes", "list", "mine.json")
-    head, *scenes, counts = listed.out.splitlines()
-    assert [line.split()[0] for line in (head, *scenes)] == ["Scene", "mine/000", "mine/001"]
-    assert counts.startswith("2 scenes: ")
-    assert (
-        "exists already"
-        in faultpath("scenes", "generate", "mine.json", "--seed", "5", "--count", "2").refused()
-    )
-
+    write_library("mine.json", seed=5, count=2, name="mine")
     ended = audit(
         system="quadrotor",
         baseline="zero-wind",
@@ -72,17 +57,3 @@ def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
     system = load_system(SystemSpec(name="quadrotor"))
     library = system.library("mine.json")
     assert load_system(SystemSpec(name="quadrotor")).library(library.name) == library
-
-
-def test_the_interface_that_is_printed_without_torch_is_that_of_the_system():
-    built = load_system(SystemSpec(name="quadrotor"))
-    whole, quick = (_drawn(each) for each in (built.interface, quadrotor_interface()))
-    assert quick == whole
-    assert "predictor.dynamics" in quick
-
-
-def _drawn(interface: Interface) -> str:
-    console = Console(width=100)
-    with console.capture() as captured:
-        console.print(interface_table(interface))
-    return captured.get()

@@ -100,8 +100,8 @@ def test_a_file_that_was_changed_since_is_named(
 
 
 def test_a_reproduction_is_not_reported_as_an_audit(done: ReproductionRun) -> None:
-    with pytest.raises(UserError, match="holds a reproduction, whose pages stand in it"):
-        report.command(done.folder)
+    with pytest.raises(UserError, match="pages of the reproduction"):
+        report.command([done.folder])
 
 
 def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,4 @@
-"""`reproduce` and `claims`: mistakes end in a sentence, and the shipped run answers at once."""
+"""`reproduce`: mistakes end in a sentence, and the shipped run answers at once."""
 
 import json
 from pathlib import Path
@@ -16,22 +16,26 @@ MISTAKES = {
         ["unknown device 'tpu'", "cpu, cuda"],
     ),
     "workers": (["reproduce", "table-4", "--workers", "-1"], ["-1", "0 (this process) or more"]),
-    "no run": (["claims", "--run", "nowhere"], ["nowhere holds no finished reproduction"]),
-    "no library": (["claims", "--library", "nowhere.json"], ["nowhere.json"]),
+    "no run": (
+        ["reproduce", "--judge", "--out", "nowhere"],
+        ["nowhere holds no finished reproduction"],
+    ),
     "no library to reproduce on": (
         ["reproduce", "table-4", "--library", "nowhere.json"],
-        ["nowhere.json", "faultpath scenes generate"],
+        ["nowhere.json", "write_library"],
     ),
     "a library that no page flies on": (
         ["reproduce", "figure-3", "--library", "training"],
         ["figure-3 is flown on the selection library", "'training' would change nothing"],
     ),
-    "run and library": (["claims", "--run", "a", "--library", "b.json"], ["give one of them"]),
     "run and platform": (
-        ["claims", "--run", "a", "--platform", "first"],
-        ["--platform would do nothing with --run"],
+        ["reproduce", "--judge", "--out", "a", "--platform", "first"],
+        ["--platform would do nothing"],
     ),
-    "no such platform": (["claims", "--platform", "moon"], ["no platform 'moon'", "first"]),
+    "no such platform": (
+        ["reproduce", "--judge", "--platform", "moon"],
+        ["no platform 'moon'", "first"],
+    ),
 }
 
 
@@ -48,18 +52,8 @@ def test_a_mistake_in_a_library_leaves_no_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    faultpath("claims", "--library", "nowhere.json")
+    faultpath("reproduce", "--library", "nowhere.json")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_making_scenes_shows_how_many_there_are(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    made = faultpath("scenes", "generate", "mine.json", "--seed", "7", "--count", "2")
-    assert (made.status, made.out) == (0, "Written: mine.json\n"), made.err
-    assert "2 of 2" in made.err
-    assert "so far" in made.err
 
 
 def test_a_reproduction_is_json(tmp_path: Path) -> None:
@@ -73,7 +67,7 @@ def test_a_reproduction_is_json(tmp_path: Path) -> None:
 
 
 def test_the_shipped_claims_are_json() -> None:
-    done = faultpath("claims", "--json", "--platform", "first")
+    done = faultpath("reproduce", "--judge", "--json", "--platform", "first")
     assert done.status == 0, done.err
     claims = json.loads(done.out)
     assert [claim["id"] for claim in claims] == [claim.id for claim in published_claims()]

@@ -36,7 +36,7 @@ def _elsewhere(tmp_path, monkeypatch):
         (("audit", "quadrotor", "--plnner", "cem"), "--planner"),
         (("check", "quadrotor", "--seeed", "1"), "--seed"),
         (("audit", "mine.py:create", "--geer", "low"), "--gear"),
-        (("runs", "--jsn"), "--json"),
+        (("report", "--jsn"), "--json"),
         (("audit", "--study", "x.yaml", "--worker", "1"), "--workers"),
         (("train", "quadrotor", "--plattform", "x"), "--platform"),
     ],
@@ -47,7 +47,7 @@ def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):
     assert "Possible" not in said
 
 
-@pytest.mark.parametrize("verb", ["audit", "interface", "probe"])
+@pytest.mark.parametrize("verb", ["audit", "trace", "probe"])
 def test_help_shows_the_options_of_the_system_that_is_named(verb):
     shown = faultpath(verb, "quadrotor", "--help").out
     assert "Options of quadrotor" in shown
@@ -75,9 +75,11 @@ def test_a_flag_is_what_set_would_be(tmp_path):
 
 
 def test_a_flag_may_stand_before_the_system():
-    ended = faultpath("interface", "--gear", "high", "mine.py:create")
-    assert (ended.status, ended.err) == (0, "")
-    assert "'third'" in faultpath("interface", "--gear", "third", "mine.py:create").refused()
+    assert (
+        "'nowhere'"
+        in faultpath("trace", "--gear=high", "mine.py:create", "--scene=nowhere").refused()
+    )
+    assert "'third'" in faultpath("trace", "--gear", "third", "mine.py:create").refused()
 
 
 def test_a_flag_of_the_verb_keeps_its_meaning():

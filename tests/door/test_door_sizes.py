@@ -87,7 +87,7 @@ def test_runs_share_trials_unless_their_folder_is_named(tmp_path, monkeypatch):
     assert first.provenance.blocks_kept == 0
     assert second.provenance.blocks_kept == 2, "both arms under correct inputs"
     assert len(list(Path("runs/.shared").rglob("*.parquet"))) > 2
-    assert {run.folder for run in runs([Path("runs")])} == {str(first.folder), str(second.folder)}
+    assert {run.folder for run in runs(Path("runs"))} == {str(first.folder), str(second.folder)}
     plane = {"against": ("controller", "observer"), "up_to": 0.2, "points": 25, "spread": 0.1}
     drawn = faultpath.reversal_map(TOY, fault="gain", **plane, **asked)
     assert drawn.provenance.blocks_kept == 6, "correct inputs, and every path of the second audit"

@@ -9,7 +9,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.door.mapped import read_map
+from faultpath.door.run import read_map
 from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.svg import text_width
 

@@ -4,36 +4,72 @@ Nothing heavy is imported here: torch and the statistics load when a verb needs 
 `--help` answers at once.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
 from inspect import getdoc
 from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import (
-    audit,
-    check,
-    claims,
-    compare,
-    init,
-    interface,
-    log,
-    map,
-    plan,
-    probe,
-    replay,
-    report,
-    reproduce,
-    runs,
-    scenes,
-    selfcheck,
-    study,
-    trace,
-    train,
-)
 from faultpath.cli.system_flags import with_system_flags
 from faultpath.cli.verbs import Verbs
 from faultpath.version import __version__
+
+_TOY = "examples/toy.py:create"
+_ARMS = "--baseline calibrated --repair blind"
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A verb, as the table below names it."""
+
+    name: str
+    example: str
+    """How it is called."""
+    home: str
+    """Module and attribute."""
+    of_a_system: bool = False
+    """Whether it takes the flags of the system that its line names."""
+
+
+def _entry(name: str, example: str, of_a_system: bool = False, attribute: str = "command") -> Entry:
+    home = f"faultpath.cli.{name}:{attribute}"
+    return Entry(name, f"faultpath {name} {example}".rstrip(), home, of_a_system)
+
+
+_PANELS = {
+    "Your system": (
+        _entry("init", "mine --with numpy"),
+        _entry("trace", _TOY, of_a_system=True),
+        _entry("check", _TOY, of_a_system=True),
+    ),
+    "Audits": (
+        _entry("plan", f"{_TOY} {_ARMS} --fault gain:scale=0.6 --library carts", of_a_system=True),
+        _entry("audit", f"{_TOY} {_ARMS} --fault gain:scale=0.6 --library carts", of_a_system=True),
+        _entry(
+            "map",
+            f"{_TOY} {_ARMS} --fault gain:scale --against controller,observer --up-to 0.4 "
+            "--library carts",
+            of_a_system=True,
+        ),
+        _entry(
+            "probe",
+            "quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
+            of_a_system=True,
+        ),
+        _entry("log", "flight.ulg --columns px4 --mass 1.5"),
+    ),
+    "Finished runs": (
+        _entry("report", "runs/one runs/two --out comparison.html"),
+        _entry("replay", "runs/mine --scene cart/003 --signals"),
+    ),
+    "The paper and its quadrotor": (
+        _entry("reproduce", "table-4"),
+        _entry("train", "quadrotor gru gru+dcc --seed 0", attribute="app"),
+    ),
+}
+VERBS = {entry.name: entry for entries in _PANELS.values() for entry in entries}
 
 
 def build(arguments: Sequence[str] = ()) -> typer.Typer:
@@ -49,79 +85,32 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     )
     app.callback()(everywhere)
     verb, *rest = arguments or ("",)
-    for panel, verbs in _PANELS.items():
-        for name in verbs:
-            command = _COMMANDS[name]
-            if name == "audit" and any(part.partition("=")[0] == "--study" for part in rest):
-                command = study.command  # the file says all that the verb takes otherwise
+    for panel, entries in _PANELS.items():
+        for entry in entries:
+            command = _command(entry, rest if entry.name == verb else None)
             shown: dict[str, Any] = {
                 "rich_help_panel": panel,
-                "epilog": f"Example: {EXAMPLES[name]}",
+                "epilog": f"Example: {entry.example}",
             }
             if isinstance(command, typer.Typer):
-                app.add_typer(command, name=name, **shown)
+                app.add_typer(command, name=entry.name, **shown)
                 continue
             # Typer would keep the line breaks of a docstring.
             said = " ".join((getdoc(command) or "").split())
-            if name == verb and name in _OF_SYSTEMS and command is not study.command:
-                command = with_system_flags(name, command, rest)
-            app.command(name, help=said, **shown)(command)
+            app.command(entry.name, help=said, **shown)(command)
     return app
 
 
-_OF_SYSTEMS = ("audit", "check", "interface", "map", "plan", "probe", "trace")
-_COMMANDS: Mapping[str, Callable[..., int | None] | typer.Typer] = {
-    "audit": audit.command,
-    "check": check.command,
-    "claims": claims.command,
-    "compare": compare.command,
-    "init": init.command,
-    "interface": interface.command,
-    "log": log.command,
-    "map": map.command,
-    "plan": plan.command,
-    "probe": probe.command,
-    "replay": replay.command,
-    "report": report.command,
-    "reproduce": reproduce.command,
-    "runs": runs.command,
-    "scenes": scenes.app,
-    "selfcheck": selfcheck.app,
-    "trace": trace.command,
-    "train": train.app,
-}
-_PANELS = {
-    "Your system": ("init", "interface", "trace", "check"),
-    "Audits": ("plan", "audit", "map", "probe", "log"),
-    "Finished runs": ("runs", "compare", "report", "replay"),
-    "The paper and its quadrotor": ("claims", "reproduce", "scenes", "train"),
-    "faultpath itself": ("selfcheck",),
-}
+def _command(entry: Entry, rest: Sequence[str] | None) -> Callable[..., int | None] | typer.Typer:
+    module, attribute = entry.home.split(":")
+    if entry.name == "audit" and any(part.partition("=")[0] == "--study" for part in rest or ()):
+        from faultpath.cli import study
 
-EXAMPLES = {
-    "audit": "faultpath audit examples/toy.py:create --baseline calibrated --repair blind "
-    "--fault gain:scale=0.6 --library carts",
-    "check": "faultpath check examples/toy.py:create",
-    "claims": "faultpath claims",
-    "compare": "faultpath compare runs/one runs/two --out comparison.html",
-    "init": "faultpath init mine --with numpy",
-    "interface": "faultpath interface examples/toy.py:create",
-    "log": "faultpath log flight.ulg --columns px4 --mass 1.5",
-    "map": "faultpath map examples/toy.py:create --baseline calibrated --repair blind "
-    "--fault gain:scale --against controller,observer --up-to 0.4 --library carts",
-    "plan": "faultpath plan examples/toy.py:create --baseline calibrated --repair blind "
-    "--fault gain:scale=0.6 --library carts",
-    "probe": "faultpath probe quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
-    "replay": "faultpath replay runs/mine --scene cart/003 --signals",
-    "report": "faultpath report runs/mine",
-    "reproduce": "faultpath reproduce table-4",
-    "runs": "faultpath runs",
-    "scenes": "faultpath scenes generate mine.json --seed 7",
-    "selfcheck": "faultpath selfcheck statistics --profile quick",
-    "trace": "faultpath trace examples/toy.py:create",
-    "train": "faultpath train quadrotor gru gru+dcc --seed 0",
-}
-"""One line a verb that shows how it is called."""
+        return study.command  # the file says all that the verb takes otherwise
+    found = getattr(import_module(module), attribute)
+    if rest is not None and entry.of_a_system:
+        return with_system_flags(entry.name, found, rest)
+    return found
 
 
 def _tell(asked: bool) -> None:

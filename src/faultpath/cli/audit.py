@@ -25,7 +25,6 @@ from faultpath.text import one_line
 if TYPE_CHECKING:
     from faultpath.door.display import SafeConsole
     from faultpath.door.run import Run
-    from faultpath.report.comparison.runs import Compared
 
 Json = Annotated[
     bool,
@@ -198,26 +197,9 @@ def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -
 
 
 def tell_json(runs: "Sequence[Run]") -> None:
-    """Print the folder and the record of each run, of sizes with what stands over all of them."""
-    from faultpath.door.comparing import compare
+    """Print folder and record of each run, of several sizes with what stands over all of them."""
+    from faultpath.door.comparing import compare, folder_and_record
 
-    told = [folder_and_record(run.folder) for run in runs]
-    for found, size in zip(told, compare(runs).runs if len(runs) > 1 else (), strict=False):
-        found |= over_sizes(size)
+    several = len(runs) > 1
+    told = compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]
     typer.echo(json.dumps(told, indent=1))
-
-
-def over_sizes(run: "Compared") -> dict[str, object]:
-    """Return what is decided of a size over all of them together; empty for other runs."""
-    if run.family is None:
-        return {}
-    found = {path: {"sign": sign, "adjusted_p_value": p} for path, (sign, p) in run.family.items()}
-    return {"over_all_sizes": found}
-
-
-def folder_and_record(folder: Path) -> dict[str, object]:
-    """Return what `--json` tells of an audit, for `json.dumps`."""
-    from faultpath.door.saved import RECORD
-    from faultpath.store.sealed import read_regular
-
-    return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path
+from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path, refuse_with
 
 if TYPE_CHECKING:
     from faultpath.door.reproduction import ReproductionRun
+    from faultpath.record import Ledger
 
 
 def command(
@@ -18,21 +19,27 @@ def command(
         list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `text-wind`, …; default all.")
     ] = None,
     profile: Annotated[
-        str, typer.Option(help="quick (few scenes, one seed) or paper (its size).")
-    ] = "quick",
+        str | None, typer.Option(help="quick (few scenes, one seed; default) or paper (its size).")
+    ] = None,
+    judge: Annotated[
+        bool,
+        typer.Option(
+            "--judge",
+            help="Run nothing: judge the claims by the run that ships, or by that in --out.",
+        ),
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>-<code>.")
     ] = None,
     library: Annotated[
-        str | None,
-        typer.Option(help="Library or file to fly in place of the held-out library."),
+        str | None, typer.Option(help="Library or file in place of the held-out library.")
     ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
     platform: Annotated[
-        str | None, typer.Option(help="Frozen platform to fly on; default the quadrotor's.")
+        str | None, typer.Option(help="Frozen platform; default the quadrotor's.")
     ] = None,
     executor: Executor = "local",
     time_limit: TimeLimit = None,
@@ -40,13 +47,26 @@ def command(
         bool, typer.Option("--json", help="Print folder and record as JSON; words go to stderr.")
     ] = False,
 ) -> int:
-    """Fly every study of the paper, or some of its pages, and compare the results with it."""
+    """Run every study of the paper, or some of its pages, and compare the results with it."""
+    if judge:
+        refuse_with(
+            "--judge",
+            pages=pages or None,
+            profile=profile,
+            library=library,
+            workers=workers,
+            device=device,
+            time_limit=time_limit,
+            **({} if out is None else {"platform": platform}),
+        )
+        return _judge(out, platform, as_json)
+
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.reproduction import reproduce
 
     run = reproduce(
         pages or (),
-        profile=profile,
+        profile=profile or "quick",
         library=library,
         folder=out,
         workers=workers,
@@ -62,6 +82,32 @@ def command(
     else:
         tell(run, whole=not pages)
     return FAILED_TRIALS if run.record.failed_trials else 0
+
+
+def _judge(folder: Path | None, platform: str | None, as_json: bool) -> int:
+    """Show the claims; those of a run that did not ship are judged by the code that is here."""
+    if folder is None:
+        from faultpath.studies.shipped import shipped_ledger
+
+        answers, profile = shipped_ledger(platform), "paper"
+    else:
+        answers, profile = _judged(folder)
+    if as_json:
+        typer.echo(json.dumps([each.model_dump(mode="json") for each in answers.claims], indent=2))
+        return 0
+    from faultpath.door.display import SafeConsole
+    from faultpath.report.reproduction.terminal import ledger_view
+
+    SafeConsole().print(ledger_view(answers, profile))
+    return 0
+
+
+def _judged(folder: Path) -> "tuple[Ledger, str]":
+    from faultpath.studies.claims import again
+    from faultpath.studies.run import read_results
+
+    results, found = read_results(folder)
+    return again(results, found.ledger), found.profile
 
 
 def tell(run: "ReproductionRun", whole: bool) -> None:

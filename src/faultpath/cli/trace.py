@@ -1,4 +1,4 @@
-"""`faultpath trace`: who read what, when, over a few steps."""
+"""`faultpath trace`: who reads what, as declared and over a few steps."""
 
 from pathlib import Path
 from typing import Annotated
@@ -23,18 +23,19 @@ def command(
         str | None, typer.Option(help="A fault, as in `audit`, to see whom it reaches.")
     ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
     svg: Annotated[
         Path | None, typer.Option(parser=path, help="Draw what ran into this SVG file.")
     ] = None,
 ) -> int:
-    """Print who read what, when, and draw the interface with what really ran. Exits with 1 where
-    that differs from what is declared."""
+    """Print the information interface of a system and who read what, when; draw it with what
+    really ran. Exits with 1 where that differs from what is declared."""
     from faultpath.door.display import SafeConsole
     from faultpath.door.reviewing import traced
     from faultpath.door.systems import choose
     from faultpath.patience import patience
     from faultpath.report.interface_trace import draw_trace, trace_table
+    from faultpath.report.terminal import interface_table
     from faultpath.store.outputs import DRAWING, check_output, write_output
     from faultpath.tables.terminal import STYLES, Parted
 
@@ -47,6 +48,7 @@ def command(
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
     else:
+        console.print(interface_table(chosen.system.interface), "")
         table = trace_table(trace)
         console.print(Parted(table))
         slopes = trace.gradient.words() if trace.gradient else ()

@@ -1,12 +1,15 @@
 """`faultpath.compare`: several finished audits side by side."""
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from faultpath.door.saved import RECORD
 from faultpath.errors import UserError
+from faultpath.store.sealed import read_regular
 
 if TYPE_CHECKING:
     from faultpath.door.run import Run
@@ -38,6 +41,17 @@ class Comparison:
         write_output(Path(path), page(self.runs), PAGE)
         return Path(path)
 
+    def as_json(self) -> dict[str, object]:
+        """Return headline, sentences, what differs, and each record, for `json.dumps`."""
+        from faultpath.report.comparison import facts, words
+
+        return {
+            "headline": self.headline,
+            "sentences": words.sentences(self.runs),
+            "differs": {fact.title: fact.values for fact in facts.differing(self.runs)},
+            "runs": [_folder_and_record(each) for each in self.runs],
+        }
+
     def __repr__(self) -> str:
         """Return the headline."""
         return f"<Comparison: {self.headline}>"
@@ -46,6 +60,21 @@ class Comparison:
         from faultpath.report.comparison.page import markdown
 
         return markdown(self.runs)
+
+
+def _folder_and_record(run: "Compared") -> dict[str, object]:
+    """Return what `--json` prints of an audit, of sizes with what stands over all of them."""
+    found = folder_and_record(Path(run.folder))
+    if run.family is not None:
+        found["over_all_sizes"] = {
+            path: {"sign": sign, "adjusted_p_value": p} for path, (sign, p) in run.family.items()
+        }
+    return found
+
+
+def folder_and_record(folder: Path) -> dict[str, object]:
+    """Return what `--json` prints of an audit, for `json.dumps`."""
+    return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}
 
 
 def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:

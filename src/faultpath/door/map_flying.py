@@ -6,6 +6,7 @@ from pathlib import Path
 
 from faultpath.door.carrying_out import tell_failures
 from faultpath.door.display import Display, Now, Show
+from faultpath.door.run import MAP_MADE_FROM
 from faultpath.door.saved import MAP
 from faultpath.errors import Stopped
 from faultpath.execution import (
@@ -21,12 +22,9 @@ from faultpath.plane.grow import next_points
 from faultpath.plane.lattice import COARSE, Point, lattice
 from faultpath.plane.study import MapPlan
 from faultpath.store import write_text
-from faultpath.store.folder import OUTCOMES
 from faultpath.store.sealed import seal
 from faultpath.work import Executor
 
-MADE_FROM = (MAP, OUTCOMES)
-"""The files of a map's folder that its pages are made from, and checked against."""
 _BISECTING = 18
 """Points that are typically added to bisect the paths of the fault."""
 _KEPT = "Kept "
@@ -52,7 +50,7 @@ def fly_map(
     tell_failures(told, result, folder)
     record = conclude(plan, points, result.outcomes, result.findings)
     write_text(folder / MAP, record.model_dump_json(indent=1) + "\n", folder)
-    files = seal(folder, MADE_FROM)
+    files = seal(folder, MAP_MADE_FROM)
     provenance = run_provenance(result, stopwatch, told.command, hands, backend, files)
     write_text(folder / "provenance.json", provenance.model_dump_json(indent=2) + "\n", folder)
 

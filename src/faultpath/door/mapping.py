@@ -20,7 +20,7 @@ from faultpath.plane.study import plan_map
 from faultpath.trials import System, library_of
 
 if TYPE_CHECKING:
-    from faultpath.door.mapped import MapRun
+    from faultpath.door.run import MapRun
 
 
 def reversal_map(
@@ -114,7 +114,7 @@ def reversal_map(
 
     # What flies and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.map_flying import fly_map
-    from faultpath.door.mapped import read_map
+    from faultpath.door.run import read_map
 
     with hands(built, chosen.workers, chosen.executor) as workforce:
         between = between_runs(share, folder, executor)

@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar, NoReturn
 
 from faultpath.door.saved import read_provenance
 from faultpath.errors import UserError
-from faultpath.record import Reproduction
+from faultpath.record import Reproduction, RunProvenance
+from faultpath.report.reproduction.words import headline
 from faultpath.store.sealed import AGAIN, unseal
 from faultpath.studies.run import RESULTS, read_results
 from faultpath.tables import markdown
@@ -18,9 +20,20 @@ class ReproductionRun:
     A notebook shows the tables, with the paper's numbers beside our own.
     """
 
+    kind: ClassVar[str] = "reproduction"
     folder: Path
     record: Reproduction
     """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
+    provenance: RunProvenance
+
+    @property
+    def headline(self) -> str:
+        """How many claims are confirmed, in one sentence."""
+        return f"{headline(self.record.ledger, self.record.profile)}."
+
+    def report(self) -> NoReturn:
+        """Raise `UserError`: the pages of a reproduction are written when it is carried out."""
+        raise UserError(f"the pages of the reproduction in {self.folder} stand there already.")
 
     def __repr__(self) -> str:
         """Return folder and size."""
@@ -36,7 +49,8 @@ def read_reproduction(folder: Path) -> ReproductionRun:
     `UserError` for a file that is missing, damaged or changed, and for files that do not belong
     together.
     """
-    unseal(folder, read_provenance(folder).files, RESULTS)
+    provenance = read_provenance(folder)
+    unseal(folder, provenance.files, RESULTS)
     results, found = read_results(folder)
     rows = results.outcomes.rows
     if (found.trials, found.failed_trials) != (len(rows), sum(row.outcome.failed for row in rows)):
@@ -44,4 +58,4 @@ def read_reproduction(folder: Path) -> ReproductionRun:
             f"the files of {folder} do not belong together (reproduction.json counts other trials "
             f"than outcomes.parquet holds): {AGAIN}."
         )
-    return ReproductionRun(folder, found)
+    return ReproductionRun(folder, found, provenance)

@@ -60,7 +60,7 @@ def carry_out(
     provenance = run_provenance(result, stopwatch, told.command, hands, backend, files)
     write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
     _write_pages(place, plan, found, provenance, flown)
-    return ReproductionRun(place, found)
+    return ReproductionRun(place, found, provenance)
 
 
 def _fly(

@@ -21,7 +21,6 @@ def reproduce(
     platform: str | None = None,
     time_limit_s: float | None = None,
     progress: bool | Display = True,
-    name: str = "reproduction",
     executor: str = LOCAL,
 ) -> ReproductionRun:
     """Fly every study of the paper, or some of its pages, and compare the results with it.
@@ -30,13 +29,12 @@ def reproduce(
         pages: `table-4`, `figure-3`, `text-wind` and so on; default all.
         profile: `quick` (few scenes, one seed) or `paper` (its size).
         library: Library or file to fly in place of the held-out one.
-        folder: Run folder; default `runs/<name>-<library>-<profile>-<code>`.
+        folder: Run folder; default `runs/reproduction-<library>-<profile>-<code>`.
         workers: Worker processes, 0 for this process alone; default one per core, or per GPU.
         device: `cpu` (default) or `cuda`.
         platform: The frozen platform to fly on; default the quadrotor's own.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As in `audit`.
-        name: Of the run folder.
         executor: As in `audit`, for the flights; windows are measured on this machine.
 
     Raises:
@@ -53,8 +51,8 @@ def reproduce(
     if folder is None:
         own = "" if library is None else f"-{Path(library).stem}"
         own += "" if platform is None else f"-{platform}"
-        place, other = asked.folder(f"{name}{own}-{asked.profile.name}")
-    told = display(progress, "reproduce", given | {"pages": named, "name": None})
+        place, other = asked.folder(f"reproduction{own}-{asked.profile.name}")
+    told = display(progress, "reproduce", given | {"pages": named})
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.reproducing import carry_out

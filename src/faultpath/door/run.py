@@ -1,4 +1,4 @@
-"""A finished audit, as a program and a notebook use it."""
+"""A finished audit or map, as a program and a notebook use it."""
 
 # pandas ships no types.
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
@@ -6,23 +6,28 @@
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import pyarrow as pa
 
-from faultpath.door.saved import MAP, RECORD, read_provenance, read_run
+from faultpath.door.saved import MAP, RECORD, parsed, read_provenance, read_run
 from faultpath.errors import UserError
 from faultpath.record import DecisionRecord, RunProvenance
 from faultpath.report.html import notebook_view, write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.store.folder import OUTCOMES
+from faultpath.store.sealed import AGAIN, unseal
 from faultpath.text import extra
 from faultpath.trials import Status
 
 if TYPE_CHECKING:
     import pandas
 
-    from faultpath.door.mapped import MapRun
     from faultpath.door.reproduced import ReproductionRun
+    from faultpath.plane.model import MapRecord
+
+MAP_MADE_FROM = (MAP, OUTCOMES)
+"""The files of a map's folder that its pages are made from, and checked against."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -32,6 +37,7 @@ class Run:
     A notebook shows it as verdict, effects and table.
     """
 
+    kind: ClassVar[str] = "audit"
     folder: Path
     _held: ReportInput
     _trials: pa.Table
@@ -40,6 +46,11 @@ class Run:
     def record(self) -> DecisionRecord:
         """What was decided: `verdict.headline` in a sentence, `effects` in numbers."""
         return self._held.record
+
+    @property
+    def headline(self) -> str:
+        """The verdict in one sentence."""
+        return self.record.verdict.headline
 
     @property
     def provenance(self) -> RunProvenance:
@@ -78,26 +89,73 @@ class Run:
 
     def __repr__(self) -> str:
         """Return folder and headline."""
-        return f"<Run in {self.folder}: {self.record.verdict.headline}>"
+        return f"<Run in {self.folder}: {self.headline}>"
 
     def _repr_html_(self) -> str:
         return notebook_view(self.record)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class MapRun:
+    """A finished reversal map: what was decided, and where its files are."""
+
+    kind: ClassVar[str] = "map"
+    folder: Path
+    record: "MapRecord"
+    """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
+    provenance: RunProvenance
+
+    @property
+    def headline(self) -> str:
+        """What was decided, in one sentence."""
+        return self.record.headline
+
+    def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
+        """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
+        from faultpath.report.plane import write_map
+
+        place = self.folder if folder is None else Path(folder)
+        return write_map(self.record, self.provenance, place)
+
+    def __repr__(self) -> str:
+        """Return folder and headline."""
+        return f"<MapRun in {self.folder}: {self.headline}>"
+
+    def _repr_html_(self) -> str:
+        return self.record.as_html()
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ReproductionRun":
     """Open the folder of a finished audit, map or reproduction, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
-    Raises `UserError` for a folder that holds neither, or a damaged or changed one.
+    Raises `UserError` for a folder that holds none of them, or a damaged or changed one.
     """
     place = Path(folder)
     files = read_provenance(place).files
     if MAP in files:
-        from faultpath.door.mapped import read_map
-
         return read_map(place)
     if RECORD in files or not (place / "reproduction.json").exists():
         return Run(place, *read_run(place))
     from faultpath.door.reproduced import read_reproduction
 
     return read_reproduction(place)
+
+
+def read_map(folder: Path) -> MapRun:
+    """Read a finished map, every file compared with its digest in `provenance.json`.
+
+    `UserError` for a file that is missing, damaged or changed, and for files that do not belong
+    together.
+    """
+    from faultpath.plane.model import MapRecord
+
+    provenance = read_provenance(folder)
+    held = unseal(folder, provenance.files, MAP_MADE_FROM)
+    record = parsed(held[MAP], folder / MAP, MapRecord)
+    if (provenance.files[OUTCOMES], provenance.library_hash) != (
+        provenance.outcomes_sha256,
+        record.question.library_hash,
+    ):
+        raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
+    return MapRun(folder, record, provenance)

@@ -167,7 +167,7 @@ class Quadrotor(LoopSystem):
         if scene not in self._scenes:
             self.library(scene.rpartition("/")[0])
         if scene not in self._scenes:
-            raise UserError(f"there is no scene '{scene}': `faultpath scenes list` shows them.")
+            raise UserError(f"there is no scene '{scene}' in its libraries.")
         return self._scenes[scene]
 
 

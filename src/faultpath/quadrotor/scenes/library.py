@@ -71,7 +71,7 @@ def load_library(name: str | Path) -> Library:
     if not path.exists():
         raise UserError(
             f"There is no scene library {str(name)!r}: give one of {', '.join(FROZEN_SEEDS)}, or "
-            "the path of a file made by 'faultpath scenes generate'."
+            "the path of a file that write_library made."
         )
     return _read(path, f"scene library {str(path)!r}")
 
@@ -83,9 +83,7 @@ def frozen_file(name: str) -> Traversable:
 
 def _read(file: Traversable | Path, what: str) -> Library:
     """Read a library file and check it against its hash; `what` names it in errors."""
-    remedy = (
-        f"make it again with 'faultpath scenes generate', or use one of {', '.join(FROZEN_SEEDS)}"
-    )
+    remedy = f"make it again with write_library, or use one of {', '.join(FROZEN_SEEDS)}"
     try:
         data = contents(file, LARGEST_TEXT) if isinstance(file, Path) else file.read_bytes()
         content = read_json(data)

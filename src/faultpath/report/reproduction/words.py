@@ -6,7 +6,8 @@ from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part, Si
 QUICK = "quick"
 """The profile whose runs are too small to be held against the paper."""
 VERDICTS = (
-    "The verdicts of the run that comes with faultpath: faultpath claims, docs/reproduction.md."
+    "The verdicts of the run that comes with faultpath: faultpath reproduce --judge, "
+    "docs/reproduction.md."
 )
 SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
 ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
