@@ -23,7 +23,7 @@ unless_given = $(if $(filter $(1) $(1)=%,$(ARGS)),,$(1) $(2))
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz bench docs lint format clean distclean
+.PHONY: help setup setup-runtime prerequisites audit reproduce train test fuzz statistics bench docs lint format clean distclean
 
 help: ## Show this list
 	@awk 'BEGIN {FS = ":.*## "} /^[a-z-]+:.*## / {printf "  make %-14s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -58,6 +58,9 @@ test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "hypothesis or fuzz" \
 	  --hypothesis-profile=explore --fuzz-seed=$(SEED) $(ARGS)
+
+statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its page: some minutes
+	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation.py docs/statistics-check.md
 
 bench: $(BENCH)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="--only plant" for some
 	$(BENCH)/bin/python -m benchmarks $(ARGS)
