@@ -37,7 +37,6 @@ class TrainRequest:
 
     names: tuple[str, ...]
     seeds: tuple[int, ...]
-    platform: str | None
     data: Path
     out: Path
     workers: int
@@ -62,7 +61,6 @@ def train(request: TrainRequest) -> int:
     `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
     and data that cannot be collected.
     """
-    from faultpath.quadrotor.platform_name import DEFAULT_NAME, platform_name
     from faultpath.quadrotor.training.catalogue import choose, stages
     from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.quadrotor.training.job_pools import check_pilots
@@ -70,7 +68,7 @@ def train(request: TrainRequest) -> int:
 
     console = SafeConsole()
     failed = 0
-    chosen = choose(request.names, request.seeds, platform_name(request.platform or DEFAULT_NAME))
+    chosen = choose(request.names, request.seeds)
     if request.tensorboard is not None:
         tensorboard_writer()
     if not request.ship:

@@ -29,9 +29,6 @@ def command(
             "--seed", min=0, max=LARGEST, help="Seed, repeatable; default those of the paper."
         ),
     ] = None,
-    platform: Annotated[
-        str | None, typer.Option(help="Platform whose models are fitted; default matched.")
-    ] = None,
     data: Annotated[
         Path | None,
         typer.Option(parser=path, help="Folder of the collected flights; default data."),
@@ -63,7 +60,6 @@ def command(
             "--list",
             names=names or None,
             seed=seeds or None,
-            platform=platform,
             data=data,
             out=out,
             workers=workers,
@@ -76,7 +72,6 @@ def command(
     request = TrainRequest(
         names=tuple(names or ()),
         seeds=tuple(seeds or ()),
-        platform=platform,
         data=data or Path("data"),
         out=out or Path("runs/train"),
         workers=(os.cpu_count() or 1) if workers is None else workers,

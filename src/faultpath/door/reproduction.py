@@ -44,7 +44,7 @@ def reproduce(
     given = dict(locals())
     check_executor(executor)
     named = (pages,) if isinstance(pages, str) else tuple(pages)
-    chosen = {"device": device, "platform": platform}
+    chosen = {"device": device}
     options = {option: value for option, value in chosen.items() if value is not None}
     asked = plan(named, profile, standing(library), options)
     place, other = Path(folder or ""), ""

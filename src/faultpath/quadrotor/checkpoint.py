@@ -14,29 +14,23 @@ from torch import Tensor, nn
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
 from faultpath.quadrotor.card import ModelCard, read_card, stem
-from faultpath.quadrotor.platform_name import DEFAULT_NAME
 from faultpath.store.atomic import write
 
 
-def shipped_folder(platform: str = DEFAULT_NAME) -> Path:
-    """Return the folder of the checkpoints that come with the package for a platform."""
-    return Path(str(files("faultpath.quadrotor"))) / "checkpoints" / platform
+def shipped_folder() -> Path:
+    """Return the folder of the checkpoints that come with the package."""
+    return Path(str(files("faultpath.quadrotor"))) / "checkpoints"
 
 
 def checkpoint_path(name: str, seed: int, folder: Path | None = None) -> Path:
-    """Return the weights file of a model, by default among those of the default platform.
-
-    Raises `UserError` when it is not there.
-    """
+    """Return the weights file of a model, by default the shipped one; `UserError` without it."""
     shipped = shipped_folder()
     folder = folder or shipped
     path = folder / f"{stem(name, seed)}.safetensors"
     if not path.is_file():
-        where, how = f"in {folder}", f"--out {folder}"
-        if folder.parent == shipped.parent:
-            where, how = f"for the platform '{folder.name}'", f"--platform {folder.name} --ship"
+        how = "--ship" if folder == shipped else f"--out {folder}"
         raise UserError(
-            f"there is no checkpoint of '{name}' with seed {seed} {where}: "
+            f"there is no checkpoint of '{name}' with seed {seed} in {folder}: "
             f"`faultpath train quadrotor {name} --seed {seed} {how}` makes it."
         )
     return path
@@ -88,9 +82,9 @@ def save_checkpoint(module: nn.Module, path: Path, card: Mapping[str, Any]) -> M
     return full
 
 
-def ship(path: Path, platform: str = DEFAULT_NAME) -> None:
+def ship(path: Path) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
-    folder = shipped_folder(platform)
+    folder = shipped_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for each in (path, path.with_suffix(".json")):

@@ -8,7 +8,6 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 from faultpath.trials import Offered
 
 
@@ -36,17 +35,14 @@ class ClearanceName(StrEnum):
 
 
 class PlannerName(StrEnum):
-    """MPPI or the cross-entropy method with the distance to the goal that the platform has, or
-    MPPI with that at the end of the horizon or along it."""
+    """MPPI with the distance to the goal that the platform has, or with that along the horizon."""
 
     MPPI = "mppi"
-    TERMINAL = "terminal"
     RUNNING = "running"
-    CEM = "cem"
 
 
 class SamplerName(StrEnum):
-    """Samplers of candidates; see `AutoregressiveSampler` and `planner.modes`."""
+    """Samplers of candidates; see `planners.sampler`."""
 
     AUTOREGRESSIVE = "autoregressive"
     MODE_PRESERVING = "mode-preserving"
@@ -85,7 +81,6 @@ class QuadrotorChoices(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    platform: Annotated[PlatformName, "Vehicle, winds, planner and perception."] = DEFAULT_NAME
     wind: Annotated[Wind, "Wind level."] = Wind.L0
     environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES
     clearance: Annotated[
@@ -104,13 +99,8 @@ class QuadrotorChoices(BaseModel):
     ] = 0
     planner: Annotated[
         PlannerName,
-        "MPPI or the cross-entropy method, as the platform has them, or MPPI on the distance to "
-        "the goal at the horizon's end or along it.",
+        "MPPI as the platform has it, or on the distance to the goal along the horizon.",
     ] = PlannerName.MPPI
-    iterations: Annotated[int, "Of cem: proposals a replan.", Offered(1, 2, 3, 4, 5, 6)] = 3
-    elites: Annotated[
-        int, "Of cem: best candidates, to which the plan is fitted.", Offered(16, 32, 64, 128, 256)
-    ] = 64
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
         int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B

@@ -1,6 +1,5 @@
 """What a user chose of the quadrotor, and the frozen settings behind it."""
 
-from pathlib import Path
 from typing import Self
 
 import torch
@@ -17,37 +16,20 @@ from faultpath.quadrotor.choices import (
 )
 from faultpath.quadrotor.device import device_of, require
 from faultpath.quadrotor.planners import (
-    CEM,
     MPPI,
     AutoregressiveSampler,
     BundledSampler,
-    CEMSettings,
-    CostWeights,
-    GoalCost,
     NavigationCost,
     Planner,
-    RunningGoal,
-    Sampler,
     SamplerSettings,
-    ScaledTemperature,
-    Temperature,
-    TerminalGoal,
-    WithinBundle,
-    goal_cost,
 )
 from faultpath.quadrotor.plant import Plant, TorchPlant
-from faultpath.quadrotor.platform import Platform
-from faultpath.quadrotor.platforms import DEFAULT, PLATFORMS
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.trials.options import call
 
 
 class QuadrotorOptions(QuadrotorChoices):
     """One configuration of the quadrotor: what a user chose, and what is behind it."""
-
-    settings: Platform = DEFAULT
-    """The platform of that name; a search puts its own here."""
-    checkpoints: Path | None = None
-    """Folder of the trained models; `None`: the package's of the platform of that name."""
 
     @classmethod
     def of(cls, choices: QuadrotorChoices) -> Self:
@@ -61,8 +43,6 @@ class QuadrotorOptions(QuadrotorChoices):
             ModuleNotFoundError: The plant needs a package that is not installed.
         """
         given = choices.model_dump(include=choices.model_fields_set)
-        given["settings"] = PLATFORMS[choices.platform]
-        _check_planner(choices)
         if choices.bring and not all(part.strip() for part in choices.bring.split(",")):
             raise UserError(
                 f"bring '{choices.bring}' holds an empty name: part names by one comma each."
@@ -105,39 +85,12 @@ class QuadrotorOptions(QuadrotorChoices):
     @property
     def sampling(self) -> SamplerSettings:
         """How many candidates are drawn, and how."""
-        return self.settings.planner.sampler.model_copy(update={"candidates": self.candidates})
+        return PLATFORM.planner.sampler.model_copy(update={"candidates": self.candidates})
 
     def build_planner(self) -> Planner:
         """Return the planner that the options name."""
-        planner = self.settings.planner
-        goals: dict[PlannerName, tuple[GoalCost, CostWeights]] = {
-            PlannerName.TERMINAL: (TerminalGoal(), planner.weights),
-            PlannerName.RUNNING: (RunningGoal(), planner.running),
-        }
-        own = (goal_cost(planner.goal_running), planner.weights)
-        goal, weights = goals.get(self.planner, own)
-        sampler: Sampler = AutoregressiveSampler(self.sampling)
-        cost = NavigationCost(goal, weights)
-        if self.planner is PlannerName.CEM:
-            narrowing = CEMSettings(iterations=self.iterations, elites=self.elites)
-            return CEM(sampler, cost, narrowing)
-        temperature: Temperature = ScaledTemperature(planner.temperature)
-        if self.sampler is SamplerName.MODE_PRESERVING:
-            sampler, temperature = BundledSampler(sampler), WithinBundle(temperature)
-        return MPPI(sampler, cost, temperature)
-
-
-def _check_planner(choices: QuadrotorChoices) -> None:
-    """Raise `UserError` for what does not apply to the planner that is chosen."""
-    if choices.planner is not PlannerName.CEM:
-        idle = sorted({"elites", "iterations"} & choices.model_fields_set)
-        if idle:
-            raise UserError(
-                f"{idle[0]} belongs to planner cem, and planner {choices.planner} has none: add "
-                f"--planner cem or leave {idle[0]} out."
-            )
-    elif choices.sampler is SamplerName.MODE_PRESERVING:
-        raise UserError(
-            "the mode-preserving sampler keeps the modes of MPPI apart, and planner cem has its "
-            "own way to narrow: leave the sampler or the planner out."
-        )
+        planner = PLATFORM.planner
+        weights = planner.running if self.planner is PlannerName.RUNNING else planner.weights
+        bundled = self.sampler is SamplerName.MODE_PRESERVING
+        sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
+        return MPPI(sampler, NavigationCost(weights), planner.temperature)

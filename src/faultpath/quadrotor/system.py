@@ -15,16 +15,18 @@ from faultpath.interface import Interface
 from faultpath.loop import Loop, Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.brought import bring
+from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
 from faultpath.quadrotor.device import arithmetic, describe
 from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.models import Shelf, clearance_model
+from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.perception.module import Perception
 from faultpath.quadrotor.planners.module import Planning
 from faultpath.quadrotor.plant.module import VehiclePlant
 from faultpath.quadrotor.plant.world import World
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.presets import calibration, noisy_state
 from faultpath.quadrotor.scenes.draw import floor_plan
 from faultpath.quadrotor.scenes.field import DistanceField
@@ -50,7 +52,6 @@ class Quadrotor(LoopSystem):
         self.parallel = options.device is DeviceName.CPU
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
-        self._shelf = Shelf(options.settings, options.checkpoints)
         self.brought = bring(options.parts, options.sampling)
         self.setups = {setup.name: setup for setup in setups(options, self.brought)}
 
@@ -62,11 +63,11 @@ class Quadrotor(LoopSystem):
     @property
     def interface(self) -> Interface:
         """See `System.interface`; the clearance is asked for along the planner's candidates."""
-        settings, candidates = self.options.settings, self.options.candidates
+        settings, candidates = PLATFORM, self.options.candidates
         horizon = settings.planner.sampler.horizon
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
-        return quadrotor_interface(settings.perception.altitude_limits).shaped(shapes)
+        return quadrotor_interface().shaped(shapes)
 
     @property
     @override
@@ -76,7 +77,7 @@ class Quadrotor(LoopSystem):
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
         library = load_library(name)
-        self._scenes |= {s.id: self.options.settings.scene(s) for s in library.scenes}
+        self._scenes |= {s.id: PLATFORM.scene(s) for s in library.scenes}
         refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
         return Library(name, refs, library.content_hash)
 
@@ -103,7 +104,7 @@ class Quadrotor(LoopSystem):
     def data_files(self) -> Sequence[Path]:
         """See `System.data_files`: the interface, the weights, and what kernels are built from."""
         own = (file for part in self.brought.values() for file in part.data_files)
-        return (*_weights(self._shelf.place), Path("interface.yaml"), Path("native/source"), *own)
+        return (*_weights(shipped_folder()), Path("interface.yaml"), Path("native/source"), *own)
 
     @property
     @override
@@ -120,7 +121,7 @@ class Quadrotor(LoopSystem):
         options, free, place = self.options, self.options.free_space, self.options.place
 
         def world(scenes: Sequence[str]) -> World:
-            flown, winds = self._records(scenes), options.settings.winds
+            flown, winds = self._records(scenes), PLATFORM.winds
             return World(flown, options.wind, free, place, options.plant_class, winds)
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
@@ -131,8 +132,7 @@ class Quadrotor(LoopSystem):
 
         if options.clearance is ClearanceName.TRUE:
             return VehiclePlant(world, camera=None, field=field)
-        limited = options.settings.perception.altitude_limits
-        return VehiclePlant(world, camera=camera, field=None, limited=limited)
+        return VehiclePlant(world, camera=camera, field=None)
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
@@ -142,16 +142,12 @@ class Quadrotor(LoopSystem):
         found = modelled(predictor, reconstruction, place)
         found.append(Planning(setup.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
-            found.append(self._perception(place))
+            found.append(
+                Perception(
+                    lambda: DepthClearance(clearance_model(place), place, PLATFORM.perception)
+                )
+            )
         return found
-
-    def _perception(self, place: torch.device) -> Perception:
-        settings = self.options.settings.perception
-        shelf = self._shelf
-        return Perception(
-            lambda: DepthClearance(clearance_model(place, shelf), place, settings),
-            settings.altitude_limits,
-        )
 
     @arithmetic()
     @torch.inference_mode()

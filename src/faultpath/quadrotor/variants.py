@@ -22,7 +22,6 @@ from faultpath.quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
     Kind,
-    Shelf,
     predictor,
     reconstruction,
 )
@@ -55,8 +54,6 @@ class Setup:
     """`None`: the seed of the arm."""
     wind: str | None
     """`None` for a predictor without a wind input."""
-    shelf: Shelf
-    """Where trained weights come from."""
     planner: str | None = None
     """One that the user brings; `None` for that of the options."""
     brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
@@ -72,7 +69,7 @@ class Setup:
         trained = self.predictor_seed if fixed else seed
         if self.predictor in self.brought:
             return self.brought[self.predictor].load(trained, device)
-        return predictor(self.predictor, trained, device, self.shelf)
+        return predictor(self.predictor, trained, device)
 
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
@@ -82,7 +79,7 @@ class Setup:
             return None
         if self.wind in self.brought:
             return self.brought[self.wind].load(seed, device)
-        return reconstruction(self.wind, seed, device, self.shelf)
+        return reconstruction(self.wind, seed, device)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
         """Return the planner for an arm of this seed."""
@@ -132,19 +129,18 @@ def setups(
 
 
 def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[Setup]:
-    shelf = Shelf(options.settings, options.checkpoints)
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
     if _has_wind(chosen, mine):
         for wind in winds:
-            yield Setup(wind, chosen, seed, wind, shelf, brought=mine)
+            yield Setup(wind, chosen, seed, wind, brought=mine)
     named = [(name, name, None, None) for name in (*PREDICTORS, *_of(Predictor, mine))]
     named += [(name, chosen, seed, name) for name in _of(Planner, mine)]
     for name, predicts, trained, plans in named:
         windy = _has_wind(predicts, mine)
-        yield Setup(name, predicts, trained, ZERO_WIND if windy else None, shelf, plans, mine)
+        yield Setup(name, predicts, trained, ZERO_WIND if windy else None, plans, mine)
         for wind in winds if windy else ():
-            yield Setup(f"{name}/{wind}", predicts, trained, wind, shelf, plans, mine)
+            yield Setup(f"{name}/{wind}", predicts, trained, wind, plans, mine)
 
 
 def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:

@@ -11,6 +11,7 @@ from faultpath.errors import UserError
 from faultpath.evidence import Measured, Measurement, Quantity
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.recording import Recorded, quadrotor
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.reconstruction import (
     Delivered,
@@ -58,7 +59,7 @@ def _subject(asked: Measurement) -> Subject:
 
 
 def _drag_kgps(subject: Subject) -> Drag:
-    return subject.system.options.settings.drag_kgps
+    return PLATFORM.drag_kgps
 
 
 def _present(subject: Subject, asked: Measurement, windows: Windows) -> Present:

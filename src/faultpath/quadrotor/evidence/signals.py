@@ -11,6 +11,7 @@ from faultpath.execution.attempt import Done
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.evidence.components import WORLD
 from faultpath.quadrotor.lanes import Chunk
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.hearing import Heard, Values, laid_out, steps_of
@@ -60,7 +61,7 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
 
     if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= heard.got.keys():
         return []
-    drag = LinearDrag(system.options.settings.drag_kgps)
+    drag = LinearDrag(PLATFORM.drag_kgps)
     rotation = true("vehicle.attitude").reshape(-1, 3, 3)
 
     def force(air: Values) -> Values:

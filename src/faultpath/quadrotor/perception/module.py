@@ -15,7 +15,6 @@ from faultpath.quadrotor.predictors.candidates import Predicted
 from faultpath.quadrotor.scenes.field import DistanceField
 from faultpath.taps import Query
 
-LIMITS = Port("altitude_limits", "limits")
 Measure = Callable[[Tensor, Chunk], Tensor]
 """The clearance `[S, N]`, metres, at points `[3, S, N]` (world frame) of a chunk's scenes."""
 
@@ -49,14 +48,16 @@ class Perception(Module):
 
     name, writes = "perception", ("estimated_clearance",)
 
-    def __init__(self, model: Callable[[], DepthClearance], limited: bool = False) -> None:
-        self._model = model
-        ports = {
+    reads = frozenset(
+        {
             Port("depth", "encoder"),
             Port("position", "capture_frame"),
             Port("attitude", "capture_frame"),
         }
-        self.reads = frozenset(ports | {LIMITS} if limited else ports)
+    )
+
+    def __init__(self, model: Callable[[], DepthClearance]) -> None:
+        self._model = model
 
     def begin(self, batch: Batch) -> DepthClearance:
         """Return the model, which holds the latest image."""
@@ -71,7 +72,6 @@ class Perception(Module):
             inputs["depth", "encoder"],
             inputs["position", "capture_frame"],
             mounted(attitude).movedim(-1, 0),
-            inputs[LIMITS] if LIMITS in self.reads else None,
         )
 
         def measure(points: Tensor, chunk: Chunk) -> Tensor:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
 from torch import Tensor, nn
 
 from faultpath.quadrotor import native
@@ -21,18 +21,11 @@ class PerceptionSettings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    unseen_m: float = 0.25
+    unseen_m: float = 0.3
     """Most clearance that space outside the field of view is said to have: the collision radius
-    and 5 cm. A planner may go there where nothing better offers, and would rather look first."""
+    and 10 cm. A planner may go there where nothing better offers, and would rather look first."""
     near_m: float = 0.4
     """Around the camera the field of view does not matter: the vehicle has just come through."""
-    altitude_limits: bool = False
-    """Whether floor and ceiling are known from the mission, and bound the clearance."""
-    remembered: int = Field(default=0, ge=0)
-    """Former images that still tell what has left the field of view, each from where it was
-    taken by the state that was delivered then."""
-    remembered_every: int = Field(default=5, ge=1)
-    """Control steps between two of them."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +52,7 @@ class _Captured:
 class DepthClearance:
     """The clearance that the latest depth images show, for planners that ask about many points.
 
-    It sees what it is given and nothing else: images, the poses they were taken from, and perhaps
-    the altitudes between which to fly. Points that no pixel can show have a clearance of at most
+    It sees what it is given and nothing else: images and the poses they were taken from. Points that no pixel can show have a clearance of at most
     `PerceptionSettings.unseen_m`.
     """
 
@@ -77,9 +69,7 @@ class DepthClearance:
     ) -> None:
         self._model = model.eval()
         self._settings = settings or PerceptionSettings()
-        self._captured: tuple[_Captured, ...] = ()
-        """The latest last, then every few steps back; no more than are remembered."""
-        self._limits: Tensor | None = None
+        self._captured: _Captured | None = None
         if native.kernels_on(device) is None or not covered(self, DepthClearance):
             return
         if why := _misfit(model):
@@ -93,7 +83,6 @@ class DepthClearance:
         depth: Tensor,
         position: Tensor,
         rotation: Tensor,
-        limits: Tensor | None = None,
     ) -> None:
         """Encode the images of all scenes: once a replan, however often it is queried.
 
@@ -101,13 +90,9 @@ class DepthClearance:
             depth: z-depth `[B, 36, 64]`, m.
             position: World frame, m, `[B, 3]`.
             rotation: Body to world, `[B, 3, 3]`.
-            limits: Altitudes of floor and ceiling, world frame, m, `[B, 2]`, if they are known.
         """
         encode = self._model.encode if self.encoder is None else self.encoder
-        taken = _Captured(encode(depth.float()), position.float(), rotation.float())
-        past = self._settings.remembered * self._settings.remembered_every
-        self._captured = (*self._captured, taken)[-1 - past :]
-        self._limits = None if limits is None else limits.float()
+        self._captured = _Captured(encode(depth.float()), position.float(), rotation.float())
 
     @torch.no_grad()
     def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
@@ -115,18 +100,9 @@ class DepthClearance:
 
         A scene's values do not depend on which others are asked for. N is a multiple of 32.
         """
-        if not self._captured:
+        if self._captured is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        chosen = torch.as_tensor(scenes)
-        latest, *former = self._captured[:: -self._settings.remembered_every]
-        clearance = self._shown(latest.take(chosen), points)
-        if former:
-            clearance = self._recalled(clearance, latest, former, points, chosen)
-        if self._limits is not None:
-            floor, ceiling = self._limits[chosen].T[..., None]
-            height = points[2]
-            clearance = clearance.minimum(height - floor).minimum(ceiling - height)
-        return clearance
+        return self._shown(self._captured.take(torch.as_tensor(scenes)), points)
 
     def _shown(self, by: _Captured, points: Tensor) -> Tensor:
         if self.queries is not None:
@@ -135,23 +111,6 @@ class DepthClearance:
         seen, asked = self._model.query(by.code, local), self._settings
         known = in_view(local) | near(local, asked.near_m)
         return torch.where(known, seen, seen.clamp(max=asked.unseen_m))
-
-    def _recalled(
-        self,
-        clearance: Tensor,
-        latest: _Captured,
-        former: Sequence[_Captured],
-        points: Tensor,
-        chosen: Tensor,
-    ) -> Tensor:
-        local = latest.take(chosen).frame().from_world(points)
-        unknown = ~(in_view(local) | near(local, self._settings.near_m))
-        for image in former:
-            taken = image.take(chosen)
-            shown = unknown & in_view(taken.frame().from_world(points))
-            clearance = torch.where(shown, self._shown(taken, points), clearance)
-            unknown &= ~shown
-        return clearance
 
 
 def in_view(points: Tensor) -> Tensor:

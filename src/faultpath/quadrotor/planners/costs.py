@@ -1,12 +1,10 @@
 """What the planner minimises: goal, clearance risk, speed, heading and effort."""
 
-from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor
-from typing_extensions import override
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.native.lending import covered
@@ -23,16 +21,20 @@ class CostWeights(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    goal: float = 10.0
-    risk: float = 40.0
+    goal: float = 8.0
+    running: float = Field(default=0.4, ge=0, le=1)
+    """Share of the mean distance along the horizon in the distance to the goal; the rest is that at
+    its end. At 0 the planner is soft in height: a candidate that climbs back by the end pays nothing
+    for the way, so a thrust error settles into an altitude offset. At 1 it is stiff and hides it."""
+    risk: float = 36.0
     hit: float = 400.0
-    margin_m: float = 0.35
+    margin_m: float = 0.3
     """Clearance beyond the collision radius below which risk starts."""
     speed: float = 20.0
     v_max_mps: float = 3.4  # paper, Table I
     heading: float = 0.5
-    rate_effort: float = 0.5
-    thrust_effort: float = 40.0
+    rate_effort: float = 0.4
+    thrust_effort: float = 12.0
     """On the squared departure from hover thrust, as a fraction of it: the control cost of MPPI."""
 
 
@@ -51,69 +53,14 @@ class Scored:
     """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
 
 
-class GoalCost(ABC):
-    """How the distance to the goal enters the cost: planner variants differ here."""
-
-    running: float
-    """Share of the mean distance along the horizon; the rest is the distance at its end."""
-
-    @abstractmethod
-    def distance(self, scored: Scored) -> Tensor:
-        """Return the distance that counts, `[S, K]`, metres."""
-
-
 def _norm(vector: Tensor) -> Tensor:
     return vector.square().sum(0).sqrt_()
-
-
-class TerminalGoal(GoalCost):
-    """Distance at the end of the horizon.
-
-    Soft in height: a candidate that climbs back by the end of the horizon pays nothing for the
-    way, so a thrust error settles into an altitude offset. This is where calibration hurts.
-    """
-
-    running = 0.0
-
-    @override
-    def distance(self, scored: Scored) -> Tensor:
-        return _norm(scored.rollout.final.position - scored.goal[..., None])
-
-
-class RunningGoal(GoalCost):
-    """Mean distance along the horizon: stiff in height, so it hides a thrust error."""
-
-    running = 1.0
-
-    @override
-    def distance(self, scored: Scored) -> Tensor:
-        return _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
-
-
-class BlendedGoal(GoalCost):
-    """Between the two: `running` of the mean distance, the rest of that at the end."""
-
-    def __init__(self, running: float) -> None:
-        self.running = running
-
-    @override
-    def distance(self, scored: Scored) -> Tensor:
-        end, way = TerminalGoal().distance(scored), RunningGoal().distance(scored)
-        return torch.lerp(end, way, self.running)
-
-
-def goal_cost(running: float) -> GoalCost:
-    """Return the goal cost with this share of the mean distance along the horizon, 0 to 1."""
-    if running in (0.0, 1.0):
-        return RunningGoal() if running else TerminalGoal()
-    return BlendedGoal(running)
 
 
 class NavigationCost:
     """The weighted sum of all terms."""
 
-    def __init__(self, goal: GoalCost, weights: CostWeights | None = None) -> None:
-        self.goal = goal
+    def __init__(self, weights: CostWeights | None = None) -> None:
         self.weights = weights or CostWeights()
 
     def __call__(self, scored: Scored) -> Tensor:
@@ -131,24 +78,22 @@ class NavigationCost:
         built = native.kernels_for(*paths)
         if built is None or not self._has_kernel(commands):
             return self._portable(scored)
-        terms = self.weights.model_dump()
-        terms |= {"radius_m": COLLISION_RADIUS_M, "running": self.goal.running}
+        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
         return compiled.cost(built, terms, paths)
 
     def _has_kernel(self, commands: Tensor) -> bool:
-        goal, others = self.goal, (RunningGoal, BlendedGoal)
-        kind = next((each for each in others if isinstance(goal, each)), TerminalGoal)
         return (
             len(commands) > 0
             and native.whole_vectors(commands.shape[-1])
             and covered(self, NavigationCost)
-            and covered(goal, kind)
             and covered(self.weights, CostWeights)
         )
 
     def _portable(self, scored: Scored) -> Tensor:
         w = self.weights
-        cost = self.goal.distance(scored).mul_(w.goal)
+        end = _norm(scored.rollout.final.position - scored.goal[..., None])
+        way = _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
+        cost = torch.lerp(end, way, w.running).mul_(w.goal)
         cost += self._risk(scored.clearance)
         speed = _norm(scored.rollout.velocities)
         cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)

@@ -1,8 +1,6 @@
 """Model predictive path integral control, batched over scenes and candidates."""
 
-from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
-from typing import ClassVar
+from dataclasses import replace
 
 import torch
 from torch import Tensor
@@ -10,50 +8,22 @@ from typing_extensions import override
 
 from faultpath.quadrotor.planners.costs import NavigationCost, Scored
 from faultpath.quadrotor.planners.protocol import Planner, Search
-from faultpath.quadrotor.planners.sampler import Sampler
+from faultpath.quadrotor.planners.sampler import BUNDLES, AutoregressiveSampler, BundledSampler
 
-
-class Temperature(ABC):
-    """Turns costs into weights: their softmax at a temperature."""
-
-    @abstractmethod
-    def of(self, cost: Tensor) -> Tensor:
-        """Return the temperature `[S, 1]` for costs `[S, K]`."""
-
-    def weights(self, cost: Tensor) -> Tensor:
-        """Return the weights `[S, K]` of candidates with costs `[S, K]`."""
-        return torch.softmax(-cost / self.of(cost), dim=1)
-
-
-@dataclass(frozen=True)
-class ScaledTemperature(Temperature):
-    """A fraction of the spread of the better half of the costs.
-
-    The better half, because the few candidates that hit something would set the spread of all.
-    """
-
-    fraction: float
-    least: ClassVar[float] = 1e-3
-
-    @override
-    def of(self, cost: Tensor) -> Tensor:
-        half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
-        return (half.std(dim=1, keepdim=True) * self.fraction).clamp_(min=self.least)
-
-
-def weighted_mean(commands: Tensor, weight: Tensor) -> Tensor:
-    """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
-    return (commands * weight).sum(-1)
+LEAST_TEMPERATURE = 1e-3
 
 
 class MPPI(Planner):
-    """Model predictive path integral control: the plan is the mean of the weighted candidates."""
+    """Model predictive path integral control: the plan is the mean of the weighted candidates.
+
+    Weights are the softmax of the costs at a fraction of the spread of the better half: the few
+    candidates that hit something would set the spread of all. A mean over all candidates may lie
+    between two ways round an obstacle, in the obstacle; with a `BundledSampler` only the bundle
+    with the most weight counts.
+    """
 
     def __init__(
-        self,
-        sampler: Sampler,
-        cost: NavigationCost,
-        temperature: Temperature,
+        self, sampler: AutoregressiveSampler, cost: NavigationCost, temperature: float
     ) -> None:
         super().__init__(sampler)
         self._cost = cost
@@ -65,5 +35,22 @@ class MPPI(Planner):
 
     @override
     def update(self, search: Search, scored: Scored) -> Search:
-        weights = self._temperature.weights(self._cost(scored))
-        return replace(search, plan=weighted_mean(scored.commands, weights))
+        weights = softmax(self._cost(scored), self._temperature)
+        if isinstance(self.sampler, BundledSampler):
+            weights = best_bundle(weights)
+        return replace(search, plan=(scored.commands * weights).sum(-1))
+
+
+def softmax(cost: Tensor, fraction: float) -> Tensor:
+    """Return the weights `[S, K]` of candidates with costs `[S, K]`; see `MPPI`."""
+    half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
+    temperature = (half.std(dim=1, keepdim=True) * fraction).clamp_(min=LEAST_TEMPERATURE)
+    return torch.softmax(-cost / temperature, dim=1)
+
+
+def best_bundle(weights: Tensor) -> Tensor:
+    """Leave the weights `[S, K]` to the bundle that has the most of them."""
+    bundles = weights.unflatten(1, (BUNDLES, -1))
+    total = bundles.sum(2, keepdim=True)
+    best = torch.zeros_like(total).scatter_(1, total.argmax(1, keepdim=True), 1.0)
+    return (bundles * best / total.clamp_min(1e-30)).flatten(1)

@@ -9,7 +9,7 @@ import torch
 from torch import Tensor
 
 from faultpath.quadrotor.planners.costs import Scored
-from faultpath.quadrotor.planners.sampler import Sampler
+from faultpath.quadrotor.planners.sampler import AutoregressiveSampler
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,6 @@ class Search:
     """`[H, 4, S]`; its first row would be executed."""
     hover: Tensor
     """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
-    spread: Tensor | None = None
-    """Standard deviation of the candidates about the plan, `[H, 4, S]`, for planners that adapt
-    it."""
 
 
 class Planner(ABC):
@@ -37,7 +34,7 @@ class Planner(ABC):
     data_files: Sequence[str | PathLike[str]] | None = None
     """Of one that a user brings: the files that it reads, of every seed, such as weights."""
 
-    def __init__(self, sampler: Sampler) -> None:
+    def __init__(self, sampler: AutoregressiveSampler) -> None:
         self.sampler = sampler
 
     def initial_plan(self, hover: Tensor) -> Tensor:

@@ -1,13 +1,13 @@
 """Candidate commands around a plan."""
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
 import torch
 from pydantic import BaseModel, ConfigDict
 from torch import Tensor
+from typing_extensions import override
 
 from faultpath.quadrotor import native
 from faultpath.quadrotor.planners import compiled
@@ -28,25 +28,6 @@ class SamplerSettings(BaseModel):
     rate_sigma_radps: tuple[float, float, float] = (1.0, 1.0, 0.4)
 
 
-class Sampler(ABC):
-    """Draws standardised noise for a replan and turns it into candidates."""
-
-    settings: SamplerSettings
-
-    @abstractmethod
-    def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
-        """Return standardised noise `[H, 4, S, K]`, keyed by scene, seed, step and iteration."""
-
-    def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
-        """Return commands `[H, 4, S, K]` around `plan` `[H, 4, S]`; `noise` is overwritten.
-
-        `hover` `[S]` is the thrust that the predictor believes holds the vehicle. The thrust
-        bounds lie evenly around it: bounds that cut one side lift the mean plan and would hide
-        one sign of a calibration fault.
-        """
-        return bound(noise.mul_(scales(self.settings, hover)).add_(plan[..., None]), hover)
-
-
 def scales(settings: SamplerSettings, hover: Tensor) -> Tensor:
     """Return the standard deviations `[4, S, 1]` of commands about a plan, N and rad/s."""
     scale = hover.new_empty(4, hover.shape[0], 1)
@@ -65,14 +46,17 @@ def bound(commands: Tensor, hover: Tensor) -> Tensor:
     return commands
 
 
-class AutoregressiveSampler(Sampler):
+class AutoregressiveSampler:
     """First-order autoregressive noise over the horizon; candidate 0 is the plan itself."""
 
     def __init__(self, settings: SamplerSettings | None = None) -> None:
         self.settings = settings or SamplerSettings()
 
     def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
-        """See `Sampler.noise`. The host draws, whatever device plans."""
+        """Return standardised noise `[H, 4, S, K]`, keyed by scene, seed, step and iteration.
+
+        The host draws, whatever device plans.
+        """
         shape = (self.settings.horizon, 4, self.settings.candidates)
         purpose = f"planner/{iteration}" if iteration else "planner"
         rho = self.settings.correlation
@@ -90,6 +74,37 @@ class AutoregressiveSampler(Sampler):
         for h in range(1, shape[0]):
             noise[h].add_(noise[h - 1], alpha=rho)
         noise[..., 0] = 0
+        return noise
+
+    def candidates(self, plan: Tensor, hover: Tensor, noise: Tensor) -> Tensor:
+        """Return commands `[H, 4, S, K]` around `plan` `[H, 4, S]`; `noise` is overwritten.
+
+        `hover` `[S]` is the thrust that the predictor believes holds the vehicle. The thrust
+        bounds lie evenly around it: bounds that cut one side lift the mean plan and would hide
+        one sign of a calibration fault.
+        """
+        return bound(noise.mul_(scales(self.settings, hover)).add_(plan[..., None]), hover)
+
+
+BUNDLES = 8
+"""Divides every number of candidates that the options offer."""
+SHARED = 0.5
+"""Share of a candidate's variance that is its bundle's centre (derived: as much between bundles as
+within them)."""
+
+
+class BundledSampler(AutoregressiveSampler):
+    """Candidates in bundles of neighbours, for a planner that keeps its modes apart.
+
+    The first candidate of a bundle is its centre. Each other one is drawn anew about it, so a
+    candidate alone is distributed as before. The first bundle's centre is the plan itself.
+    """
+
+    @override
+    def noise(self, scenes: Sequence[str], seed: int, step: int, iteration: int = 0) -> Tensor:
+        noise = super().noise(scenes, seed, step, iteration)
+        bundled = noise.unflatten(-1, (BUNDLES, -1))
+        bundled[..., 1:].mul_(math.sqrt(1 - SHARED)).add_(bundled[..., :1], alpha=math.sqrt(SHARED))
         return noise
 
 

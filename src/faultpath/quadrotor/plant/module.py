@@ -42,7 +42,6 @@ class VehiclePlant(Plant):
         world: Makes the world of some scenes, by id.
         camera: Makes their camera; `None`: nothing reads depth.
         field: Makes their distance field; `None`: nothing reads the true clearance.
-        limited: Whether the mission says between which altitudes to fly.
     """
 
     name = "vehicle"
@@ -54,7 +53,6 @@ class VehiclePlant(Plant):
         world: Callable[[Sequence[str]], World],
         camera: Callable[[Sequence[str]], DepthRenderer] | None,
         field: Callable[[Sequence[str]], DistanceField] | None,
-        limited: bool = False,
     ) -> None:
         self.steps = CONTROL_STEPS
         self._world = world
@@ -63,7 +61,6 @@ class VehiclePlant(Plant):
         self.senses = (
             *("mission_goal", "true_physics", "true_wind", "zero_wind"),
             *(("depth_image",) if camera else ()),
-            *(("geofence",) if limited else ()),
             *(("true_clearance",) if field else ()),
         )
 
@@ -89,8 +86,6 @@ class VehiclePlant(Plant):
         if state.camera is not None:
             here = replace(world.state, rotation=mounted(world.state.rotation))
             sensed["depth_image"] = state.camera.render(here)
-        if "geofence" in self.senses:
-            sensed["geofence"] = scenes_first(world.altitude_limits_m, count)
         if state.clearance is not None:
             sensed["true_clearance"] = state.clearance
         return sensed

@@ -52,14 +52,13 @@ def _level(mean_mps: float, elevation_deg: float = 20.0) -> WindLevel:
 
 
 class Winds(BaseModel):
-    """How strong the winds of a platform are; turbulence and gust are shares of the mean."""
+    """How strong the winds are; turbulence and gust are shares of the mean."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    means_mps: tuple[float, float, float, float] = (0.0, 2.0, 4.25, 7.7)
-    """Of L0 to L3: with drag over mass of 0.30 1/s a median acceleration |B w| of about 0, 0.65,
-    1.4 and 2.5 m/s^2, derived from the paper's Tables III, IV and VI."""
-    pool_mean_mps: tuple[float, float] = (0.0, 10.0)
+    means_mps: tuple[float, float, float, float] = (0.0, 0.831, 1.766, 3.2)
+    """Of L0 to L3: matched to the paper's success without a wind input."""
+    pool_mean_mps: tuple[float, float] = (0.0, 6.0)
     """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
     for apparent winds that add to the true one."""
 

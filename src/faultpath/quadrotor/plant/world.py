@@ -55,9 +55,6 @@ class World:
         self.lanes = order.to(device)
         self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
         self.goal = _points([scene.goal_m for scene in lanes]).to(device)
-        bounds = [(s.bounds.low_m[2], s.bounds.high_m[2]) for s in lanes]
-        self.altitude_limits_m = _points(bounds).to(device)
-        """Floor and ceiling of the arena, `[2, L]`."""
         self._winds = blown.to(device)
         self._contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
         self._plant = plant(self.vehicle)

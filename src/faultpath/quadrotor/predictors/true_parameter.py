@@ -45,25 +45,23 @@ class TrueParameter(Predictor):
     mixer, no motor limits, and steps of 12.5 ms in a semi-implicit scheme (paper, Section IV-A:
     "integration is separate").
 
-    With `follows_motors` it replays the commands that were executed over the last intervals, so
-    that it knows the thrust and the torque that its motors hold. Without, it is told their thrust
-    and takes their torque for zero.
+    It replays the commands that were executed over the last intervals, so that it knows the thrust
+    and the torque that its motors hold.
     """
 
-    def __init__(self, follows_motors: bool = False, dt_s: float = CONTROL_DT_S) -> None:
+    reads = frozenset(
+        {"initial_state", "trim", "dynamics", "wind_map", "physics", "history", "latent"}
+    )
+
+    def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
         self._h = dt_s / SUBSTEPS
-        self._follows = follows_motors
-        places = {"initial_state", "trim", "dynamics", "wind_map", "physics"}
-        self.reads = frozenset(places | {"history", "latent"} if follows_motors else places)
 
     @override
-    def encode(self, history: History) -> Tensor | None:
+    def encode(self, history: History) -> Tensor:
         """Return the last body rates and commands, `[32, *batch]`: what the replay starts from.
 
         The motors' parameters are read elsewhere, so the replay itself is in `begin`.
         """
-        if not self._follows:
-            return None
         past = torch.cat((history.rate_radps, history.commands))[:, -FOLLOWED:]
         code = past.flatten(0, 1)
         return torch.cat((code, code.new_zeros(CODE - len(code), *code.shape[1:])))
@@ -95,8 +93,6 @@ class TrueParameter(Predictor):
             thrust=physics.collective_thrust_n,
             torque=torch.zeros_like(inputs.state.rate),
         )
-        if not self._follows:
-            return start
         assert inputs.code is not None
         return self._followed(start, inputs.code)
 

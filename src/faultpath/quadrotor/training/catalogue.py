@@ -12,15 +12,13 @@ from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.card import stem
-from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
 
 if TYPE_CHECKING:
-    from faultpath.quadrotor.platform import Platform
     from faultpath.quadrotor.training.task import Task
 
-Factory = Callable[[str, int, Path, "Platform"], "Task"]
-"""Makes a task from its name, its seed, the folder of the data and the platform; a function of a
-module, so that worker processes find it."""
+Factory = Callable[[str, int, Path], "Task"]
+"""Makes a task from its name, its seed and the folder of the data; a function of a module, so that
+worker processes find it."""
 
 MODEL_SEEDS = (0, 1, 2)
 """Seeds of the models that results average over (paper, captions of its tables)."""
@@ -49,7 +47,6 @@ class Job:
 
     entry: Entry
     seed: int
-    platform: PlatformName = DEFAULT_NAME
 
     @property
     def stem(self) -> str:
@@ -58,27 +55,25 @@ class Job:
 
     def task(self, data: Path) -> Task:
         """Return what is to be fitted, with data from a folder."""
-        from faultpath.quadrotor.platforms import PLATFORMS
-
-        return self.entry.factory(self.entry.name, self.seed, data, PLATFORMS[self.platform])
+        return self.entry.factory(self.entry.name, self.seed, data)
 
 
-def _predictor(name: str, seed: int, data: Path, platform: Platform) -> Task:
+def _predictor(name: str, seed: int, data: Path) -> Task:
     from faultpath.quadrotor.training.predictor_task import PredictorTask
 
-    return PredictorTask(name, seed, data, platform=platform)
+    return PredictorTask(name, seed, data)
 
 
-def _reconstruction(name: str, seed: int, data: Path, platform: Platform) -> Task:
+def _reconstruction(name: str, seed: int, data: Path) -> Task:
     from faultpath.quadrotor.training.reconstruction_task import ReconstructionTask
 
-    return ReconstructionTask(name, seed, data, platform)
+    return ReconstructionTask(name, seed, data)
 
 
-def _clearance(name: str, seed: int, data: Path, platform: Platform) -> Task:
+def _clearance(name: str, seed: int, data: Path) -> Task:
     from faultpath.quadrotor.training.clearance_task import ClearanceTask
 
-    del name, platform
+    del name
     return ClearanceTask(seed, data)
 
 
@@ -120,7 +115,6 @@ GROUPS: dict[str, tuple[Entry, ...]] = {
 def choose(
     names: Sequence[str],
     seeds: Sequence[int] = (),
-    platform: PlatformName = DEFAULT_NAME,
 ) -> tuple[Job, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 
@@ -131,7 +125,7 @@ def choose(
         raise UserError(f"the seed {wrong[0]} is negative: seeds start at 0.")
     wanted = {entry.name for name in names or ("all",) for entry in _named(name)}
     entries = [entry for entry in ALL if entry.name in wanted]
-    return tuple(_jobs(entries, seeds, platform))
+    return tuple(_jobs(entries, seeds))
 
 
 def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
@@ -154,6 +148,6 @@ def _named(name: str) -> tuple[Entry, ...]:
     return found
 
 
-def _jobs(entries: Iterable[Entry], seeds: Sequence[int], platform: PlatformName) -> Iterable[Job]:
+def _jobs(entries: Iterable[Entry], seeds: Sequence[int]) -> Iterable[Job]:
     for entry in entries:
-        yield from (Job(entry, seed, platform) for seed in dict.fromkeys(seeds or entry.seeds))
+        yield from (Job(entry, seed) for seed in dict.fromkeys(seeds or entry.seeds))

@@ -13,8 +13,7 @@ from typing_extensions import override
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.evaluation import summarise
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath.quadrotor.platform import CLEARANCE
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
@@ -43,7 +42,7 @@ class ClearanceTask(Task):
 
     def __init__(self, seed: int, data_folder: Path, recipe: Recipe | None = None) -> None:
         self.seed = seed
-        self.platform = DEFAULT.weights_hash(CLEARANCE)  # the camera is the same on all
+        self.platform = PLATFORM.weights_hash(CLEARANCE)
         self.schedule = Schedule(epochs=50, batch_size=64, learning_rate=5e-4)
         self._folder = data_folder
         self._recipe = recipe or Recipe()

@@ -13,8 +13,7 @@ from faultpath.errors import UserError
 from faultpath.execution.provenance import packages
 from faultpath.quadrotor.plant import wind
 from faultpath.quadrotor.plant.wind import Winds
-from faultpath.quadrotor.platform import Platform
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
 from faultpath.quadrotor.training.provenance import (
@@ -40,7 +39,6 @@ def collect(
     episodes: Mapping[str, int] | None = None,
     seed: int = 0,
     progress: Progress | None = None,
-    platform: Platform = DEFAULT,
 ) -> dict[str, Path]:
     """Collect `pools` into `folder` and return the file of each pool.
 
@@ -50,7 +48,7 @@ def collect(
     does not exist, for one that was collected by another recipe, and when `folder` cannot be
     written.
     """
-    recipes = {name: recipe(name, (episodes or {}).get(name), seed, platform) for name in pools}
+    recipes = {name: recipe(name, (episodes or {}).get(name), seed) for name in pools}
     paths = {name: folder / f"{name}.parquet" for name in pools}
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -58,8 +56,7 @@ def collect(
             atomic.sweep(folder)
             missing = [name for name in pools if not _is_there(paths[name], recipes[name])]
             batches = {
-                paths[name]: (recipes[name], _batches(recipes[name], folder, platform))
-                for name in missing
+                paths[name]: (recipes[name], _batches(recipes[name], folder)) for name in missing
             }
             make_pools(batches, workers, progress, EPISODE_STEPS)
     except OSError as error:
@@ -70,9 +67,7 @@ def collect(
     return paths
 
 
-def recipe(
-    pool: str, episodes: int | None = None, seed: int = 0, platform: Platform = DEFAULT
-) -> Recipe:
+def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
     """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
     if pool not in EPISODES:
         raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
@@ -83,9 +78,9 @@ def recipe(
         pool=pool,
         episodes=count,
         seed=seed,
-        flight=platform.collection,
-        vehicle=platform.ranges,
-        wind=_wind_ranges(platform.winds) if pool == "wind" else {},
+        flight=PLATFORM.collection,
+        vehicle=PLATFORM.ranges,
+        wind=_wind_ranges(PLATFORM.winds) if pool == "wind" else {},
         code_sha256=code_sha256(),
     )
 
@@ -120,7 +115,7 @@ def different(found: Recipe, asked: Recipe) -> list[str]:
     return [name for name in Recipe.model_fields if getattr(found, name) != getattr(asked, name)]
 
 
-def _batches(asked: Recipe, folder: Path, platform: Platform) -> list[Batch]:
+def _batches(asked: Recipe, folder: Path) -> list[Batch]:
     """Return a pool's batches, in a folder whose name changes with anything that decides them.
 
     The number of episodes does not: a pool that is asked for larger uses what is there.
@@ -135,7 +130,7 @@ def _batches(asked: Recipe, folder: Path, platform: Platform) -> list[Batch]:
         Batch(
             place / f"{each.start:06d}+{len(each)}",
             each,
-            partial(fly, asked.pool, each, asked.seed, platform),
+            partial(fly, asked.pool, each, asked.seed),
         )
         for each in members
     ]

@@ -29,8 +29,7 @@ from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.platform import Platform
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import Course, WaypointController
@@ -163,7 +162,6 @@ def fly(
     pool: str,
     episodes: Sequence[int],
     seed: int,
-    platform: Platform = DEFAULT,
     build: Callable[[Vehicle], VehiclePlant] = TorchPlant,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
@@ -171,8 +169,8 @@ def fly(
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
     vectors.
     """
-    settings = platform.collection
-    starts = [_draw(pool, episode, seed, platform) for episode in episodes]
+    settings = PLATFORM.collection
+    starts = [_draw(pool, episode, seed) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
     course = Course.stack([start.course for start in starts]).take(lanes)
@@ -188,8 +186,8 @@ def fly(
     return Flights(values, steps, tuple(start.vehicle for start in starts))
 
 
-def _draw(pool: str, episode: int, seed: int, platform: Platform) -> _Start:
-    settings = platform.collection
+def _draw(pool: str, episode: int, seed: int) -> _Start:
+    settings = PLATFORM.collection
 
     def stream(what: str) -> np.random.Generator:
         return generator(f"collection/{pool}/{what}", str(episode), seed)
@@ -197,9 +195,9 @@ def _draw(pool: str, episode: int, seed: int, platform: Platform) -> _Start:
     disturbed = perturbation.draw(stream("perturbation"), EPISODE_STEPS, settings.perturbation)
     winds = None
     if pool == "wind":  # one sample more than the plant needs: the wind at the last instant
-        winds = platform.winds.pool_series(seed, episode, EPISODE_S + 1 / PLANT_RATE_HZ)
+        winds = PLATFORM.winds.pool_series(seed, episode, EPISODE_S + 1 / PLANT_RATE_HZ)
     return _Start(
-        vehicle=draw(stream("vehicle"), platform.ranges),
+        vehicle=draw(stream("vehicle"), PLATFORM.ranges),
         course=Course.draw(stream("course"), settings.controller, disturbed),
         state=_draw_state(stream("start"), settings),
         winds=winds,

@@ -5,8 +5,7 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.checkpoint import checkpoint_path, shipped_folder
-from faultpath.quadrotor.platforms import PLATFORMS
+from faultpath.quadrotor.checkpoint import checkpoint_path
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
 from faultpath.quadrotor.training.collection import collect, different, recipe
@@ -26,23 +25,22 @@ def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
 def check_pools(jobs: Sequence[Job], data: Path) -> None:
     """Raise `UserError` where a pool that some jobs need was collected by other code than this, or
     for another platform."""
-    needed = {pool: job.platform for job in jobs for pool in job.entry.pools}
-    for pool, platform in needed.items():
+    for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
         path = data / f"{pool}.parquet"
         if pool == CLEARANCE_POOL or (found := read_provenance(path)) is None:
             continue  # the depth images are checked where they are read
         flown = pool == trajectories.POOL
-        code = trajectories.code_sha256(platform) if flown else code_sha256()
+        code = trajectories.code_sha256() if flown else code_sha256()
         if found.code_sha256 != code:
             raise UserError(
                 f"the pool at {path} was collected by other code than this, with faultpath "
                 f"{found.faultpath_version}: delete {path.with_suffix('.json')} to collect it "
                 "again, or give another folder of data"
             )
-        asked = None if flown else recipe(pool, platform=PLATFORMS[platform])
+        asked = None if flown else recipe(pool)
         if asked and {"flight", "vehicle", "wind"} & set(different(found, asked)):
             raise UserError(
-                f"the pool at {path} was collected for another platform than {platform}: give "
+                f"the pool at {path} was collected for another platform than this: give "
                 "another folder of data"
             )
 
@@ -53,8 +51,8 @@ def check_pilots(jobs: Sequence[Job]) -> None:
     They are flown with the package's models, among which only `--ship` puts those of this run.
     """
     flying = [job for job in jobs if trajectories.POOL in job.entry.pools]
-    for name, platform in {(name, job.platform) for job in flying for name in job.entry.after}:
-        checkpoint_path(name, trajectories.SEED, shipped_folder(platform))
+    for name in {name for job in flying for name in job.entry.after}:
+        checkpoint_path(name, trajectories.SEED)
 
 
 def collect_missing(
@@ -72,7 +70,6 @@ def collect_missing(
         if pool == CLEARANCE_POOL:
             clearance_data.collect(data, workers=workers, progress=report)
         elif pool == trajectories.POOL:
-            trajectories.record(data, workers, jobs[0].platform, report)
+            trajectories.record(data, workers, report)
         else:
-            platform = PLATFORMS[jobs[0].platform]
-            collect(data, [pool], workers, progress=report, platform=platform)
+            collect(data, [pool], workers, progress=report)

@@ -115,7 +115,7 @@ def run_jobs(
                     running.pop(job.stem, None)
                     results[job.stem] = _result(job, end, places.out)
                     if shipped and isinstance(end, Returned):
-                        ship(end.value, job.platform)
+                        ship(end.value)
                     show()
     except KeyboardInterrupt:
         again = "without --force " if force else ""

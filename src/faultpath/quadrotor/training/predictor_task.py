@@ -12,8 +12,7 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.models import PREDICTORS
-from faultpath.quadrotor.platform import Platform
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
@@ -69,7 +68,6 @@ class PredictorTask(Task):
         seed: int,
         data: Path,
         half_range: float = DCC_HALF_RANGE,
-        platform: Platform = DEFAULT,
     ) -> None:
         self.name = name
         self.seed = seed
@@ -80,8 +78,7 @@ class PredictorTask(Task):
         self.schedule = Schedule(epochs=self._recipe.epochs, clip_norm=CLIP_NORM)
         self._data = data
         self._half_range = half_range
-        self._platform = platform
-        self.platform = platform.weights_hash(name)
+        self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
         """See `Task.load`; several pools contribute equally many windows."""
@@ -153,7 +150,7 @@ class PredictorTask(Task):
         }
 
     def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
-        made = PREDICTORS[self._base].build(self._platform)
+        made = PREDICTORS[self._base].build()
         assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
         return made
 

@@ -15,8 +15,7 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.platform import Platform
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
 from faultpath.quadrotor.training.provenance import rows_sha256
@@ -92,16 +91,14 @@ class ReconstructionTask(Task):
     a stream of its own, because a flight begins with few.
     """
 
-    def __init__(
-        self, name: str, seed: int, data_folder: Path, platform: Platform = DEFAULT
-    ) -> None:
+    def __init__(self, name: str, seed: int, data_folder: Path) -> None:
         if name not in MODELS:
             raise UserError(
                 f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
             )
         self.name = name
         self.seed = seed
-        self.platform = platform.weights_hash(name)
+        self.platform = PLATFORM.weights_hash(name)
         self.schedule = Schedule(epochs=40, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
         self._data = data_folder

@@ -42,7 +42,7 @@ class Task(ABC):
     seed: int
     schedule: Schedule
     platform: str = ""
-    """`Platform.weights_hash` of the model; empty for a task that no platform decides."""
+    """`PLATFORM.weights_hash` of the model; empty for a task that no platform decides."""
 
     @abstractmethod
     def load(self) -> None:

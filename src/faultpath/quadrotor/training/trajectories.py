@@ -10,8 +10,7 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.quadrotor import native
-from faultpath.quadrotor.platform_name import DEFAULT_NAME, PlatformName
-from faultpath.quadrotor.platforms import PLATFORMS
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.closed_loop import record_flights
@@ -33,7 +32,6 @@ BLOCK = 14
 def record(
     folder: Path,
     workers: int = 2,
-    platform: PlatformName = DEFAULT_NAME,
     progress: Progress | None = None,
 ) -> Path:
     """Fly and write the pool, from wherever an earlier call left it; return its file.
@@ -42,13 +40,13 @@ def record(
     predictor's checkpoint is missing.
     """
     path = folder / f"{POOL}.parquet"
-    code = code_sha256(platform)
+    code = code_sha256()
     recipe = Recipe(
         pool=POOL,
         episodes=len(LEVELS) * SCENES,
         seed=SEED,
         flight=None,
-        vehicle=PLATFORMS[platform].ranges,
+        vehicle=PLATFORM.ranges,
         closed_loop={
             "library": LIBRARY,
             "scenes": SCENES,
@@ -63,7 +61,7 @@ def record(
         Batch(
             place / f"{level}-{first:03d}",
             range(count * SCENES + first, count * SCENES + first + BLOCK),
-            partial(fly, platform, level, first),
+            partial(fly, level, first),
         )
         for count, level in enumerate(LEVELS)
         for first in range(0, SCENES, BLOCK)
@@ -75,18 +73,18 @@ def record(
 
 
 @native.using(native.PORTABLE)
-def fly(platform: PlatformName, level: str, first: int) -> Flights:
+def fly(level: str, first: int) -> Flights:
     """Fly the scenes of a batch, which begins at scene `first`."""
-    system = Quadrotor.parse(platform=platform, wind=level, clearance="true")
+    system = Quadrotor.parse(wind=level, clearance="true")
     scenes = tuple(s.id for s in system.library(LIBRARY).scenes)
     return record_flights(system, VARIANT, scenes[first : first + BLOCK], SEED)
 
 
-def code_sha256(platform: PlatformName = DEFAULT_NAME) -> str:
+def code_sha256() -> str:
     """Return a hash of what decides the pool: the system, its weights, and the settings here."""
-    spec = SystemSpec(name=Quadrotor.name, options={"platform": platform, "clearance": "true"})
+    spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
     state = system_code(Quadrotor.parse(**spec.options), spec).state
     code = code_of("training.trajectories")
-    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORMS[platform].hash)
+    settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
     content = repr((state.contents, code, *settings))
     return hashlib.sha256(content.encode()).hexdigest()
