@@ -142,11 +142,8 @@ class Quadrotor(LoopSystem):
         found = modelled(predictor, reconstruction, place)
         found.append(Planning(setup.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
-            found.append(
-                Perception(
-                    lambda: DepthClearance(clearance_model(place), place, PLATFORM.perception)
-                )
-            )
+            model = clearance_model(place)
+            found.append(Perception(lambda: DepthClearance(model, place, PLATFORM.perception)))
         return found
 
     @arithmetic()

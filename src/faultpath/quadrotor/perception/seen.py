@@ -52,8 +52,8 @@ class _Captured:
 class DepthClearance:
     """The clearance that the latest depth images show, for planners that ask about many points.
 
-    It sees what it is given and nothing else: images and the poses they were taken from. Points that no pixel can show have a clearance of at most
-    `PerceptionSettings.unseen_m`.
+    It sees what it is given and nothing else: images and the poses they were taken from. Points
+    that no pixel can show have a clearance of at most `PerceptionSettings.unseen_m`.
     """
 
     encoder: CompiledEncoder | None = None

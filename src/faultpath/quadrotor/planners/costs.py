@@ -24,8 +24,8 @@ class CostWeights(BaseModel):
     goal: float = 8.0
     running: float = Field(default=0.4, ge=0, le=1)
     """Share of the mean distance along the horizon in the distance to the goal; the rest is that at
-    its end. At 0 the planner is soft in height: a candidate that climbs back by the end pays nothing
-    for the way, so a thrust error settles into an altitude offset. At 1 it is stiff and hides it."""
+    its end. At 0 the planner is soft in height: a candidate that climbs back by the end pays
+    nothing for the way, so a thrust error settles into an altitude offset. At 1 it is stiff."""
     risk: float = 36.0
     hit: float = 400.0
     margin_m: float = 0.3
