@@ -142,8 +142,11 @@ class Quadrotor(LoopSystem):
         found = modelled(predictor, reconstruction, place)
         found.append(Planning(setup.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
-            model = clearance_model(place)
-            found.append(Perception(lambda: DepthClearance(model, place, PLATFORM.perception)))
+            found.append(
+                Perception(
+                    lambda: DepthClearance(clearance_model(place), place, PLATFORM.perception)
+                )
+            )
         return found
 
     @arithmetic()
