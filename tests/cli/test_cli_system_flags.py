@@ -33,12 +33,12 @@ def _elsewhere(tmp_path, monkeypatch):
     ("line", "meant"),
     [
         (("audit", TOY, "--sceens", "3"), "--scenes"),
-        (("audit", "quadrotor", "--plnner", "cem"), "--planner"),
+        (("audit", "quadrotor", "--plnner", "mppi"), "--planner"),
         (("check", "quadrotor", "--seeed", "1"), "--seed"),
         (("audit", "mine.py:create", "--geer", "low"), "--gear"),
         (("report", "--jsn"), "--json"),
         (("audit", "--study", "x.yaml", "--worker", "1"), "--workers"),
-        (("train", "quadrotor", "--plattform", "x"), "--platform"),
+        (("train", "quadrotor", "--wrkers", "1"), "--workers"),
     ],
 )
 def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):

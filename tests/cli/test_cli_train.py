@@ -66,7 +66,7 @@ def test_the_same_again_fits_nothing_until_forced(monkeypatch: pytest.MonkeyPatc
 
 
 def test_finished_checkpoints_are_shipped(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda platform="first": tmp_path / "package")
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
     assert _train("one", "--ship").status == 0
     assert checkpoint.checkpoint_path("one", 0).parent == tmp_path / "package"
 
@@ -84,7 +84,7 @@ def test_models_that_fail_are_told_and_change_the_status() -> None:
 def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[tuple[Path, tuple[str, ...], int]] = []
 
-    def collect(folder: Path, pools, workers: int, progress, platform) -> None:
+    def collect(folder: Path, pools, workers: int, progress) -> None:
         progress(1.0, 2.0)
         asked.append((folder, pools, workers))
 
@@ -103,7 +103,7 @@ def test_flights_that_are_missing_are_collected_first(monkeypatch: pytest.Monkey
 def test_data_that_models_fly_are_collected_when_those_are_fitted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    def collect(folder: Path, pools, workers: int, progress, platform) -> None:
+    def collect(folder: Path, pools, workers: int, progress) -> None:
         assert Path("runs/train/one-0.safetensors").exists()
         progress(1.0, 1.0)
 
@@ -120,7 +120,7 @@ def test_data_that_models_fly_are_collected_when_those_are_fitted(
 def test_closed_loop_flights_without_their_predictor_are_refused_before_any_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(job_pools, "shipped_folder", lambda platform: tmp_path / platform)
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path)
     flown = catalogue.Entry(
         "flown", entry("one").factory, ("trajectory",), "", 9.0, seeds=(0,), after=("one",)
     )
@@ -156,7 +156,6 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPat
         (["one", "--seed", "-1"], ["--seed", "greater than or equal to 0"]),
         (["one", "--out", "/proc/none"], ["/proc/none", "choose another path"]),
         (["one", "--fast"], ["--fast"]),
-        (["one", "--platform", "moon"], ["no platform 'moon'", "first"]),
     ],
     ids=" ".join,
 )

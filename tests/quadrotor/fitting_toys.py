@@ -95,9 +95,8 @@ class Toy(Task):
         }
 
 
-def make(name: str, seed: int, data: Path, platform: Any = None) -> Task:
+def make(name: str, seed: int, data: Path) -> Task:
     """Make a task for the catalogue; the file `data/gate` slows it down while it exists."""
-    del platform
     if name == "mistake":
         raise UserError("the toy has no data: make some.")
     if name == "bug":

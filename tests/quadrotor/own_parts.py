@@ -7,11 +7,10 @@ from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planners import (
     MPPI,
     AutoregressiveSampler,
+    CostWeights,
     NavigationCost,
-    ScaledTemperature,
-    TerminalGoal,
 )
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.predictors import KinematicIntegrator
 from faultpath.quadrotor.reconstruction import Reconstruction
 
@@ -22,7 +21,7 @@ class Heavy(KinematicIntegrator):
     """Kinematics that a compiled kernel does not stand for."""
 
     def __init__(self, seed: int | None) -> None:
-        super().__init__(drag=True, drag_kgps=DEFAULT.drag_kgps)
+        super().__init__(drag=True, drag_kgps=PLATFORM.drag_kgps)
         self.seed = seed
 
 
@@ -30,7 +29,7 @@ class K(KinematicIntegrator):
     """Kinematics in the wind of the platform that is flown."""
 
     def __init__(self, drag: bool = False, wind: bool = True) -> None:
-        super().__init__(drag, wind, drag_kgps=DEFAULT.drag_kgps)
+        super().__init__(drag, wind, drag_kgps=PLATFORM.drag_kgps)
 
 
 class Constant(Reconstruction):
@@ -64,7 +63,7 @@ def predictor(seed):
 
 
 def exact(seed):
-    return KinematicIntegrator(drag=True, drag_kgps=DEFAULT.drag_kgps)
+    return KinematicIntegrator(drag=True, drag_kgps=PLATFORM.drag_kgps)
 
 
 def wind(seed):
@@ -74,6 +73,6 @@ def wind(seed):
 def planner(seed):
     return Halved(
         AutoregressiveSampler(OPTIONS.sampling),
-        NavigationCost(TerminalGoal(), OPTIONS.settings.planner.weights),
-        ScaledTemperature(OPTIONS.settings.planner.temperature),
+        NavigationCost(CostWeights(running=0.0)),
+        PLATFORM.planner.temperature,
     )

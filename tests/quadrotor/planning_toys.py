@@ -1,25 +1,14 @@
 """One replan outside the loop: what tests of planners share."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.planners import Planner, Scored, Temperature
+from faultpath.quadrotor.planners import Planner, Scored
 from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import rolling
 from faultpath.quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
-
-
-@dataclass(frozen=True)
-class Even(Temperature):
-    """The same temperature, whatever the candidates cost."""
-
-    value: float
-
-    def of(self, cost: Tensor) -> Tensor:
-        return torch.full_like(cost[:, :1], self.value)
 
 
 def replan(

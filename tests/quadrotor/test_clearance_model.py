@@ -161,65 +161,6 @@ def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):
     assert not torch.equal(perception.query(points(2), [0, 1]), before)
 
 
-def test_known_floor_and_ceiling_bound_the_clearance_as_delivered(model: ClearanceModel):
-    perception, position, rotation = captured(model, 2)
-    world = points(2)
-    without = perception.query(world, [0, 1])
-    limits = torch.tensor([[-0.3, 0.4], [-9.0, 9.0]])
-    perception.capture(images(2), position, rotation.movedim(-1, 0), limits)
-    found = perception.query(world, [0, 1])
-    height = world[2]
-    expected = without[0].minimum(height[0] + 0.3).minimum(0.4 - height[0])
-    torch.testing.assert_close(found[0], expected)
-    assert (found[0] < without[0]).any()
-    assert torch.equal(found[1], without[1]), "limits far away change nothing"
-
-
-def remembering(model: ClearanceModel, images_kept: int, every: int = 1) -> DepthClearance:
-    with native.using(native.PORTABLE):
-        asked = PerceptionSettings(remembered=images_kept, remembered_every=every)
-        return DepthClearance(model, settings=asked)
-
-
-def turned(degrees: float) -> torch.Tensor:
-    yaw = torch.deg2rad(torch.tensor(degrees, dtype=torch.float64))
-    return so3.from_yaw(yaw)[None]
-
-
-def test_what_left_the_view_keeps_the_clearance_that_the_last_image_of_it_showed(
-    model: ClearanceModel,
-):
-    """The vehicle turns about: what lies behind was seen two looks ago, from a place that the
-    state of then tells."""
-    here = torch.zeros(1, 3, dtype=torch.float64)
-    there = torch.tensor([[0.5, 0.0, 0.0]], dtype=torch.float64)
-    looks = images(3)
-    perception = remembering(model, 2)
-    for at, way, image in ((there, 0.0, 0), (here, 90.0, 1), (here, 180.0, 2)):
-        perception.capture(looks[image : image + 1], at, turned(way))
-    asked = points(1, 960)
-    found = perception.query(asked, [0])
-    first = remembering(model, 0)
-    first.capture(looks[:1], there, turned(0.0))
-    local = asked - there.T.float()[..., None]
-    ahead = in_view(local) & (asked.square().sum(0) > NEAR_M**2)
-    assert ahead.any()
-    assert torch.equal(found[ahead], first.query(asked, [0])[ahead])
-
-
-def test_only_so_many_images_so_far_apart_are_remembered(model: ClearanceModel):
-    here, looks = torch.zeros(1, 3, dtype=torch.float64), images(5)
-    several, last = remembering(model, 1, every=2), remembering(model, 0)
-    for image, way in enumerate((0.0, 0.0, 180.0, 180.0, 180.0)):
-        for perception in (several, last):
-            perception.capture(looks[image : image + 1], here, turned(way))
-    asked = points(1, 960)
-    assert torch.equal(several.query(asked, [0]), last.query(asked, [0])), "two looks ago: behind"
-    for perception in (several, last):
-        perception.capture(looks[:1], here, turned(0.0))
-    assert not torch.equal(several.query(asked, [0]), last.query(asked, [0]))
-
-
 def test_a_query_without_an_image_is_refused(model: ClearanceModel):
     with pytest.raises(RuntimeError, match="captured"):
         DepthClearance(model).query(points(1), [0])

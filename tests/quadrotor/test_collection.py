@@ -12,7 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training import collection, flight
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.pool import episodes_path, read_pool
@@ -75,7 +75,7 @@ def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(p
     for axis, name in enumerate(("wind_x_mps", "wind_y_mps", "wind_z_mps")):
         assert not channel(still, name).any()
         for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
-            series = DEFAULT.winds.pool_series(0, episode, 6.1)[:, axis]
+            series = PLATFORM.winds.pool_series(0, episode, 6.1)[:, axis]
             expected = series[: 25 * steps + 1 : 25].astype(np.float32)
             assert np.array_equal(channel(windy, name)[first : first + steps + 1], expected)
 

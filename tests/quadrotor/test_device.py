@@ -20,13 +20,9 @@ from faultpath.errors import UserError
 from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
 from faultpath.quadrotor import models, native, so3, system
-from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthRenderer
-from faultpath.quadrotor.planners import SamplerSettings
 from faultpath.quadrotor.plant.module import ACTION
-from faultpath.quadrotor.platform import PlannerSettings
-from faultpath.quadrotor.platforms import DEFAULT
 from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
@@ -72,17 +68,14 @@ def gpu(monkeypatch: pytest.MonkeyPatch) -> Iterator[SimulatedGPU]:
 
 def _forget() -> None:
     """Empty what is kept from flight to flight."""
-    kept = (models._predictor, models._reconstruction, models._clearance_model, arrays._laid)
+    kept = (models.predictor, models.reconstruction, models.clearance_model, arrays._laid)
     for cached in (*kept, system._field, system._renderer):
         cached.cache_clear()
 
 
 def _system(options: dict[str, str]) -> Quadrotor:
     """Return a quadrotor for CUDA, past the question whether there is any."""
-    planner = PlannerSettings(sampler=SamplerSettings(horizon=4))  # more only repeats operations
-    settings = DEFAULT.model_copy(update={"planner": planner})
-    few = {"settings": settings, "checkpoints": shipped_folder()}
-    parsed = QuadrotorOptions.model_validate({**options, "device": "cuda", **few})
+    parsed = QuadrotorOptions.model_validate({**options, "device": "cuda"})
     return Quadrotor(parsed)
 
 

@@ -12,7 +12,7 @@ from faultpath.quadrotor.evidence import quantities
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.evidence.quantities import check, measured
 from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM, Platform
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import fly
 from faultpath.quadrotor.training.playback import CODE
@@ -38,10 +38,6 @@ def recorded() -> Recorded:
     place = places(flown, STRIDE)
     scenes = tuple(f"scene/{episode}" for episode in place[:, 0])
     return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)
-
-
-ALIKE = RECORDING.model_copy(update={"options": RECORDING.options | {"platform": "first"}})
-"""On a platform whose drag is the same along all axes, so that the wind does not turn with it."""
 
 
 def ask(recorded, quantity, subject, *faults, seed=0, recording=RECORDING) -> np.ndarray:
@@ -95,14 +91,16 @@ def test_a_fault_strikes_only_the_consumers_that_it_names(recorded):
 
 def test_an_unfiltered_observer_recombines_under_shared_error(recorded, monkeypatch):
     def unfiltered(asked):
-        subject = Subject.load(quantities.quadrotor(ALIKE), asked.subject, 0)
+        subject = Subject.load(quantities.quadrotor(RECORDING), asked.subject, 0)
         return replace(
             subject, reconstruction=DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
         )
 
+    # Drag that is the same along all axes, so that the wind does not turn with it.
+    monkeypatch.setattr(quantities, "PLATFORM", Platform(drag_kgps=NOMINAL_DRAG_KGPS))
     monkeypatch.setattr(quantities, "_subject", unfiltered)
     nominal, shared, isolated = (
-        ask(recorded, "acceleration-error", "dob", *faults, recording=ALIKE)
+        ask(recorded, "acceleration-error", "dob", *faults)
         for faults in ((), (SHARED,), (AT_RECONSTRUCTION,))
     )
     np.testing.assert_allclose(shared, nominal, atol=2e-4)
@@ -124,7 +122,7 @@ def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded)
     assert not ask(recorded, "acceleration-error", "true-wind").any()
     wind = recorded.windows.wind_mps[:, HISTORY].double()
     to_world = recorded.windows.rotation[:, :, HISTORY].double()
-    drag = torch.tensor(DEFAULT.drag_kgps, dtype=torch.float64)
+    drag = torch.tensor(PLATFORM.drag_kgps, dtype=torch.float64)
     along_body = torch.einsum("wbn,wn->bn", to_world, wind)
     force = (drag[:, None] * along_body).norm(dim=0).numpy()
     still = ask(recorded, "wind-term-error", "zero-wind")

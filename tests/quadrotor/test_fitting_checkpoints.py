@@ -44,9 +44,9 @@ def test_the_file_depends_on_the_weights_alone(fitted: Path, tmp_path: Path) -> 
 
 
 def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match=r"'wm-q' with seed 7 for the platform 'matched'") as stop:
+    with pytest.raises(UserError, match=r"'wm-q' with seed 7 in ") as stop:
         checkpoint_path("wm-q", 7)
-    assert "`faultpath train quadrotor wm-q --seed 7 --platform matched --ship`" in str(stop.value)
+    assert "`faultpath train quadrotor wm-q --seed 7 --ship`" in str(stop.value)
     with pytest.raises(UserError, match=f"in {tmp_path}"):
         checkpoint_path("wm-q", 7, tmp_path)
 
@@ -54,7 +54,7 @@ def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it(tmp_path: 
 def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
     fitted: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda platform="first": tmp_path / "package")
+    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
     ship(fitted)
     found = checkpoint_path("toy", 0)
     assert found.parent == tmp_path / "package"
@@ -65,7 +65,7 @@ def test_checkpoints_ship_inside_the_package() -> None:
     import faultpath.quadrotor
 
     assert faultpath.quadrotor.__file__ is not None
-    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints" / "matched"
+    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints"
 
 
 def test_every_shipped_checkpoint_is_the_one_of_its_card() -> None:

@@ -10,7 +10,7 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import Stopped, UserError
-from faultpath.quadrotor.platforms import DEFAULT, DEFAULT_NAME
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath.quadrotor.training.collection import EPISODES
@@ -95,8 +95,8 @@ def test_a_pool_of_other_code_is_not_fitted_on(
         pool=pool,
         episodes=1,
         seed=0,
-        flight=DEFAULT.collection,
-        vehicle=DEFAULT.ranges,
+        flight=PLATFORM.collection,
+        vehicle=PLATFORM.ranges,
         wind={},
         code_sha256=code,
         faultpath_version="0",
@@ -116,7 +116,7 @@ def test_a_pool_of_other_code_is_not_fitted_on(
     heavier = {"vehicle": VehicleRanges(mass=0.9)}
     path.write_bytes(provenance.model_copy(update=heavier).encode())
     if pool == "nominal":  # of flights in closed loop the code tells, by the platform's hash
-        with pytest.raises(UserError, match="was collected for another platform than matched"):
+        with pytest.raises(UserError, match="was collected for another platform than this"):
             job_pools.check_pools(wanted, tmp_path)
 
 
@@ -126,8 +126,7 @@ def test_each_missing_pool_is_made_by_its_own_collector(
     made: list[str] = []
     told: list[tuple[str, float, float]] = []
 
-    def flights(folder: Path, pools: list[str], workers: int, progress, platform) -> None:
-        assert platform == DEFAULT
+    def flights(folder: Path, pools: list[str], workers: int, progress) -> None:
         made.extend(f"{folder.name}/{pool} by {workers}" for pool in pools)
         progress(1.0, 2.0)
 
@@ -137,8 +136,7 @@ def test_each_missing_pool_is_made_by_its_own_collector(
 
     monkeypatch.setattr(job_pools, "collect", flights)
 
-    def closed_loop(folder: Path, workers: int, platform, progress) -> None:
-        assert platform == DEFAULT_NAME
+    def closed_loop(folder: Path, workers: int, progress) -> None:
         made.append(f"{folder.name}/closed loop by {workers}")
         progress(5, 6)
 
@@ -205,7 +203,7 @@ def test_force_fits_again(tmp_path: Path) -> None:
 
 def test_finished_models_are_shipped_when_asked(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
     shipped: list[Path] = []
-    monkeypatch.setattr(jobs, "ship", lambda path, platform: shipped.append(path))
+    monkeypatch.setattr(jobs, "ship", lambda path: shipped.append(path))
     _run(tmp_path, [Job(entry("one"), 0)])
     assert shipped == []
     _run(tmp_path, [Job(entry("one"), 0), Job(entry("mistake"), 0)], shipped=True)
@@ -285,8 +283,8 @@ def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
 
 
 def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(name: str, seed: int, data: Path, platform) -> Toy:
-        del name, seed, data, platform
+    def stop(name: str, seed: int, data: Path) -> Toy:
+        del name, seed, data
         raise KeyboardInterrupt
 
     stopping = catalogue.Entry("stop", stop, (), "", 0.5, seeds=(0,))

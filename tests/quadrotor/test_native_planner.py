@@ -12,14 +12,10 @@ from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
 from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
-    BlendedGoal,
     CostWeights,
-    GoalCost,
     NavigationCost,
-    RunningGoal,
     SamplerSettings,
     Scored,
-    TerminalGoal,
 )
 from faultpath.quadrotor.predictors.rollout import Rollout
 from faultpath.quadrotor.state import State
@@ -60,9 +56,6 @@ def test_noise_is_the_portable_one(isa: str, candidates: int, horizon: int) -> N
     close(*both(isa, sampler.noise, SCENES, 3, 5))
 
 
-GOALS = ["terminal", "running", "blended"]
-
-
 def scored(stream: torch.Generator, candidates: int) -> Scored:
     def draw(*shape: int) -> torch.Tensor:
         return torch.randn(*shape, generator=stream)
@@ -81,30 +74,21 @@ def scored(stream: torch.Generator, candidates: int) -> Scored:
 
 
 @pytest.mark.parametrize("candidates", [64, 50])
-@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal(), BlendedGoal(0.35)], ids=GOALS)
+@pytest.mark.parametrize("running", [0.0, 0.35, 1.0])
 def test_costs_are_the_portable_ones(
-    isa: str, goal: GoalCost, candidates: int, stream: torch.Generator
+    isa: str, running: float, candidates: int, stream: torch.Generator
 ) -> None:
-    cost = NavigationCost(goal, CostWeights())
+    cost = NavigationCost(CostWeights(running=running))
     case = scored(stream, candidates)
     close(*both(isa, cost, case))
-
-
-@pytest.mark.parametrize("goal", [TerminalGoal(), RunningGoal()], ids=GOALS[:2])
-def test_a_blend_at_its_ends_is_the_end_to_the_bit(
-    isa: str, goal: GoalCost, stream: torch.Generator
-) -> None:
-    case = scored(stream, 64)
-    blended = under(isa, NavigationCost(BlendedGoal(goal.running)), case)
-    assert torch.equal(under(isa, NavigationCost(goal), case), blended)
 
 
 @pytest.mark.parametrize("term", ["goal", "risk", "hit", "speed", "heading", "rate_effort"])
 def test_every_term_of_the_cost_counts(isa: str, term: str, stream: torch.Generator) -> None:
     case = scored(stream, 16)
     without = CostWeights(**{term: 0.0})
-    whole = under(isa, NavigationCost(TerminalGoal()), case)
-    rest, reference = both(isa, NavigationCost(TerminalGoal(), without), case)
+    whole = under(isa, NavigationCost(), case)
+    rest, reference = both(isa, NavigationCost(without), case)
     assert not torch.allclose(whole, rest)
     close(rest, reference)
 
@@ -112,7 +96,7 @@ def test_every_term_of_the_cost_counts(isa: str, term: str, stream: torch.Genera
 def test_what_is_no_number_stays_so_in_costs(isa: str, stream: torch.Generator) -> None:
     case = scored(stream, 16)
     case.clearance[1, 4, 3] = torch.nan
-    mine, reference = both(isa, NavigationCost(TerminalGoal()), case)
+    mine, reference = both(isa, NavigationCost(), case)
     assert mine.isnan().any()
     assert torch.equal(mine.isnan(), reference.isnan())
 

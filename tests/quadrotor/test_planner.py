@@ -9,14 +9,14 @@ from scipy import stats
 from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
-    RunningGoal,
+    BundledSampler,
+    CostWeights,
+    NavigationCost,
     SamplerSettings,
-    ScaledTemperature,
     Scored,
-    TerminalGoal,
-    goal_cost,
     shift,
 )
+from faultpath.quadrotor.planners.mppi import best_bundle, softmax
 from faultpath.quadrotor.planners.sampler import standard_normals
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import Rollout
@@ -89,35 +89,42 @@ def scored(positions, goal):
     )
 
 
-def test_goal_costs_differ_in_the_way_that_matters():
-    """A dip that is made good by the end is free for the terminal cost only."""
-    straight = torch.zeros(3, 1, 3)
-    dip = straight.clone()
-    dip[2, 0, 1] = -1.0
-    case = scored(torch.stack([straight, dip], dim=-1), torch.zeros(3, 1))
-    assert torch.equal(TerminalGoal().distance(case), torch.zeros(1, 2))
-    assert RunningGoal().distance(case)[0].tolist() == pytest.approx([0, 1 / 3])
-
-
-def test_stiffness_is_one_weight_between_both_goal_costs():
+@pytest.mark.parametrize(("running", "expected"), [(0.0, 0.2), (0.35, 0.27), (1.0, 0.4)])
+def test_stiffness_is_the_share_of_the_way_in_the_distance(running, expected):
+    """A dip that is mostly made good by the end costs little where only the end counts."""
     straight = torch.zeros(3, 1, 3)
     dip = straight.clone()
     dip[2, 0, 1] = -1.0
     dip[2, 0, 2] = -0.2
     case = scored(torch.stack([straight, dip], dim=-1), torch.zeros(3, 1))
-    found = [goal_cost(share).distance(case)[0, 1].item() for share in (0.0, 0.35, 1.0)]
-    assert found == pytest.approx([0.2, 0.65 * 0.2 + 0.35 * 0.4, 0.4])
-    ends = (goal_cost(0.0), goal_cost(1.0))
-    assert [type(each) for each in ends] == [TerminalGoal, RunningGoal]
+    cost = NavigationCost(CostWeights(goal=1.0, running=running, heading=0.0, thrust_effort=0.0))
+    found = cost(case)[0]
+    assert (found[1] - found[0]).item() == pytest.approx(expected)
 
 
-def test_temperatures():
+def test_what_hits_something_does_not_change_how_the_rest_is_weighed():
     cost = torch.tensor([[0.0, 1.0, 2.0, 3.0, 100.0, 100.0, 100.0, 100.0]])
-    assert ScaledTemperature(0.5).of(cost).item() == pytest.approx(0.5 * cost[0, :4].std().item())
-    # What hits something does not change how the rest is weighed.
     worse = cost.clone()
     worse[0, 4:] = 1e6
-    assert torch.equal(ScaledTemperature(0.5).of(worse), ScaledTemperature(0.5).of(cost))
+    weights = softmax(cost, 0.5)
+    assert torch.equal(softmax(worse, 0.5), weights)
+    spread = 0.5 * cost[0, :4].std()
+    assert (weights[0, 0] / weights[0, 1]).log().item() == pytest.approx(1 / spread.item())
+
+
+def test_bundles_are_neighbours_and_each_candidate_is_distributed_as_before():
+    settings = SamplerSettings(candidates=4096)
+    plain = AutoregressiveSampler(settings).noise(SCENES, 0, 3)
+    bundled = BundledSampler(settings).noise(SCENES, 0, 3)
+    assert float(bundled[..., 1:].std()) == pytest.approx(float(plain[..., 1:].std()), abs=0.05)
+    third = bundled.unflatten(-1, (8, -1))[..., 3, :]
+    centre, others = third[..., :1], third[..., 1:]
+    assert float((centre * others).mean()) == pytest.approx(0.5**0.5, abs=0.1)
+
+
+def test_the_plan_is_that_of_one_bundle():
+    weights = best_bundle(torch.tensor([[0.05, 0.05, *[0.06] * 12, 0.08, 0.1]]))
+    assert weights[0].tolist() == pytest.approx([0.0] * 14 + [0.08 / 0.18, 0.1 / 0.18])
 
 
 def test_plan_moves_towards_the_goal_and_away_from_what_is_close():

@@ -106,6 +106,4 @@ def test_the_true_parameters_predict_recorded_flights_best(data):
         *_, last = predict(predictor, windows, correct(predictor, windows))
         return float((last.position[..., 0] - windows.position[:, -1]).norm(dim=0).median())
 
-    assert missed(TrueParameter()) < 0.5 * missed(KinematicIntegrator(wind=False))
-    following = missed(TrueParameter(follows_motors=True))
-    assert following < 0.5 * missed(TrueParameter()), "its motors' torque is what it lacked"
+    assert missed(TrueParameter()) < 0.25 * missed(KinematicIntegrator(wind=False))

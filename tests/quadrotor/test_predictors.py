@@ -153,7 +153,7 @@ def test_motors_that_follow_the_executed_commands_need_not_be_told():
         commands=commands(1.2 * GRAVITY_MPS2, candidates=1)[:12].movedim(0, 1),
         mass_kg=torch.ones(1, 1, dtype=torch.float64),
     )
-    predictor = TrueParameter(follows_motors=True)
+    predictor = TrueParameter()
     code = predictor.encode(past)
     assert code.shape == (32, 1, 1)
     told = replace(inputs(thrust=1.2 * GRAVITY_MPS2), code=code)

@@ -7,7 +7,6 @@ import torch
 
 from faultpath.quadrotor.evidence.inputs import Subject
 from faultpath.quadrotor.models import PACKAGE, PREDICTORS, RECONSTRUCTIONS
-from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.predictors import module as prediction
 from faultpath.quadrotor.system import Quadrotor
@@ -61,7 +60,7 @@ def windows() -> Windows:
     """As many windows of collected flights as fill whole vectors."""
     flown = FlightData.decode(
         "test",
-        encode_rows(range(16), flights := fly("wind", range(16), 0, FIRST)),
+        encode_rows(range(16), flights := fly("wind", range(16), 0)),
         encode_episodes(range(16), flights),
     )
     found = cut(flown)

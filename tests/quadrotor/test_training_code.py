@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import Root, read_code
-from faultpath.quadrotor.platforms import FIRST
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.training import clearance_data, closed_loop, flight
@@ -17,7 +16,7 @@ SOURCE = Path(__file__).resolve().parents[2] / "src"
 
 
 def _pool(folder: Path) -> None:
-    write_flights(folder / "batch", range(1), flight.fly("wind", range(1), 0, FIRST))
+    write_flights(folder / "batch", range(1), flight.fly("wind", range(1), 0))
 
 
 def _closed_loop(folder: Path) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.quadrotor.platforms import DEFAULT
+from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.pool import read_pool
 from faultpath.quadrotor.training.windows import (
@@ -110,7 +110,7 @@ def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, poo
     for w in (0, 5, len(windy) - 1):
         episode, number = int(windy.episode[w]), int(windy.ids[w].rpartition("/")[2])
         first = starts(int(steps[episode]))[number]
-        series = DEFAULT.winds.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
+        series = PLATFORM.winds.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
         assert np.array_equal(windy.wind_mps[..., w].T.numpy(), series.astype(np.float32))
 
 
