@@ -99,13 +99,6 @@ def offset_m(flown):
 
 
 # --- system ---
-class Pendulum(ComposedSystem):
-    components = {  # noqa: RUF012 - never changed; what a report calls the numbers of a reading
-        "encoders": ("cart", "pole"),
-        "state": ("cart", "pole", "cart's speed", "pole's speed", "outside force"),
-    }
-
-
 def create():
     plant = GymnasiumPlant(
         "InvertedPendulum-v5",
@@ -116,7 +109,7 @@ def create():
         succeeded=lambda flown: not flown.terminated and offset_m(flown) <= 0.05,
         metrics={"offset_m": Measure(Metric(unit="m", better="less"), offset_m)},
     )
-    return Pendulum(
+    return ComposedSystem(
         "pendulum",
         plant,
         variants={

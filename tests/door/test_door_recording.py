@@ -10,8 +10,7 @@ import faultpath
 from faultpath.door import recording
 from faultpath.door.saved import read_run
 from faultpath.errors import UserError
-from faultpath.review.hearing import fly_heard
-from faultpath.review.listening import error_signals
+from faultpath.review.hearing import error_signals, fly_heard
 from faultpath.store.signals import SIGNALS, TOGETHER
 from faultpath.trials import Arm, ErrorSum, ErrorTerm, SystemSpec, load_system
 
@@ -108,7 +107,7 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
         "class Odd(toy.Toy):\n"
         "    def run(self, variant, scenes, taps, seed):\n"
         "        outcomes = super().run(variant, scenes, taps, seed)\n"
-        "        if type(taps).__name__ == 'HearingTaps':\n"
+        "        if taps._observer is not None:\n"
         f"            {what}\n"
         "        return outcomes\n"
         "create = Odd\n",

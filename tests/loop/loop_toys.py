@@ -8,7 +8,8 @@ import numpy as np
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, graph
 from faultpath.loop import interface_of as derived
-from faultpath.taps import Query, Taps, TracedTaps, TraceEnded
+from faultpath.review.flights import TraceEnded
+from faultpath.taps import Query, Taps
 
 DT_S = 0.1
 SCENES = ("a", "b")
@@ -101,8 +102,7 @@ def execute(modules, faults=(), place="", trace=None, guard=False):
     """Return the instants and the taps of one execution."""
     interface, parts = wired(modules, place)
     asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
-    traced = {} if trace is None else {"trace": trace}
-    taps = (TracedTaps if traced else Taps)(interface, faults, **asked, **traced)
+    taps = Taps(interface, faults, **asked, observer=trace)
     with contextlib.suppress(TraceEnded):
         return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
     return [], taps

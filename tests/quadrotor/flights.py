@@ -1,7 +1,6 @@
 """Short flights: what the tests of the system share."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,53 +12,41 @@ from faultpath.quadrotor.scenes.library import Library, as_text
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Scene, Topology
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.quadrotor.vehicle import VehicleParameters
-from faultpath.taps import Query, Reading, Taps
+from faultpath.taps import Observer, Query, Reading, Taps
+from faultpath.taps.tap import Tap
 from faultpath.trials import Outcome, SystemSpec, load_system
 
 STEPS = 12
 HELD_OUT = tuple(f"held-out/{i:03d}" for i in range(5))
 
 
-class WatchedTaps(Taps):
-    """Taps that hand `noted` each reading or answer of a query, and what was delivered of it."""
+class Log(Observer):
+    """Keeps each reading and what was delivered of it."""
 
-    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
-        """Take note of one delivery at a tap; `query` is what was asked, if anything was."""
+    def __init__(self) -> None:
+        self.kept: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        query = reading.value
-        if not isinstance(query, Query):
-            value = super().deliver(channel, consumer, reading, step)
-            self.noted((channel, consumer), query, value, None)
-            return value
-        made: list[Any] = []
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        if not isinstance(reading.value, Query):
+            self._keep(tap, reading.value, got)
 
-        def noting(request: Any) -> Any:
-            made.append(query.answer(request))
-            return made[-1]
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        self._keep(tap, query.value(answer), query.value(got))
 
-        watched = replace(reading, value=replace(query, answer=noting))
-        ask = super().deliver(channel, consumer, watched, step)
-
-        def asking(request: Any) -> Any:
-            answer = ask(request)
-            self.noted((channel, consumer), made[-1], answer, query)
-            return answer
-
-        return asking
+    def _keep(self, tap: Tap, given: Any, got: Any) -> None:
+        pair = given.numpy().copy(), got.numpy().copy()
+        self.kept.setdefault((tap.channel, tap.consumer), []).append(pair)
 
 
-class LoggingTaps(WatchedTaps):
-    """Taps that keep each reading and what was delivered of it."""
+class LoggingTaps(Taps):
+    """Taps that a log observes."""
 
     def __init__(self, *args, **kwargs) -> None:
-        super().__init__(*args, **kwargs)
-        self.log: dict[tuple[str, str], list[tuple[Array, Array]]] = {}
-
-    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
-        if query is not None:
-            made, delivered = query.value(made), query.value(delivered)
-        self.log.setdefault(tap, []).append((made.numpy().copy(), delivered.numpy().copy()))
+        kept = Log()
+        super().__init__(*args, observer=kept, **kwargs)
+        self.log = kept.kept
 
     def delivered(self, channel: str, consumer: str) -> np.ndarray:
         """Return `[steps, scenes, ...]`."""

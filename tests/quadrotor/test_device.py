@@ -15,7 +15,6 @@ from torch import Tensor
 from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicOutputShapeException
 
 from faultpath import arrays
-from faultpath.arrays import Array
 from faultpath.errors import UserError
 from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
@@ -27,7 +26,8 @@ from faultpath.quadrotor.predictors import AnchoredPredictor
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Query, Reading, Taps
+from faultpath.taps import Observer, Query, Reading, Taps
+from faultpath.taps.tap import Tap
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}
@@ -39,21 +39,17 @@ FLIGHTS = [
 ]
 
 
-class PlacedTaps(Taps):
-    """Taps that look where every reading is, and where what they deliver is."""
+class Placed(Observer):
+    """Looks where every reading is, and where what is delivered is."""
 
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
-        value, query = super().deliver(channel, consumer, reading, step), reading.value
-        if not isinstance(query, Query):
-            assert query.device == value.device == GPU, f"{channel} -> {consumer}"
-            return value
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        if not isinstance(reading.value, Query):
+            assert reading.value.device == got.device == GPU, str(tap)
 
-        def asking(request: Any) -> Any:
-            answer = value(request)
-            assert query.value(answer).device == GPU, f"{channel} -> {consumer}"
-            return answer
-
-        return asking
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        assert query.value(got).device == GPU, str(tap)
 
 
 @pytest.fixture
@@ -84,10 +80,10 @@ def _wired(
     variant: str,
     texts: Sequence[str],
     scenes: Sequence[str],
-    kind: type[Taps] = Taps,
+    observer: Observer | None = None,
 ) -> Taps:
     parts = built.variants[variant]
-    return kind(
+    return Taps(
         built.interface,
         [fault(text, built) for text in texts],
         scenes=tuple(scenes),
@@ -96,13 +92,14 @@ def _wired(
         bindings=parts.bindings,
         consumers=parts.consumers,
         privileged=parts.privileged,
+        observer=observer,
     )
 
 
 @pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
 def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts, gpu):
     built, scenes = _system(options), HELD_OUT[:3]
-    taps = _wired(built, variant, texts, scenes, PlacedTaps)
+    taps = _wired(built, variant, texts, scenes, Placed())
     steps = built.loop(variant, seed=0).execute(Batch(scenes, 0, built.control_dt_s), taps)
     gpu.watching = True
     assert next(steps).inputs[ACTION].device == GPU

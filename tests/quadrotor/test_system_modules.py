@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from flights import HELD_OUT, STEPS, WatchedTaps, fault, fly, quadrotor
+from flights import HELD_OUT, STEPS, fault, fly, quadrotor
 
 from faultpath.execution.attempt import taps_of
 from faultpath.interface import Provenance
@@ -14,7 +14,9 @@ from faultpath.quadrotor.estimators.exact import ExactEstimator
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Query, Trace, TracedTaps
+from faultpath.review.flights import Trace
+from faultpath.taps import Observer, Query
+from faultpath.taps.tap import Tap
 from faultpath.trials import Arm
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -85,48 +87,43 @@ def test_truth_has_one_door(systems):
 
 
 @pytest.mark.parametrize(("options", "variant"), FLOWN, ids=[name for _, name in FLOWN])
-def test_what_flies_looks_at_every_port_and_takes_truth_at_the_door_only(options, variant):
-    system, trace = quadrotor(**options), Trace(steps=None)
+def test_what_flies_reads_every_port_and_commands_late(options, variant):
+    system = quadrotor(**options)
     batch = Batch(HELD_OUT[:2], 0, system.control_dt_s)
-    taps = taps_of(system, Arm(variant=variant), batch.scenes, TracedTaps, trace=trace)
+    trace = Trace(batch.scenes, steps=None)
+    taps = taps_of(system, Arm(variant=variant), batch.scenes, observer=trace)
     with torch.inference_mode():
         instants = list(system.loop(variant, 0).execute(batch, taps))
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
-    assert list(trace.unused()) == []
-    assert trace.truths == {("estimator", "vehicle")}
-    assert {each.consumer for each in trace.reads} == set(system.variants[variant].consumers)
-    taught = {each.consumer for each in trace.reads if each.channel == "action"}
-    late = {each.consumer for each in trace.reads if each.valid_step < each.step}
+    reads = trace.held.values()
+    assert {each.consumer for each in reads} == set(system.variants[variant].consumers)
+    taught = {each.consumer for each in reads if each.channel == "action"}
+    late = {each.consumer for each in reads if each.valid_step < each.step}
     assert late == taught - {"vehicle.actuators"}
 
 
-class _Watching(WatchedTaps):
-    """Taps that note whether an answer of a query is what the source gave."""
+class _Watching(Observer):
+    """Notes whether an answer of a query is what the source gave."""
 
-    untouched: list[bool]
+    def __init__(self) -> None:
+        self.untouched: list[bool] = []
 
-    def noted(self, tap: tuple[str, str], made: Any, delivered: Any, query: Query | None) -> None:
-        if query is not None:
-            self.untouched.append(delivered is made)
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        self.untouched.append(got is answer)
 
 
 @pytest.mark.parametrize(("text", "touched"), [(None, 0), ("rollout:offset=0.1", STEPS)])
 def test_an_answer_without_a_fault_is_handed_on_as_it_is(text, touched):
     system = quadrotor()
-    parts = system.variants["dob"]
-    taps = _Watching(
-        system.interface,
-        [] if text is None else [fault(text, system)],
-        scenes=HELD_OUT[:1],
-        dt_s=system.control_dt_s,
-        bindings=parts.bindings,
-        consumers=parts.consumers,
-        privileged=parts.privileged,
-    )
-    taps.untouched = []
+    faults = () if text is None else fault(text, system).resolved(system.interface)
+    watching = _Watching()
+    arm = Arm(variant="dob", faults=faults)
+    taps = taps_of(system, arm, HELD_OUT[:1], observer=watching)
     system.run("dob", HELD_OUT[:1], taps, 0)
-    assert len(taps.untouched) == 2 * STEPS  # rollout and clearance
-    assert taps.untouched.count(False) == touched
+    assert len(watching.untouched) == 2 * STEPS  # rollout and clearance
+    assert watching.untouched.count(False) == touched
 
 
 @pytest.mark.parametrize(

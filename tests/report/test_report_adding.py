@@ -12,7 +12,7 @@ from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer_choice import choose
-from faultpath.review.listening import added
+from faultpath.review.hearing import added
 from faultpath.store import TrialAddress
 
 TOPIC = "error of the predicted acceleration"

@@ -2,7 +2,6 @@
 
 import hashlib
 import itertools
-import os
 from pathlib import Path
 
 import numpy as np
@@ -45,9 +44,6 @@ class Wall(System):
     def library(self, name):
         return Library(name, tuple(SceneRef(f"w{i}", i) for i in range(6)), f"{name}-1")
 
-    def fingerprint(self):
-        return os.urandom(8).hex() if self.broken == "fingerprint" else ""
-
     def run(self, variant, scenes, taps, seed):
         broken, n = self.broken, len(scenes)
         if broken == "raises" and "w2" in scenes:
@@ -57,8 +53,6 @@ class Wall(System):
             (Path(__file__).parent / "gains.txt").read_text()
         draws = np.array([generator("wall", scene, seed).uniform(size=2) for scene in scenes])
         left, mass = (draws * [2.0, 1.0] + [1.0, 1.0]).T
-        if broken == "begins otherwise":
-            left = left + (variant == "guarded")
         wind = np.zeros(n)
         match broken:
             case "never repeats":
@@ -84,8 +78,7 @@ class Wall(System):
             thrust = taps.deliver("mass", "pilot.thrust", known, step)
             pull = pull.reshape(n) / unit / (mass if broken == "ignores" else thrust)
             if variant == "guarded" and broken != "deaf" and not _kept(broken, scenes):
-                again = Reading(left + 0.1, "laser", step) if broken == "two readings" else seen
-                limit = taps.deliver("range", "guard.limit", again, step) / unit
+                limit = taps.deliver("range", "guard.limit", seen, step) / unit
                 pull = np.minimum(pull, np.nan_to_num(limit).reshape(n))
             if broken == "nosy" and variant == "bare":
                 taps.deliver("range", "guard.limit", seen, step)

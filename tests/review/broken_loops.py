@@ -49,18 +49,14 @@ class Pilot(Module):
 
     def __init__(self, broken):
         self.broken = broken
-        spare = {Port("wish", "spare")}
-        self.reads = frozenset({Port("place", "feedback"), Port("wish", "goal"), *spare})
+        self.reads = frozenset({Port("place", "feedback"), Port("wish", "goal")})
 
     def step(self, inputs, memory):
         if self.broken == "undeclared port":
             inputs["place", "other"]
         if self.broken == "undeclared truth":
             inputs.truth("truth")
-        wish = inputs["wish", "goal"]
-        if self.broken != "unused port":
-            wish = 0.5 * (wish + inputs["wish", "spare"])
-        return {"order": 0.5 * (wish - inputs["place", "feedback"])}, memory
+        return {"order": 0.5 * (inputs["wish", "goal"] - inputs["place", "feedback"])}, memory
 
 
 class Loops(LoopSystem):

@@ -10,7 +10,7 @@ from faultpath.cli.options import LARGEST, SET, TimeLimit, names, settings
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from faultpath.review.report import Report
+    from faultpath.review.check import Report
 
 FAILED = 1
 

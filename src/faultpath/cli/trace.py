@@ -51,11 +51,10 @@ def command(
         console.print(interface_table(chosen.system.interface), "")
         table = trace_table(trace)
         console.print(Parted(table))
-        slopes = trace.gradient.words() if trace.gradient else ()
-        for said in (*table.notes, *trace.privileged, *slopes):
+        for said in (*table.notes, *trace.privileged):
             console.print(said, markup=False)
         for finding in trace.findings:
-            console.print(f"Found: {finding.says}", markup=False, style=STYLES["bad"])
+            console.print(f"Found: {finding}", markup=False, style=STYLES["bad"])
         if not trace.findings:
             console.print("What ran is what is declared.", style=STYLES["good"])
     if svg is not None:

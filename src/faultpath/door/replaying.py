@@ -19,7 +19,7 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
-from faultpath.review.listening import Listening, Overheard, listen, listen_here
+from faultpath.review.hearing import Listening, Overheard, listen, listen_here
 from faultpath.store import TrialAddress, write_text
 from faultpath.store.atomic import write_file
 from faultpath.store.sealed import seal
@@ -170,7 +170,7 @@ def fly_again(
 
     limit = memory_limit(memory_limit_gib, system.memory_limit_gib)
     brief = Brief(study.system, study.library, code, held.record.question.library_hash, limit)
-    there, here = partial(listen, brief), partial(listen_here, system, study.system.name)
+    there, here = partial(listen, brief), partial(listen_here, system)
     call = here if hands.in_process else there
     seconds = TimeLimit(system.time_limit_s if time_limit_s is None else time_limit_s)
     flying = Flying[Listening](hands, lambda task: partial(call, task), seconds, study.system.name)

@@ -10,7 +10,7 @@ from faultpath.trials import System
 if TYPE_CHECKING:
     from faultpath.door.display import Display
     from faultpath.door.systems import Chosen
-    from faultpath.review.report import Report
+    from faultpath.review.check import Report
     from faultpath.review.tracing import TraceReport
 
 

@@ -3,21 +3,19 @@
 import math
 import time
 import traceback
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar, cast
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.blame import described, located
 from faultpath.errors import SystemMistake, UserError
-from faultpath.taps import TapCount, Taps
+from faultpath.taps import Observer, TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System
-
-Made = TypeVar("Made", bound=Taps)
 
 
 class WrongOutcomes(SystemMistake):
@@ -64,12 +62,12 @@ def taps_of(
     system: System,
     arm: Arm,
     scenes: Sequence[str],
-    kind: Callable[..., Made],
-    **more: Any,
-) -> Made:
-    """Return new taps for an arm over some scenes; `more` are arguments of their `kind`."""
+    guard: bool = False,
+    observer: Observer | None = None,
+) -> Taps:
+    """Return new taps for an arm over some scenes."""
     variant = system.variants[arm.variant]
-    return kind(
+    return Taps(
         system.interface,
         arm.faults,
         scenes=tuple(scenes),
@@ -78,7 +76,8 @@ def taps_of(
         bindings=variant.bindings,
         consumers=variant.consumers,
         privileged=variant.privileged,
-        **more,
+        guard=guard,
+        observer=observer,
     )
 
 
@@ -87,15 +86,15 @@ def attempt(
     arm: Arm,
     scenes: Sequence[str],
     guard: bool = False,
-    kind: Callable[..., Taps] = Taps,
+    observer: Observer | None = None,
 ) -> Done | Raised | Wrong:
-    """Run an arm over some scenes through taps of a kind; an error comes back as a value.
+    """Run an arm over some scenes; an error comes back as a value.
 
-    `guard` is that of `Taps`.
+    `guard` and `observer` are those of `Taps`.
     """
     started = time.perf_counter()
     try:
-        taps = taps_of(system, arm, scenes, kind, guard=guard)
+        taps = taps_of(system, arm, scenes, guard, observer)
         outcomes, counts = _run(system, arm, scenes, taps)
     except UserError as error:
         return Wrong(located(error))

@@ -1,7 +1,7 @@
 """The closed loop, executed: modules declare ports, and who reads what is what runs."""
 
 from faultpath.loop.graph import graph, interface_of
-from faultpath.loop.loop import Instant, Loop
+from faultpath.loop.loop import Deliverer, Instant, Loop
 from faultpath.loop.module import (
     Batch,
     Graph,
@@ -18,6 +18,7 @@ from faultpath.loop.ports import Inputs, Port
 
 __all__ = [
     "Batch",
+    "Deliverer",
     "Graph",
     "Inputs",
     "Instant",

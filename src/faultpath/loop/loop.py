@@ -2,16 +2,16 @@
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from faultpath.arrays import Array
 from faultpath.errors import SystemMistake
 from faultpath.interface import Interface, Source
 from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
 from faultpath.loop.ports import Inputs, Port
-from faultpath.taps import Reading, Taps
+from faultpath.taps import Reading
 from faultpath.text import listed
 
 _SLACK = 1e-6
@@ -46,6 +46,18 @@ class Clock:
         return waiting[0]
 
 
+class Deliverer(Protocol):
+    """What a loop asks of taps, for what stands between a loop and its taps."""
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+        """Return what a consumer gets of a reading; see `Taps.deliver`."""
+        ...
+
+    def set_active(self, mask: Array | None) -> None:
+        """Say which scenes still run, bool `[B]`."""
+        ...
+
+
 @dataclass(frozen=True)
 class Instant:
     """A control step before the plant moves on."""
@@ -65,7 +77,7 @@ class Loop:
     graph: Graph
     """What is executed; see `faultpath.loop.graph`."""
 
-    def execute(self, batch: Batch, taps: Taps) -> Iterator[Instant]:
+    def execute(self, batch: Batch, taps: Deliverer) -> Iterator[Instant]:
         """Start a batch, and yield each of its control steps and the one at which nothing runs.
 
         The last instant's `inputs` are empty: nothing reaches the plant any more.
@@ -76,7 +88,7 @@ class Loop:
 class _Execution:
     """One execution: what the sources hold, now and one step before."""
 
-    def __init__(self, loop: Loop, batch: Batch, taps: Taps) -> None:
+    def __init__(self, loop: Loop, batch: Batch, taps: Deliverer) -> None:
         self._graph = graph = loop.graph
         self._taps = taps
         read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
@@ -102,16 +114,13 @@ class _Execution:
             sensed = plant.sense(state)
             self._hold(plant, sensed, step, plant.senses)
             self._truths = {name: sensed[name] for name in plant.shows}
-            given: list[Inputs] = []
             for index, module in enumerate(modules):
-                given.append(inputs := self._inputs(module, step, running))
+                inputs = self._inputs(module, step, running)
                 outputs, memories[index] = module.step(inputs, memories[index])
                 self._hold(module, outputs, step, module.writes)
-            given.append(inputs := self._inputs(plant, step, running))
+            inputs = self._inputs(plant, step, running)
             yield Instant(step, state, inputs)
             state = plant.advance(state, inputs)
-            if self._taps.traced:  # not before: a query looks when it is asked
-                self._taps.looked(step, *_looks(given))
             step += 1
         yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
@@ -161,14 +170,3 @@ class _Execution:
                 "from the writing module's before()"
             )
         return held
-
-
-def _looks(
-    given: Sequence[Inputs],
-) -> tuple[dict[tuple[str, str], bool], set[tuple[str, str]]]:
-    looks = {
-        (port.channel, f"{inputs.module}.{port.place}"): port in inputs.used
-        for inputs in given
-        for port in inputs
-    }
-    return looks, {(inputs.module, name) for inputs in given for name in inputs.used_truths}

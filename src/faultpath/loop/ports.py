@@ -37,9 +37,6 @@ class Inputs(Mapping[Port, Any]):
         """Control step, from 0."""
         self.running = running
         """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
-        self.used: set[Port] = set()
-        """Ports that were looked at, for tracing."""
-        self.used_truths: set[str] = set()
         self._delivered = delivered
         self._truths = truths
 
@@ -47,15 +44,13 @@ class Inputs(Mapping[Port, Any]):
         """Return what came at a port; raises `UndeclaredReader` for one that is not declared."""
         found = Port(*port)
         try:
-            value = self._delivered[found]
+            return self._delivered[found]
         except KeyError:
             raise UndeclaredReader(
                 f"module '{self.module}' looked for channel '{found.channel}' at "
                 f"'{found.place}', a port that it does not declare: add "
                 f"Port('{found.channel}', '{found.place}') to its reads"
             ) from None
-        self.used.add(found)
-        return value
 
     def __contains__(self, port: object) -> bool:
         """Return whether the port is declared."""
@@ -80,5 +75,4 @@ class Inputs(Mapping[Port, Any]):
                 f"module '{self.module}' looked for the plant's truth '{name}', which it does not "
                 "declare: add it to its truths"
             )
-        self.used_truths.add(name)
         return self._truths[name]

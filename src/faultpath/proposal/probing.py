@@ -77,9 +77,9 @@ class _Beside:
         self._commands: list[Floats] = []
         self._running: list[NDArray[np.bool_]] = []
 
-    def taps(self, faults: Sequence[AnyFault], leads: bool) -> Taps:
+    def taps(self, faults: Sequence[AnyFault], leads: bool) -> "_Taps":
         arm = Arm(variant=self._variant, faults=tuple(faults), seed=self._seed)
-        return taps_of(self._system, arm, self._scenes, _Taps, beside=self, leads=leads)
+        return _Taps(taps_of(self._system, arm, self._scenes), self, leads)
 
     def step(self, inputs: Inputs) -> None:
         """Take in a command of the flight, and let the others make theirs."""
@@ -127,12 +127,12 @@ class _Beside:
         return {key: value for key, value in found.items() if np.isfinite(value)}
 
 
-class _Taps(Taps):
+class _Taps:
     """Taps that note the flight's readings of the past, or deliver these in place of their own."""
 
-    def __init__(self, *given: Any, beside: _Beside, leads: bool, **named: Any) -> None:
-        super().__init__(*given, **named)
-        self._beside, self._leads = beside, leads
+    def __init__(self, taps: Taps, beside: _Beside, leads: bool) -> None:
+        self._taps, self._beside, self._leads = taps, beside, leads
+        self.set_active = taps.set_active
 
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
         """Deliver as `Taps` does."""
@@ -141,7 +141,7 @@ class _Taps(Taps):
             if self._leads:
                 self._beside.readings[tap] = reading
             reading = self._beside.readings[tap]
-        return super().deliver(channel, consumer, reading, step)
+        return self._taps.deliver(channel, consumer, reading, step)
 
 
 def _with_plant(loop: Loop, plant: Plant) -> Loop:

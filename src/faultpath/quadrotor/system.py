@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 import torch
 from typing_extensions import override
@@ -12,7 +12,7 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
-from faultpath.loop import Loop, Module, Plant
+from faultpath.loop import Deliverer, Loop, Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.brought import bring
 from faultpath.quadrotor.checkpoint import shipped_folder
@@ -34,9 +34,13 @@ from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.variants import modelled, setups
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.taps import Taps
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath.trials.metrics import VEHICLE
+
+if TYPE_CHECKING:
+    from faultpath.execution.attempt import Done
+    from faultpath.review.hearing import Heard
+    from faultpath.store.signals import Signal
 
 
 class Quadrotor(LoopSystem):
@@ -152,8 +156,14 @@ class Quadrotor(LoopSystem):
     @arithmetic()
     @torch.inference_mode()
     @override
-    def fly(self, loop: Loop, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+    def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
         return super().fly(loop, scenes, taps, seed)
+
+    def more_signals(self, heard: "Heard", done: "Done") -> "list[tuple[Signal, ...]]":
+        """Return what a report shows of a recorded flight beside its readings."""
+        from faultpath.quadrotor.evidence.signals import quadrotor_signals
+
+        return quadrotor_signals(self, heard, done)
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)

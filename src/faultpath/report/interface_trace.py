@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from faultpath.interface import Channel, Interface
+from faultpath.interface import Interface
 from faultpath.report.interface_drawing import draw_interface
 from faultpath.report.interface_wiring import StruckPath
 from faultpath.review.tracing import TracedRead, TraceReport
@@ -22,43 +22,18 @@ class _Marked(StruckPath):
 
 
 def draw_trace(interface: Interface, trace: TraceReport) -> str:
-    """Return the interface as SVG, with what the traced run read, from where, and the findings.
+    """Return the interface as SVG, with what the traced run read, and from where.
 
-    What is declared and was not read is dashed; a reader that nobody declared is drawn as if it
-    were, and marked with the number of its finding.
+    What is declared and was not read is dashed.
     """
     ran = VariantShown(
         name=trace.variant,
         consumers=tuple(sorted({read.consumer for read in trace.reads})),
         bindings={read.channel: read.source for read in trace.reads},
     )
-    marks = [(each.says, each.taps) for each in trace.findings if each.taps]
-    if altered := {(read.channel, read.consumer) for read in trace.reads if read.altered_by}:
-        marks.append((f"altered by the fault: {trace.fault}", tuple(sorted(altered))))
-    struck = [_Marked(said, frozenset(taps), frozenset(taps)) for said, taps in marks]
-    return draw_interface(_as_it_ran(interface, trace), struck, (ran,))
-
-
-def _as_it_ran(interface: Interface, trace: TraceReport) -> Interface:
-    sources = {source.name for source in interface.sources}
-
-    def with_readers(channel: Channel) -> Channel:
-        here = [read for read in trace.reads if read.channel == channel.name]
-        fed = (read.source for read in here if read.source in sources)
-        return channel.model_copy(
-            update={
-                "consumers": _united(channel.consumers, (read.consumer for read in here)),
-                "sources": _united(channel.sources, fed),
-            }
-        )
-
-    return interface.model_copy(
-        update={"channels": tuple(with_readers(channel) for channel in interface.channels)}
-    )
-
-
-def _united(declared: tuple[str, ...], seen: Iterable[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys((*declared, *seen)))
+    altered = frozenset((read.channel, read.consumer) for read in trace.reads if read.altered_by)
+    marks = [_Marked(f"altered by the fault: {trace.fault}", altered, altered)] if altered else []
+    return draw_interface(interface, marks, (ran,))
 
 
 def trace_table(trace: TraceReport) -> Table:

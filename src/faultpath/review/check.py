@@ -1,21 +1,21 @@
-"""Fly a system as a careful reviewer would, and judge what was seen."""
+"""Run a system as a careful reviewer would, and judge what was seen."""
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
+from typing import Literal
 
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Died, Wrong
 from faultpath.execution.flying import Flying
 from faultpath.execution.limits import TimeLimit, memory_limit
 from faultpath.execution.worker import Brief
-from faultpath.faults import Fault, Scale
-from faultpath.review import information, promises
-from faultpath.review.fingerprint import fingerprint
-from faultpath.review.flights import Flight, Flown, fly, fly_here, probe, unflown
-from faultpath.review.report import Check, Report
-from faultpath.review.seen import Seen
-from faultpath.taps import Read
+from faultpath.faults import Fault, Offset, Replace, Scale
+from faultpath.faults import Sequence as InTurn
+from faultpath.results import Result
+from faultpath.review import judging
+from faultpath.review.flights import Flight, Flown, Read, fly, fly_here, unflown
+from faultpath.review.judging import Check, Seen
 from faultpath.text import unknown
 from faultpath.trials import Arm, Library, System, SystemSpec, Variant, library_of
 from faultpath.trials.state import system_code
@@ -24,13 +24,11 @@ from faultpath.work import Executor, local
 Note = Callable[[int, int | None], None]
 """Called with the flights done, and of how many once that is known."""
 
-_FIRST = "first"
-
 MOST = 4
 """So many variants are all checked unless some are named; of more the first two, or as many as the
 user has named parts: a system puts those first that fly with them."""
-_AFTER = 5
-"""Control steps for which a tap is struck at first."""
+_AFTER = 20
+"""Control steps for which a tap is struck."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +45,24 @@ class Asked:
     time_limit_s: float | None = None
 
 
+class Report(Result):
+    """A check of a system; what `faultpath check --json` prints."""
+
+    format: Literal[2] = 2
+    system: str
+    options: dict[str, str]
+    variants: tuple[str, ...]
+    library: str
+    scenes: tuple[str, ...]
+    seed: int
+    checks: tuple[Check, ...]
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """The sentences of all checks that failed."""
+        return tuple(said for check in self.checks for said in check.failures)
+
+
 def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
@@ -59,45 +75,24 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
             f"cannot check {asked.scenes} scenes of library '{library.name}': choose 1 to "
             f"{len(library.scenes)}."
         )
-    together = min(asked.scenes, system.block_size)  # an audit hands it no more at once either
-    scenes = tuple(scene.id for scene in library.scenes[:together])
-    seen = Seen(
-        system, chosen_variants(system, asked.variants), scenes, asked.seed, asked.workers > 0
-    )
+    scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
+    variants = chosen_variants(system, asked.variants)
+    seen = Seen(system, variants, scenes, asked.seed, asked.workers > 0)
+    limit = TimeLimit(system.time_limit_s if asked.time_limit_s is None else asked.time_limit_s)
+    crew = _Crew(system, spec, library, limit, note)
     with local(asked.workers) as held:
-        stable = fingerprint(system, spec, held)
-        if stable.failures and asked.workers:  # a worker would refuse to fly another system
-            return check_system(system, spec, replace(asked, workers=0, time_limit_s=None), note)
-        limit = TimeLimit(system.time_limit_s if asked.time_limit_s is None else asked.time_limit_s)
-        crew = _Crew(system, spec, library, limit, note)
-        crew.fly(held, tuple(_first(seen)), seen)
+        arms = [Arm(variant=variant.name, seed=asked.seed) for variant in variants]
+        crew.fly(held, [Flight("first", arm, scenes) for arm in arms], seen)
     with local(asked.workers) as held:  # new processes: what is kept in one is not in the other
-        crew.fly(held, tuple(_again(seen)), seen)
-        crew.fly(held, tuple(_whole(seen)), seen)
-    delivered, struck = information.delivery(seen)
-    ended = promises.trials(seen)
-    if together < asked.scenes:
-        said = f"{ended.says}, in the first {together}: its block_size is {together}"
-        ended = ended.model_copy(update={"says": said})
-    checks = (
-        ended,
-        promises.determinism(seen),
-        promises.independence(seen),
-        promises.pairing(seen),
-        information.reads(seen),
-        delivered,
-        information.readings(seen),
-        _with_files(stable, crew.undeclared),
-    )
+        crew.fly(held, list(_again(seen)), seen)
     return Report(
         system=spec.name,
         options=spec.options,
-        variants=tuple(variant.name for variant in seen.variants),
+        variants=tuple(variant.name for variant in variants),
         library=library.name,
         scenes=scenes,
         seed=asked.seed,
-        checks=checks,
-        struck=struck,
+        checks=judging.checks(seen, sorted(crew.undeclared)),
     )
 
 
@@ -113,7 +108,7 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
 
 
 class _Crew:
-    """Flies on an executor, and takes down what was seen."""
+    """Runs flights on an executor, and notes what was seen."""
 
     def __init__(
         self, system: System, spec: SystemSpec, library: Library, limit: TimeLimit, note: Note
@@ -127,78 +122,58 @@ class _Crew:
         """Files that were read and not named."""
 
     def fly(self, held: Executor, flights: Sequence[Flight], seen: Seen) -> None:
-        """Fly all of some flights."""
         self._known += len(flights)
         waiting = list(flights)
 
-        def take(worker: int) -> Flight | None:
-            return waiting.pop(0) if waiting else None
-
         def settle(flight: Flight, reply: Flown | Died | Wrong) -> None:
             flown = reply if isinstance(reply, Flown) else unflown(reply)
-            seen.flights[flight.variant, flight.why] = flight, flown
+            seen.flights[flight.arm.variant, flight.why, flight.tap] = flight, flown
             self._done += 1
-            self._note(self._done, None if flight.why == _FIRST else self._known)
+            self._note(self._done, None if flight.why == "first" else self._known)
 
-        here, there = partial(fly_here, self._system), partial(fly, self._brief)
-        call = here if held.in_process else there
+        call = partial(fly_here, self._system) if held.in_process else partial(fly, self._brief)
         flying = Flying[Flight](held, lambda flight: partial(call, flight), self._limit, self._name)
-        flying.run(take, settle, lambda: None)
+        flying.run(lambda _: waiting.pop(0) if waiting else None, settle, lambda: None)
         self.undeclared |= flying.undeclared
 
 
-def _first(seen: Seen) -> Iterable[Flight]:
-    for variant in seen.variants:
-        yield Flight(_FIRST, Arm(variant=variant.name, seed=seen.seed), seen.scenes)
-
-
-def _again(seen: Seen) -> Iterable[Flight]:
+def _again(seen: Seen) -> Iterator[Flight]:
+    """Yield what is flown of each variant beside its first flight."""
     scenes = seen.scenes
     for name, first in seen.firsts():
         arm = Arm(variant=name, seed=seen.seed)
         yield Flight("again", arm, scenes)
-        yield Flight("turned", arm, scenes[::-1])
         if len(scenes) > 1:
+            yield Flight("turned", arm, scenes[::-1])
             yield Flight("part", arm, scenes[1::2])
         begins: dict[tuple[str, str], Read] = {}
         for read in first.reads:
-            if read.given and read.tap not in first.refused:
+            if read.given:
                 begins.setdefault(read.tap, read)
-        if fault := _shared(tuple(begins.values())):
-            yield Flight("faulted", _struck(seen, arm, fault), scenes)
+        probes = {tap: _probe(read) for tap, read in begins.items()}
+        readers: dict[str, list[str]] = {}
         for (channel, consumer), read in begins.items():
-            faulty = _struck(seen, arm, probe(read))
-            yield Flight(f"struck {channel} {consumer}", faulty, scenes, read.step + _AFTER)
+            if "float" in read.dtype:
+                readers.setdefault(channel, []).append(consumer)
+        if readers:
+            most = max(readers, key=lambda channel: len(readers[channel]))
+            doing, at = Scale(factor=1.05), tuple(readers[most])
+            shared = Fault(channel=most, intervention=doing, consumers=at)
+            yield Flight("faulted", _struck(seen, arm, shared), scenes)
+        for tap, fault in probes.items():
+            stop = begins[tap].step + _AFTER
+            yield Flight("struck", _struck(seen, arm, fault), scenes, stop, tap)
 
 
-def _whole(seen: Seen) -> Iterable[Flight]:
-    for (variant, why), (flight, flown) in tuple(seen.flights.items()):
-        if not why.startswith("struck") or flown.error or not any(r.altered for r in flown.reads):
-            continue
-        if not information.effective(seen, variant, flown):
-            yield Flight(f"{why} whole", flight.arm, flight.scenes)
-
-
-def _shared(reads: Sequence[Read]) -> Fault | None:
-    readers: dict[str, list[str]] = {}
-    for read in reads:
-        if "float" in read.dtype:
-            readers.setdefault(read.channel, []).append(read.consumer)
-    if not readers:
-        return None
-    most = max(readers, key=lambda channel: len(readers[channel]))
-    return Fault(channel=most, intervention=Scale(factor=1.05), consumers=tuple(readers[most]))
+def _probe(read: Read) -> Fault:
+    """Return a fault that alters whatever a tap delivers, struck alone."""
+    if "float" in read.dtype:
+        doing = InTurn(parts=(Scale(factor=1.5), Offset(by=0.25)))
+    else:  # that keeps whole numbers and truths what they are
+        doing = Replace(value=1.0 - read.low if read.dtype == "bool" else read.high + 1.0)
+    return Fault(channel=read.channel, intervention=doing, consumers=(read.consumer,))
 
 
 def _struck(seen: Seen, arm: Arm, fault: Fault) -> Arm:
-    return arm.model_copy(update={"faults": fault.resolved(seen.system.interface)})
-
-
-def _with_files(stable: Check, undeclared: Iterable[str]) -> Check:
-    """Add files that were read and whose change nobody would notice."""
-    failures = tuple(
-        f"{path} is read and not named: a change there would not be noticed; name it in the "
-        "property data_files."
-        for path in sorted(undeclared)
-    )
-    return stable.model_copy(update={"failures": (*stable.failures, *failures)})
+    present = seen.system.variants[arm.variant].consumers
+    return arm.model_copy(update={"faults": fault.resolved(seen.system.interface, present)})

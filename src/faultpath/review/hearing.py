@@ -1,15 +1,14 @@
-"""Flying an arm once more and taking down, as named signals, what its taps and its plant say.
+"""Flying an arm once more and recording, as named signals, what its taps and its plant say.
 
-Nothing that flies knows of it: taps that listen deliver what taps deliver, and the plant of a loop
-senses what it senses. Heard are small arrays of numbers: what a source held, what a consumer got
-where a fault changed it, by how much, and when a fault was in force.
+Nothing that flies knows of it: an observer sees what taps deliver, and the plant of a loop senses
+what it senses. Recorded are small arrays of numbers: what a source held, what a consumer got where
+a fault changed it, by how much, and when a fault was in force.
 """
 
 import copy
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
@@ -17,16 +16,21 @@ from numpy.typing import NDArray
 from typing_extensions import override
 
 from faultpath.arrays import is_array, to_numpy
+from faultpath.blame import described
+from faultpath.errors import SystemMistake
 from faultpath.execution.attempt import Done, Raised, Wrong, attempt
+from faultpath.execution.worker import Brief, building
 from faultpath.interface import Interface, Provenance
 from faultpath.loop import Loop
-from faultpath.review.components import Components, components_of
-from faultpath.store.signals import IN_FORCE, Signal
-from faultpath.taps import Query, Reading, Taps
-from faultpath.taps.tally import Tally
-from faultpath.trials import Arm, LoopSystem, System
+from faultpath.store.signals import IN_FORCE, TOGETHER, Signal
+from faultpath.taps import Observer, Query, Reading
+from faultpath.taps.tap import Tap
+from faultpath.trials import Arm, LoopSystem, Outcome, System
+from faultpath.trials.terms import Recorded
 
 Values: TypeAlias = NDArray[np.float64]
+Steps: TypeAlias = dict[int, Values]
+"""By control step, `[B, P]`."""
 _Thing = TypeVar("_Thing")
 
 _MOST_NUMBERS = 9
@@ -34,27 +38,44 @@ _MOST_NUMBERS = 9
 
 
 @dataclass
-class Heard:
-    """What was said in a flight, by control step, `[B, P]` each."""
+class Heard(Observer):
+    """What a flight said."""
 
     interface: Interface
-    components: Components = field(default_factory=dict[str, Sequence[str]])
-    sources: dict[str, dict[int, Values]] = field(default_factory=dict[str, dict[int, Values]])
+    sources: dict[str, Steps] = field(default_factory=dict[str, Steps])
     """By source, or by `plant.truth` for what the plant shows to estimators alone."""
-    got: dict[tuple[str, str], dict[int, Values]] = field(
-        default_factory=dict[tuple[str, str], dict[int, Values]]
-    )
+    got: dict[tuple[str, str], Steps] = field(default_factory=dict[tuple[str, str], Steps])
     """By channel and consumer."""
-    given: dict[tuple[str, str], dict[int, Values]] = field(
-        default_factory=dict[tuple[str, str], dict[int, Values]]
-    )
+    given: dict[tuple[str, str], Steps] = field(default_factory=dict[tuple[str, str], Steps])
     """What the source had held, where it was delivered."""
-    force: dict[int, NDArray[np.bool_]] = field(default_factory=dict[int, NDArray[np.bool_]])
+    force: dict[int, Any] = field(default_factory=dict[int, Any])
     """Scenes in which a fault was in force at some tap."""
     queries: dict[str, dict[int, Query]] = field(default_factory=dict[str, dict[int, Query]])
     """By source: what could be asked at a step."""
     asked: dict[str, Any] = field(default_factory=dict[str, Any])
     """By source: the first thing that was asked of it."""
+
+    @override
+    def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
+        if isinstance(reading.value, Query):
+            self.queries.setdefault(reading.source, {})[reading.step] = reading.value
+            return
+        self.source(reading.source, reading.value, reading.step)
+        given, had = _numbers(reading.value), _numbers(got)
+        if given is not None and had is not None:
+            self.given.setdefault((tap.channel, tap.consumer), {})[step] = given
+            self.got.setdefault((tap.channel, tap.consumer), {})[step] = had
+
+    @override
+    def answered(
+        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
+    ) -> None:
+        self.asked.setdefault(tap.source, request)
+
+    @override
+    def struck(self, step: int, held: Any) -> None:
+        mask = np.array(to_numpy(held) if is_array(held) else held)
+        self.force[step] = self.force.get(step, False) | mask
 
     def source(self, name: str, value: Any, step: int) -> None:
         """Note what a source holds at a step, where that is a few numbers."""
@@ -71,57 +92,48 @@ class Heard:
             elif not isinstance(value, Query):
                 self.source(name, value, step)
 
-    def delivered(self, channel: str, consumer: str, reading: Reading, got: Any, step: int) -> None:
-        """Note what passed a tap."""
-        self.source(reading.source, reading.value, reading.step)
-        given, had = _numbers(reading.value), _numbers(got)
-        if given is not None and had is not None:
-            self.given.setdefault((channel, consumer), {})[step] = given
-            self.got.setdefault((channel, consumer), {})[step] = had
+
+@dataclass(frozen=True)
+class Listening:
+    """An arm over some scenes."""
+
+    arm: Arm
+    scenes: tuple[str, ...]
 
 
-class HearingTaps(Taps):
-    """Taps that note what passes; what is delivered is the same to the bit."""
+@dataclass(frozen=True)
+class Overheard:
+    """What came of it, by scene."""
 
-    def __init__(self, *given: Any, heard: Heard, **named: Any) -> None:
-        super().__init__(*given, **named)
-        self._heard = heard
-        self._struck = _Noted(heard.force, len(self._scenes))
-
-    @override
-    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
-        got = super().deliver(channel, consumer, reading, step)
-        if isinstance(reading.value, Query):
-            self._heard.queries.setdefault(reading.source, {})[reading.step] = reading.value
-        else:
-            self._heard.delivered(channel, consumer, reading, got, step)
-        return got
-
-    @override
-    def _answer(self, tap: Any, query: Query, step: int, request: Any) -> Any:
-        self._heard.asked.setdefault(tap.source, request)
-        return super()._answer(tap, query, step, request)
+    outcomes: tuple[Outcome, ...] = ()
+    signals: tuple[tuple[Signal, ...], ...] = ()
+    error: str = ""
+    """What kept it from its end."""
 
 
-class _Noted(Tally):
-    """A tally that keeps the scenes of each step."""
+def listen(brief: Brief, task: Listening) -> Overheard:
+    """Fly in a worker process, which keeps what it has built for the next task."""
+    with building(brief) as built:
+        return listen_here(built.system, task)
 
-    def __init__(self, force: dict[int, NDArray[np.bool_]], scenes: int) -> None:
-        super().__init__()
-        self._force, self._scenes = force, scenes
 
-    @override
-    def note(self, step: int, held: Any) -> None:
-        super().note(step, held)
-        mask = np.broadcast_to(np.array(to_numpy(held) if is_array(held) else held), self._scenes)
-        self._force[step] = self._force.get(step, False) | mask
+def listen_here(system: System, task: Listening) -> Overheard:
+    """Fly with a system that is built."""
+    done, heard = fly_heard(system, task.arm, task.scenes)
+    if not isinstance(done, Done):
+        return Overheard(error=str(done.error))
+    more: Callable[[Heard, Done], list[tuple[Signal, ...]]] | None
+    more = getattr(system, "more_signals", None)
+    beside = error_signals(system, heard, done) if more is None else more(heard, done)
+    named = zip(signals(heard, done, system.control_dt_s), beside, strict=True)
+    return Overheard(done.outcomes, tuple(a + b for a, b in named))
 
 
 def fly_heard(
     system: System, arm: Arm, scenes: Sequence[str]
 ) -> tuple[Done | Raised | Wrong, Heard]:
-    """Run an arm over some scenes and listen; an error comes back as a value."""
-    heard = Heard(system.interface, components_of(system))
+    """Run an arm over some scenes and record it; an error comes back as a value."""
+    heard = Heard(system.interface)
     listened = system
     if isinstance(system, LoopSystem):
         loop = system.loop
@@ -130,7 +142,7 @@ def fly_heard(
             return _listening(loop(variant, seed), heard)
 
         listened = _with(system, "loop", listening)
-    return attempt(listened, arm, scenes, kind=partial(HearingTaps, heard=heard)), heard
+    return attempt(listened, arm, scenes, observer=heard), heard
 
 
 def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
@@ -140,12 +152,6 @@ def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
     }
     units = {source.name: source.unit for source in heard.interface.sources}
     channels = {channel.name for channel in heard.interface.channels}
-    named = {
-        channel.name: heard.components[source]
-        for channel in heard.interface.channels
-        for source in reversed(channel.sources)
-        if source in heard.components
-    }
     found: list[tuple[str, str, str, Mapping[int, Values]]] = []
     fixed = {s.name for s in heard.interface.sources if s.provenance is Provenance.CONSTANT}
     for name, held in heard.sources.items():
@@ -164,22 +170,67 @@ def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
         found.append((f"{channel} at {consumer}", channel, unit, got))
         found.append((f"{channel} error at {consumer}", f"{channel} error", unit, error))
     if heard.force:
-        force = {step: mask[:, None].astype(np.float64) for step, mask in heard.force.items()}
+        many = len(done.outcomes)
+        force = {
+            step: np.broadcast_to(mask, many)[:, None].astype(np.float64)
+            for step, mask in heard.force.items()
+        }
         found.append((IN_FORCE, IN_FORCE, "1", force))
-
-    def parts(name: str, topic: str) -> tuple[str, ...]:
-        return tuple(heard.components.get(name) or named.get(topic.removesuffix(" error"), ()))
-
     return [
         tuple(
-            Signal(
-                name, topic, unit, laid_out(held, at, steps).astype(np.float32), parts(name, topic)
-            )
+            Signal(name, topic, unit, laid_out(held, at, steps).astype(np.float32))
             for name, topic, unit, held in found
             if held
         )
         for at, steps in enumerate(steps_of(done, dt_s))
     ]
+
+
+def error_signals(system: System, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
+    """Return the two errors that a system names and their sum, of each scene.
+
+    None where the variant has not got what they are taken from.
+    """
+    errors = system.errors
+    found: list[tuple[Signal, ...]] = []
+    for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
+        trial = _Trial(heard, scene, steps)
+        try:
+            terms = {term.words: term.of(trial) for term in errors.terms} if errors else {}
+            found.append(added(errors.words, errors.unit, terms) if errors else ())
+        except KeyError:
+            found.append(())
+        except Exception as error:
+            raise SystemMistake(
+                f"system '{system.name}': its `errors` cannot be computed ({described(error)})"
+            ) from error
+    return found
+
+
+def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, ...]:
+    """Return two errors and their sum as signals of one topic."""
+    together = np.sum([np.asarray(each, np.float64) for each in terms.values()], axis=0)
+    return tuple(
+        Signal(name, topic, unit, np.asarray(values, np.float32).reshape(len(together), 1))
+        for name, values in {**terms, TOGETHER: together}.items()
+    )
+
+
+@dataclass(frozen=True)
+class _Trial(Recorded):
+    """One scene of what was recorded."""
+
+    heard: Heard
+    scene: int
+    steps: int
+
+    @override
+    def held(self, source: str) -> Values:
+        return laid_out(self.heard.sources[source], self.scene, self.steps)
+
+    @override
+    def got(self, channel: str, consumer: str) -> Values:
+        return laid_out(self.heard.got[channel, consumer], self.scene, self.steps)
 
 
 def steps_of(done: Done, dt_s: float) -> list[int]:

@@ -1,6 +1,6 @@
 """Who read what, when, over the first steps of a run, and where that is not as declared."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Literal
 
 from faultpath.errors import UserError
@@ -8,8 +8,6 @@ from faultpath.faults import AnyFault
 from faultpath.interface import Provenance
 from faultpath.results import Result
 from faultpath.review.flights import Flight, Flown, fly_here
-from faultpath.review.gradient import Gradient, gradient
-from faultpath.review.information import differences
 from faultpath.text import unknown
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
@@ -28,16 +26,6 @@ class TracedRead(Result):
     """Answers that the consumer got of a query."""
     altered_by: tuple[str, ...] = ()
     """Faults that strike the tap, where what was delivered differs from the reading."""
-    used: bool | None = None
-    """Whether the module looked at it; `None` where the system runs a loop of its own."""
-
-
-class Finding(Result):
-    """A difference from what is declared."""
-
-    says: str
-    taps: tuple[tuple[str, str], ...] = ()
-    """Channel and consumer."""
 
 
 class TraceReport(Result):
@@ -58,10 +46,8 @@ class TraceReport(Result):
     """Source to the module that reconstructs it and the channels that this one read."""
     privileged: tuple[str, ...] = ()
     """Reads of what deployment does not have, by permission of the variant or past all taps."""
-    gradient: Gradient | None = None
-    """What autograd tells of paths past the taps; `None` where nothing is torch, or the system
-    runs a loop of its own."""
-    findings: tuple[Finding, ...] = ()
+    findings: tuple[str, ...] = ()
+    """Differences from what is declared, a sentence each."""
 
 
 def trace_system(
@@ -93,12 +79,16 @@ def trace_system(
     flown = fly_here(system, Flight("trace", arm, (chosen,), steps))
     if flown.error and not flown.reads:
         raise UserError(f"variant '{variant}' does not run: {flown.error}")
-    found = list(_findings(system, variant, flown, steps))
-    slopes = None
-    if isinstance(system, LoopSystem):
-        two = (chosen, *(each for each in known if each != chosen))[:2]
-        slopes = gradient(system, variant, two, steps, seed)
-        found += (Finding(says=said) for said in (slopes.found if slopes else ()))
+    read = {each.tap for each in flown.reads}
+    findings = [
+        f"Variant '{variant}' declares that {consumer} reads '{channel.name}', but in the first "
+        f"{steps} steps it did not; trace more --steps, or take it out of the variant's consumers."
+        for channel in system.interface.channels
+        for consumer in channel.consumers
+        if consumer in consumers and (channel.name, consumer) not in read
+    ]
+    if flown.error:
+        findings = [f"The run ended early: {flown.error}."]
     return TraceReport(
         system=spec.name,
         options=spec.options,
@@ -111,8 +101,7 @@ def trace_system(
         reads=tuple(_reads(flown, arm)),
         reconstructed=_reconstructed(system, flown),
         privileged=tuple(_privileged(system, variant, flown)),
-        gradient=slopes,
-        findings=tuple(found),
+        findings=tuple(findings),
     )
 
 
@@ -132,7 +121,6 @@ def _reads(flown: Flown, arm: Arm) -> Iterable[TracedRead]:
             valid_step=read.valid_step,
             asks=read.asks,
             altered_by=(strikes[read.tap].intervention.words(),) if read.altered else (),
-            used=read.used,
         )
 
 
@@ -165,25 +153,7 @@ def _privileged(system: System, variant: str, flown: Flown) -> Iterable[str]:
     for consumer, source in allowed.items():
         if source in system.variants[variant].privileged:
             yield f"{consumer} reads '{source}', which is privileged, by permission of the variant."
-    for module, truth in sorted(flown.truths):
-        yield f"Module '{module}' takes the plant's truth '{truth}' past all taps, as it declares."
-
-
-def _findings(system: System, variant: str, flown: Flown, steps: int) -> Iterable[Finding]:
-    found = differences(variant, flown)
-    yield from (Finding(says=said, taps=taps) for said, taps in found.items())
-    yield from (Finding(says=said) for said in _silent(system, variant, flown, steps))
-    if flown.error:
-        yield Finding(says=f"The run ended early: {flown.error}.")
-
-
-def _silent(system: System, variant: str, flown: Flown, steps: int) -> Sequence[str]:
-    """Name the consumers that are declared and read nothing in these steps."""
-    read = {each.tap for each in flown.reads}
-    return [
-        f"Variant '{variant}' declares that {consumer} reads '{channel.name}', but in the first "
-        f"{steps} steps it did not; trace more --steps, or take it out of the variant's consumers."
-        for channel in system.interface.channels
-        for consumer in channel.consumers
-        if consumer in system.variants[variant].consumers and (channel.name, consumer) not in read
-    ]
+    modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
+    for module in modules:
+        for truth in sorted(module.truths):
+            yield f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."

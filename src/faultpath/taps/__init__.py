@@ -10,6 +10,7 @@ from faultpath.taps.errors import (
     UndeclaredReader,
     WrittenTo,
 )
+from faultpath.taps.observer import Observer
 from faultpath.taps.reading import Query, Reading
 from faultpath.taps.receipts import (
     Receipts,
@@ -18,7 +19,6 @@ from faultpath.taps.receipts import (
     check_delivered,
 )
 from faultpath.taps.taps import ModuleTaps, Taps
-from faultpath.taps.trace import Read, Trace, TracedTaps, TraceEnded
 
 __all__ = [
     "IllegalRead",
@@ -26,17 +26,14 @@ __all__ = [
     "ModuleTaps",
     "NotDelivered",
     "NotFinite",
+    "Observer",
     "Query",
-    "Read",
     "Reading",
     "Receipts",
     "StruckElsewhere",
     "TapCount",
     "TapError",
     "Taps",
-    "Trace",
-    "TraceEnded",
-    "TracedTaps",
     "UndeclaredReader",
     "WrittenTo",
     "added",

@@ -22,6 +22,7 @@ from faultpath.taps.errors import (
     WrittenTo,
 )
 from faultpath.taps.guard import Guard
+from faultpath.taps.observer import Observer
 from faultpath.taps.reading import Query, Reading
 from faultpath.taps.receipts import Receipts, check_delivered
 from faultpath.taps.strike import Strike
@@ -53,13 +54,11 @@ class Taps:
         privileged: Privileged sources that this arm may read.
         guard: Give every consumer a copy of its own and let `verify` tell who wrote into it. NumPy
             readings cannot be written to in any case.
+        observer: Sees what is delivered.
 
     Raises:
         UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
     """
-
-    traced = False
-    """Whether a loop has to tell which readings were looked at."""
 
     def __init__(
         self,
@@ -73,8 +72,10 @@ class Taps:
         consumers: Collection[str] | None = None,
         privileged: Collection[str] = (),
         guard: bool = False,
+        observer: Observer | None = None,
     ) -> None:
         self._interface = interface
+        self._observer = observer
         self._scenes = tuple(scenes)
         self._running = Running(None)
         self._struck, self._altered = Tally(), Tally()
@@ -151,6 +152,8 @@ class Taps:
             tap.cached = self._handed(tap, value, step)
         elif value is not tap.given:
             check_same(tap, value, step)
+        if self._observer is not None:
+            self._observer.delivered(tap, reading, step, tap.cached)
         return tap.cached
 
     def _handed(self, tap: Tap, value: Any, step: int) -> Any:
@@ -174,16 +177,20 @@ class Taps:
         answer = read_only(query.answer(request))
         ask, first = tap.asked, not tap.asks
         tap.asked, tap.asks = ask + 1, tap.asks + 1
-        if not (first or tap.strikes or tap.guard):
-            return answer
-        given = value = query.value(answer)
-        if first:
-            check_first(tap, value, self._scenes)
-        if tap.strikes:
-            value = self._struck_value(tap, value, step, ask)
-        if tap.guard is not None:
-            value = tap.guard.hand_out(value)
-        return answer if value is given else query.changed(answer, value)
+        got = answer
+        if first or tap.strikes or tap.guard:
+            given = value = query.value(answer)
+            if first:
+                check_first(tap, value, self._scenes)
+            if tap.strikes:
+                value = self._struck_value(tap, value, step, ask)
+            if tap.guard is not None:
+                value = tap.guard.hand_out(value)
+            if value is not given:
+                got = query.changed(answer, value)
+        if self._observer is not None:
+            self._observer.answered(tap, query, step, request, answer, got)
+        return got
 
     def _struck_value(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
         check_shape(tap, reading)
@@ -196,6 +203,8 @@ class Taps:
         if len(tap.strikes) > 1:
             tap.struck.note(step, struck)
         self._struck.note(step, struck)
+        if self._observer is not None:
+            self._observer.struck(step, struck)
         if value is not reading and struck is not False:
             altered = self._running.among(differs(value, reading), reading)
             tap.altered.note(step, altered)
@@ -205,15 +214,6 @@ class Taps:
     def set_active(self, mask: Array | None) -> None:
         """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
         self._running = Running(mask)
-
-    def looked(
-        self,
-        step: int,
-        looks: Mapping[tuple[str, str], bool],
-        truths: Collection[tuple[str, str]],
-    ) -> None:
-        """Be told, where `traced`, whether the module behind each tap looked at what it got in a
-        step, and which `(module, truth)` of the plant's own were taken past all taps."""
 
     def for_module(self, module: str) -> ModuleTaps:
         """Return the view that `module` gets; raises `TapError` for an unknown module."""

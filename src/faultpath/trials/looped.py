@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from faultpath.arrays import Array, HostArray, namespace, to_numpy
 from faultpath.interface import Interface, Provenance
-from faultpath.loop import Batch, Graph, Loop, Module, Plant, consumers, graph
+from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, consumers, graph
 from faultpath.taps import Taps
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.system import System, Variant
@@ -69,7 +69,7 @@ class LoopSystem(System):
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
         return self.fly(self.loop(variant, seed), scenes, taps, seed)
 
-    def fly(self, loop: Loop, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
+    def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
         """Execute a variant's `loop`, or one made from it that is listened to.
 
         A system whose loops run in a context of their own, such as torch's inference mode,

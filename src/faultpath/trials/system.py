@@ -11,6 +11,7 @@ from faultpath.taps import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.terms import ErrorSum
 
 
 class System(ABC):
@@ -37,6 +38,8 @@ class System(ABC):
     """What its outcomes measure beside status and time, by name."""
     ends: Mapping[Status, str] = MappingProxyType({})
     """What a trial's end is called where it is not the status itself, for example `missed`."""
+    errors: ErrorSum | None = None
+    """Two errors that act together, for the report; nothing that flies reads them."""
 
     @property
     @abstractmethod

@@ -9,22 +9,19 @@ from torch import Tensor
 
 from faultpath.execution.attempt import Done
 from faultpath.quadrotor.device import arithmetic
-from faultpath.quadrotor.evidence.components import WORLD
 from faultpath.quadrotor.lanes import Chunk
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.review.hearing import Heard, Values, laid_out, steps_of
-from faultpath.review.listening import added
+from faultpath.review.hearing import Heard, Values, added, laid_out, steps_of
 from faultpath.store.signals import Signal
-from faultpath.trials import System
 
 _CANDIDATES = 8
 """Equal ones, for the compiled rollout, which works along them."""
 _MOTION = "predicted_motion"
 
 
-def quadrotor_signals(system: System, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
+def quadrotor_signals(system: Quadrotor, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
     """Return more signals of each scene of a flight of the quadrotor.
 
     The acceleration errors are those of the paper, with the thrust and the attitude of the flight:
@@ -33,7 +30,6 @@ def quadrotor_signals(system: System, heard: Heard, done: Done) -> list[tuple[Si
     Along the thrust they have a sign, so that it shows whether they cancel (paper, Eq. 2). What a
     learned predictor adds to its analytic dynamics is in none of them.
     """
-    assert isinstance(system, Quadrotor)
     ahead = _predicted(heard)
     found: list[tuple[Signal, ...]] = []
     for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
@@ -43,7 +39,7 @@ def quadrotor_signals(system: System, heard: Heard, done: Done) -> list[tuple[Si
         for horizon, positions in ahead.items():
             said = f"position predicted {horizon * system.control_dt_s:g} s before"
             values = laid_out(positions, scene, steps).astype(np.float32)
-            named.append(Signal(said, "position", "m", values, WORLD))
+            named.append(Signal(said, "position", "m", values, ("east", "north", "up")))
         found.append(tuple(named))
     return found
 

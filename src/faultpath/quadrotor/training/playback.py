@@ -13,7 +13,6 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.faults import AnyFault
-from faultpath.interface import Interface
 from faultpath.loop import (
     Batch,
     Inputs,
@@ -116,27 +115,25 @@ class Executed(Module):
         return {"commanded_action": self._windows.command[:, inputs.step].T}, memory
 
 
-class WindowTaps(Taps):
-    """Taps for which a window is a trial of one step, its present.
+class WindowTaps:
+    """Stands before taps for which a window is a trial of one step, its present.
 
     Faults draw once a window. What they do to the calibration is held over the history; all else
     they change at the present alone.
     """
 
-    def __init__(
-        self, interface: Interface, faults: Iterable[AnyFault], exchange: Exchange, **more: Any
-    ) -> None:
-        super().__init__(interface, faults, **more)
+    def __init__(self, taps: Taps, exchange: Exchange) -> None:
         self.told: dict[tuple[str, str], Any] = {}
         """What was delivered at the present, by channel and consumer."""
-        self._exchange = exchange
+        self.set_active = taps.set_active
+        self._taps, self._exchange = taps, exchange
 
-    @override
     def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Any:
+        """Return what a consumer gets, of the history as it was recorded."""
         if step < HISTORY and channel not in HELD:
             return reading.value
         value = self._exchange(reading.value) if channel == CODE[0] else reading.value
-        given = super().deliver(channel, consumer, Reading(value, reading.source, 0), 0)
+        given = self._taps.deliver(channel, consumer, Reading(value, reading.source, 0), 0)
         self.told[channel, consumer] = given
         return given
 
@@ -205,10 +202,9 @@ def at_present(
     nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))
     models = modelled(predictor or nobodys, reconstruction, CPU)
     parts = graph(interface, Playback(wide), [*models, Executed(wide)], bindings)
-    taps = WindowTaps(
+    taps = Taps(
         interface,
         faults,
-        lambda codes: exchange(codes[: len(windows)])[lanes],
         scenes=wide.ids,
         dt_s=CONTROL_DT_S,
         seed=seed,
@@ -216,7 +212,8 @@ def at_present(
         consumers=consumers(parts.parts),
         privileged=PRIVILEGED,
     )
-    for _ in Loop(interface, parts).execute(Batch(wide.ids, seed, CONTROL_DT_S), taps):
+    before = WindowTaps(taps, lambda codes: exchange(codes[: len(windows)])[lanes])
+    for _ in Loop(interface, parts).execute(Batch(wide.ids, seed, CONTROL_DT_S), before):
         pass
     taps.verify(last_step=0)
-    return Present(wide, len(windows), taps.told)
+    return Present(wide, len(windows), before.told)
