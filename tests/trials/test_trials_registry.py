@@ -77,7 +77,7 @@ def test_a_module_of_the_working_directory_is_found(tmp_path, monkeypatch):
         (f"{FILE}:absent", "has no function 'absent'"),
         (f"{FILE}:STEPS", "has no function 'STEPS'"),
         (f"{FILE}:impostor", "returned a object"),
-        (f"{FILE}:needy", r"pip install '\.\[quadrotor\]'"),
+        (f"{FILE}:needy", r"pip install '\.\[torch\]'"),
         (f"{FILE}:", "there is no system"),
         ("..x:create", "there is no system"),
     ],

@@ -3,6 +3,9 @@
 from faultpath.quadrotor.choices import QuadrotorChoices
 from faultpath.trials import System
 
+MEASURE = "faultpath.quadrotor.evidence:measure"
+"""What measures on recorded windows: a name, since whatever is imported here counts as flown."""
+
 
 def create(choices: QuadrotorChoices) -> System:
     """Build the quadrotor; `UserError` where the device is not there."""

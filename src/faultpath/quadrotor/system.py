@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import torch
 from typing_extensions import override
@@ -37,11 +37,6 @@ from faultpath.quadrotor.vehicle import CONTROL_DT_S
 from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath.trials.metrics import VEHICLE
 
-if TYPE_CHECKING:
-    from faultpath.execution.attempt import Done
-    from faultpath.review.hearing import Heard
-    from faultpath.store.signals import Signal
-
 
 class Quadrotor(LoopSystem):
     """Flies a block of scenes with the modules under test behind taps."""
@@ -50,6 +45,7 @@ class Quadrotor(LoopSystem):
     trained = True
     control_dt_s = CONTROL_DT_S
     metrics = VEHICLE
+    more_signals = "faultpath.quadrotor.evidence.signals:quadrotor_signals"
 
     def __init__(self, options: QuadrotorOptions) -> None:
         self.options = options
@@ -158,12 +154,6 @@ class Quadrotor(LoopSystem):
     @override
     def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
         return super().fly(loop, scenes, taps, seed)
-
-    def more_signals(self, heard: "Heard", done: "Done") -> "list[tuple[Signal, ...]]":
-        """Return what a report shows of a recorded flight beside its readings."""
-        from faultpath.quadrotor.evidence.signals import quadrotor_signals
-
-        return quadrotor_signals(self, heard, done)
 
     def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
         return tuple(self.scene(scene) for scene in scenes)

@@ -26,6 +26,7 @@ from faultpath.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.taps import Observer, Query, Reading
 from faultpath.taps.tap import Tap
 from faultpath.trials import Arm, LoopSystem, Outcome, System
+from faultpath.trials.registry import named
 from faultpath.trials.terms import Recorded
 
 Values: TypeAlias = NDArray[np.float64]
@@ -122,11 +123,10 @@ def listen_here(system: System, task: Listening) -> Overheard:
     done, heard = fly_heard(system, task.arm, task.scenes)
     if not isinstance(done, Done):
         return Overheard(error=str(done.error))
-    more: Callable[[Heard, Done], list[tuple[Signal, ...]]] | None
-    more = getattr(system, "more_signals", None)
-    beside = error_signals(system, heard, done) if more is None else more(heard, done)
-    named = zip(signals(heard, done, system.control_dt_s), beside, strict=True)
-    return Overheard(done.outcomes, tuple(a + b for a, b in named))
+    more = named(system.more_signals) if system.more_signals else error_signals
+    beside: list[tuple[Signal, ...]] = more(system, heard, done)
+    pairs = zip(signals(heard, done, system.control_dt_s), beside, strict=True)
+    return Overheard(done.outcomes, tuple(a + b for a, b in pairs))
 
 
 def fly_heard(

@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager
+from functools import cache
 from hashlib import sha256
 from importlib.machinery import (
     EXTENSION_SUFFIXES,
@@ -14,9 +15,10 @@ from importlib.machinery import (
     FileFinder,
     SourceFileLoader,
 )
+from importlib.metadata import entry_points
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from faultpath.blame import described, note_system
 from faultpath.blame import place as where
@@ -32,23 +34,29 @@ from faultpath.trials.system import System
 if TYPE_CHECKING:
     from faultpath.evidence import Measurer
 
-BUILT_IN = {"quadrotor": "faultpath.quadrotor.factory:create"}
-"""Names that stand for a factory. They are strings, so that naming one imports nothing."""
+GROUP = "faultpath.systems"
+"""Entry points of installed distributions: the name of a system to `module:factory`."""
 
-MEASURERS = {"quadrotor": "faultpath.quadrotor.evidence:measure"}
-"""What measures on recorded windows, by name of the system."""
+_CHECKOUT = {"quadrotor": "faultpath.quadrotor.factory:create"}
+"""For a checkout that was installed before it declared entry points; goes with the next one."""
 
-_EXTRAS = {"torch": "quadrotor", "mujoco": "mujoco", "gymnasium": "gymnasium"}
+_EXTRAS = frozenset({"torch", "mujoco", "gymnasium"})
+
+
+@cache
+def installed_systems() -> dict[str, str]:
+    """Return the factories that distributions declare, by the name of their system."""
+    return _CHECKOUT | {each.name: each.value for each in entry_points(group=GROUP)}
 
 
 def load_system(spec: SystemSpec) -> System:
     """Build the system that `spec` names.
 
-    The name is a built-in one, `module:attribute`, or `path/to/file.py:attribute`, the attribute
-    being `create` where a file is named alone. The attribute is called with the options, read as
-    `trials.options` says, and returns a `System`. `UserError` for a name, attribute or option that
-    does not exist, a missing package, or a module of the system's own of which this process would
-    run another one of that name.
+    The name is that of an entry point in the group `faultpath.systems`, `module:attribute`, or
+    `path/to/file.py:attribute`, the attribute being `create` where a file is named alone. The
+    attribute is called with the options, read as `trials.options` says, and returns a `System`.
+    `UserError` for a name, attribute or option that does not exist, a missing package, or a module
+    of the system's own of which this process would run another one of that name.
 
     The caller's process stays as it was, but for two things that the system needs as long as it
     flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
@@ -59,7 +67,7 @@ def load_system(spec: SystemSpec) -> System:
         try:
             system = call(_factory(spec.name), spec.options, f"system {spec.name!r}")
         except (Exception, SystemExit) as error:
-            if isinstance(error, UserError) or spec.name in BUILT_IN or where(error):
+            if isinstance(error, UserError) or _installed(spec.name) or where(error):
                 raise  # what has no place is no code of anybody's
             raise SystemMistake(
                 f"{said} builds no system ({described(error)}): name a function that returns one"
@@ -102,7 +110,7 @@ def _factory(name: str) -> Factory:
 
 def _module(place: str, name: str) -> ModuleType:
     module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
-    if (file := getattr(module, "__file__", None)) and name not in BUILT_IN:
+    if (file := getattr(module, "__file__", None)) and module.__name__.split(".")[0] != "faultpath":
         note_system(file)
     return module
 
@@ -118,7 +126,7 @@ def factory_root(spec: SystemSpec) -> Root:
     """Return the module that builds the system; `UserError` where `load_system` raises one."""
     place, _ = _target(spec.name)
     if not place.endswith(".py"):
-        if spec.name not in BUILT_IN:
+        if not _installed(spec.name):
             _look_here()
         return Root(place)
     path = _file(place)
@@ -129,17 +137,21 @@ def factory_root(spec: SystemSpec) -> Root:
 def load_measurer(name: str) -> "Measurer":
     """Return what measures evidence of the system `name` on recorded windows.
 
-    It stands beside the system, not in it: a system object has one set of options, and recordings
-    have several. `UserError` for a system that offers none, or a missing package.
+    `MEASURE` beside the factory names it: a system has one set of options, recordings have
+    several. `UserError` for a system that offers none, or a missing package.
     """
-    if name not in MEASURERS:
-        raise UserError(
-            f"system {name!r} offers no measurements on recorded windows: "
-            f"{', '.join(sorted(MEASURERS))} does"
-        )
-    place, _, attribute = MEASURERS[name].partition(":")
+    place, _ = _target(name)
     with _needing(name):
-        return getattr(importlib.import_module(place), attribute)
+        measure = getattr(_module(place, name), "MEASURE", None)
+        if measure is None:
+            raise UserError(f"system {name!r} offers no measurements on recorded windows")
+        return named(measure)
+
+
+def named(name: str) -> Any:
+    """Return what `module:attribute` names."""
+    place, _, attribute = name.partition(":")
+    return getattr(importlib.import_module(place), attribute)
 
 
 def factory_name(name: str) -> str:
@@ -147,12 +159,16 @@ def factory_name(name: str) -> str:
     return f"{name}:create" if name.endswith(".py") else name
 
 
+def _installed(name: str) -> bool:
+    return ":" not in name and not name.endswith(".py") and name in installed_systems()
+
+
 def _target(name: str) -> tuple[str, str]:
     try:
-        return _split(factory_name(BUILT_IN.get(name, name)))
+        return _split(factory_name(installed_systems()[name] if _installed(name) else name))
     except UserError:
         raise UserError(
-            f"there is no system {name!r}: use {', '.join(sorted(BUILT_IN))}, or name a "
+            f"there is no system {name!r}: use {', '.join(sorted(installed_systems()))}, or name a "
             "factory as 'module:attribute' or 'path/to/file.py:attribute'"
         ) from None
 
@@ -168,7 +184,7 @@ def _split(name: str) -> tuple[str, str]:
 
 
 def _load_module(name: str, system: str) -> ModuleType:
-    if system not in BUILT_IN:
+    if not _installed(system):
         _look_here()
         _check_own(Root(name), Path.cwd())
     try:
@@ -289,8 +305,7 @@ def _needing(name: str) -> Generator[None]:
         yield
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
-        named = _EXTRAS.get(package)
-        hint = extra(named) if named else f"install {package!r}"
+        hint = extra(package) if package in _EXTRAS else f"install {package!r}"
         said = f"{name!r} needs the package {package!r}, not installed here: {hint}"
         mistake = SystemMistake(said)
         mistake.place = where(error)
