@@ -18,7 +18,8 @@ from faultpath.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.flightlog import read_columns, read_flight
 from faultpath.interface import read_interface
 from faultpath.proposal.study import read_study
-from faultpath.repairs.record import read_record
+from faultpath.repairs.card import read_card
+from faultpath.repairs.record import FitRecord
 from faultpath.store import RunFolder, read_evidence, read_outcomes, read_traces
 from faultpath.store.lock import locked
 from faultpath.store.manifest import read_manifest
@@ -59,7 +60,7 @@ READERS: dict[str, tuple[str, Read]] = {
     "study": ("study.yaml", read_study),
     "library of scenes": ("mine.json", _library),
     "card of a model": ("model.json", _card),
-    "record of a fit": ("fit.json", read_record),
+    "record of a fit": ("fit.json", lambda path: read_card(path, FitRecord)),
     "manifest": ("manifest.json", read_manifest),
     "any file of a run": ("record.json", read_regular),
     "outcomes": ("outcomes.parquet", read_outcomes),

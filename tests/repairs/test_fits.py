@@ -169,8 +169,8 @@ def test_files_are_safe_whole_and_give_the_module_back(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("damage", "said"),
     [
-        (lambda p: p.write_bytes(p.read_bytes()[:-1] + b"x"), "not those of their record"),
-        (lambda p: p.with_suffix(".json").write_text("{}"), "no record of a fit"),
+        (lambda p: p.write_bytes(p.read_bytes()[:-1] + b"x"), "not those of its card"),
+        (lambda p: p.with_suffix(".json").write_text("{}"), "no card of a fit"),
         (lambda p: p.with_suffix(".json").unlink(), "No such file"),
         (lambda p: p.unlink(), "No such file"),
     ],

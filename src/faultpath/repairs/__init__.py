@@ -4,10 +4,11 @@ A fit gets its inputs through the taps of the system's interface, and what pertu
 faults of an audit. Nothing here loads torch before a module is fitted.
 """
 
+from faultpath.repairs.card import Schedule
 from faultpath.repairs.fitting import Fit, evaluate, fit, load, mean_squared_error
 from faultpath.repairs.flying import Learned, withheld
 from faultpath.repairs.matched import Comparison, matched
-from faultpath.repairs.record import FitRecord, Schedule, read_record
+from faultpath.repairs.record import FitRecord
 from faultpath.repairs.repair import (
     Repair,
     errors,
@@ -31,7 +32,6 @@ __all__ = [
     "load",
     "matched",
     "mean_squared_error",
-    "read_record",
     "reconstruction",
     "uncertainty_training",
     "withheld",

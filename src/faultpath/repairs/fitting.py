@@ -6,28 +6,30 @@ error of size zero changes no bit; the process keeps the random numbers of torch
 
 from __future__ import annotations
 
-import math
-import time
+import copy
+import platform
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from typing_extensions import override
 
 from faultpath.errors import UserError
 from faultpath.faults import AnyFault
-from faultpath.repairs.code import code_sha256, name_of
-from faultpath.repairs.network import adam, fresh
-from faultpath.repairs.record import FitRecord, Loss, Schedule
+from faultpath.repairs.card import Schedule, fill, parameter_count, save, weights_sha256
+from faultpath.repairs.loop import Task, minibatches, run
+from faultpath.repairs.record import Architecture, FitRecord, Machine
 from faultpath.repairs.repair import Repair, kept, understood
-from faultpath.repairs.weights import architecture, fill, machine, save, weights_sha256
 from faultpath.repairs.windows import VALIDATION, Windows, delivered, named
-from faultpath.streams import generator, key
+from faultpath.store import make_folder
+from faultpath.streams import key
 from faultpath.taps import TapCount, added
+from faultpath.version import __version__
 
 if TYPE_CHECKING:
-    from torch import Tensor, nn
+    from torch import LongTensor, Tensor, nn
 
 LossFunction = Callable[[Any, Any], "Tensor"]
 """Mean loss of a minibatch, a scalar, from the module's output and the targets."""
@@ -91,21 +93,60 @@ def fit(
     """
     import torch
 
-    schedule = schedule or Schedule()
     if seed < 0:
         raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
+    repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
+    repairs = tuple(each.against(data.interface, data.dt_s, data.consumers) for each in repairs)
     with torch.random.fork_rng():
         # The module's own code draws from torch's global state (initialisation, dropout): it is the
         # fit's own in here, and the caller's again behind.
         drawn = key("repairs/torch", "fit", seed) % 2**63
         torch.manual_seed(drawn)
-        net = fresh(module)
+        net = copy.deepcopy(module) if isinstance(module, torch.nn.Module) else module()
+        if not isinstance(net, torch.nn.Module):
+            raise UserError(
+                f"fit: {_name_of(module)} returned a {_name_of(net)}, which is no torch module"
+            )
+        if not parameter_count(net):
+            raise UserError(f"fit: {_name_of(net)} has no parameters to fit")
         torch.manual_seed(drawn)  # also where the module was not made here
-        work = _Work(net, data, loss, _several(repair, data), seed, schedule, validation)
-        work.run()
-    record = work.record(name)
+        kinds = (each.kind.replace("_", "-") for each in repairs)
+        task = _WindowTask(net, data, loss, repairs, seed, schedule or Schedule(), validation)
+        task.name = name or "+".join((type(net).__name__.lower(), *kinds))
+        if not task.count:
+            raise UserError("fit: no window is left for training: give more, or validation=0")
+        initial = weights_sha256(net)
+        first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
+        history = run(task, net)
+    record = FitRecord(
+        name=task.name,
+        seed=seed,
+        repairs=repairs,
+        reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
+        architecture=_architecture(net),
+        parameters=parameter_count(net),
+        data=data.digested(task.host_targets, task.training),
+        loss=_name_of(loss),
+        schedule=task.schedule,
+        initial_sha256=initial,
+        first_loss=first_loss,
+        order_sha256=tuple(task.order),
+        training_loss=history.training_loss,
+        validation=tuple(metrics for metrics in history.validation if metrics),
+        taps=task.taps,
+        weights_sha256=weights_sha256(net),
+        machine=Machine(
+            torch=torch.__version__,
+            faultpath=__version__,
+            python=".".join(platform.python_version_tuple()[:2]),
+            device=task.device.type,
+            threads=torch.get_num_threads(),
+        ),
+        duration_s=round(history.duration_s, 3),
+    )
     if folder is None:
         return Fit(net.eval(), record)
+    make_folder(Path(folder))
     return Fit(net.eval(), record, save(net, record, Path(folder)))
 
 
@@ -120,159 +161,126 @@ def evaluate(
     What it was fitted without stays withheld. Raises `UserError` as `fit`.
     """
     repairs = fitted.record.repairs
-    struck = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
-    work = _Work(fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), 0.0)
-    return work.mean_loss(np.arange(len(data)), struck)
+    found = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+    task = _WindowTask(
+        fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
+    )
+    return task.mean_loss(fitted.module, np.arange(len(data)), found)
 
 
 def load(module: nn.Module, path: Path | str) -> Fit:
     """Return a fit from its files, filled in; `UserError` where they do not fit."""
-    record = fill(module, Path(path))
+    record = fill(module, Path(path), FitRecord)
     return Fit(module.eval(), record, Path(path))
 
 
-@dataclass
-class _Work:
-    """One fit under way."""
+class _WindowTask(Task):
+    """Windows as samples, with a delivery through the taps for each minibatch."""
 
-    net: nn.Module
-    data: Windows
-    loss: LossFunction
-    repairs: tuple[Repair, ...]
-    seed: int
-    schedule: Schedule
-    share: float
-    order: list[str] = field(default_factory=list)
-    curve: list[float] = field(default_factory=list)
-    validation: list[dict[str, float]] = field(default_factory=list)
-    taps: tuple[TapCount, ...] = ()
+    order_key = "repairs"
 
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        net: nn.Module,
+        data: Windows,
+        loss: LossFunction,
+        repairs: tuple[Repair, ...],
+        seed: int,
+        schedule: Schedule,
+        validation: float,
+    ) -> None:
         import torch
 
         def tensor(array: np.ndarray) -> Tensor:
             return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
 
-        parameter = next(self.net.parameters(), None)
+        self.seed, self.schedule = seed, schedule
+        parameter = next(net.parameters(), None)
         self.device = torch.device("cpu") if parameter is None else parameter.device
-        self.faults: list[Any] = [fault for each in self.repairs for fault in each.faults]
-        self.kept = kept(self.repairs)
-        self.host_targets = self.data.learned(self.repairs)
-        self.readings = {name: tensor(v) for name, v in self.data.readings.items()}
-        self.targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
-        self.training, self.held_out = self.data.split(self.share)
-        if not len(self.training):
-            raise UserError("fit: no window is left for training: give more, or validation=0")
-        self.initial = weights_sha256(self.net)
-        self.started = time.monotonic()
+        self.host_targets = data.learned(repairs)
+        self.training, self._held_out = data.split(validation)
+        self.order: list[str] = []
+        """Digest of the order of the windows in each epoch."""
+        self.taps: tuple[TapCount, ...] = ()
+        self._data, self._loss, self._epoch = data, loss, 0
+        self._faults: list[Any] = [fault for each in repairs for fault in each.faults]
+        self._kept = kept(repairs)
+        read = {port.channel for port in data.ports}
+        self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
+        self._targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
 
-    def run(self) -> None:
-        """Fit all epochs."""
-        import torch
+    @property
+    @override
+    def count(self) -> int:
+        return len(self.training)
 
-        optimiser = adam(self.net, self.schedule)
-        self.initial_loss = self.mean_loss(self._permuted(0)[: self.schedule.batch_size], ())
-        for epoch in range(self.schedule.epochs):
-            order = self._permuted(epoch)
-            self.order.append(self.data.names_sha256(order)[:16])
-            self.curve.append(self._epoch(epoch, order, optimiser))
-            if len(self.held_out):
-                faults = {"correct": self.kept, "perturbed": self.faults}
-                found = {k: self.mean_loss(self.held_out, each) for k, each in faults.items()}
-                self.validation.append(found)
-            if not all(torch.isfinite(v).all() for v in self.net.parameters()):
-                raise self._diverged(epoch, "weights")
-        self.seconds = time.monotonic() - self.started
+    @override
+    def begin_epoch(self, epoch: int) -> None:
+        self._epoch = epoch
+        order = np.concatenate([part.numpy() for part in minibatches(self, epoch)])
+        self.order.append(self._data.names_sha256(self.training[order])[:16])
 
-    def mean_loss(self, index: np.ndarray, faults: Iterable[Any]) -> float:
+    @override
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        value, counts = self._of(net, self.training[index.numpy()], self._faults, self._epoch)
+        self.taps = added((*self.taps, *counts))
+        return value
+
+    @override
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
+        if not len(self._held_out):
+            return {}
+        faults = {"correct": self._kept, "perturbed": self._faults}
+        return {name: self.mean_loss(net, self._held_out, each) for name, each in faults.items()}
+
+    def mean_loss(self, net: nn.Module, index: np.ndarray, faults: Iterable[Any]) -> float:
         """Return the mean loss of some windows, without gradients and in evaluation mode."""
         import torch
 
-        faults, total = tuple(faults), 0.0
-        self.net.eval()
+        faults, total, size = tuple(faults), 0.0, self.schedule.batch_size
+        net.eval()
         with torch.no_grad():
-            for part in _cut(index, self.schedule):
-                total += self._loss(part, faults, VALIDATION)[0].item() * len(part)
+            for part in np.split(index, range(size, len(index), size)):
+                total += self._of(net, part, faults, VALIDATION)[0].item() * len(part)
         return total / len(index)
 
-    def _epoch(self, epoch: int, order: np.ndarray, optimiser: Any) -> float:
-        """Fit one epoch and return the mean loss of its windows."""
-        from torch import nn
-
-        total = 0.0
-        self.net.train()
-        for part in _cut(order, self.schedule):
-            optimiser.zero_grad(set_to_none=True)
-            loss, counts = self._loss(part, self.faults, epoch)
-            value = loss.item()
-            if not math.isfinite(value):
-                raise self._diverged(epoch, "loss")
-            loss.backward()
-            if self.schedule.clip_norm is not None:
-                nn.utils.clip_grad_norm_(self.net.parameters(), self.schedule.clip_norm)
-            optimiser.step()
-            self.taps = added((*self.taps, *counts))
-            total += value * len(part)
-        return total / len(order)
-
-    def _loss(
-        self, part: np.ndarray, faults: Iterable[Any], epoch: int
+    def _of(
+        self, net: nn.Module, part: np.ndarray, faults: Iterable[Any], epoch: int
     ) -> tuple[Tensor, tuple[TapCount, ...]]:
         import torch
 
         rows = torch.from_numpy(part).to(self.device)
-        read = {port.channel for port in self.data.ports}
-        readings = {name: value[rows] for name, value in self.readings.items() if name in read}
-        inputs, counts = delivered(self.data, faults, readings, part, self.seed, epoch)
-        targets: Any = {name: value[rows] for name, value in self.targets.items()}
+        readings = {name: value[rows] for name, value in self._readings.items()}
+        inputs, counts = delivered(self._data, faults, readings, part, self.seed, epoch)
+        targets: Any = {name: value[rows] for name, value in self._targets.items()}
         if not isinstance(self.host_targets, Mapping):
             targets = targets["target"]
-        loss = self.loss(self.net(inputs), targets)
+        loss = self._loss(net(inputs), targets)
         if not isinstance(loss, torch.Tensor) or loss.ndim:
-            what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else name_of(loss)
+            what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else _name_of(loss)
             raise UserError(f"fit: the loss must be a tensor of one number, not {what}")
         return loss, counts
 
-    def _permuted(self, epoch: int) -> np.ndarray:
-        return generator("repairs", "minibatches", self.seed, epoch).permutation(self.training)
 
-    def _diverged(self, epoch: int, what: str) -> UserError:
-        return UserError(
-            f"fit: the {what} left the finite numbers in epoch {epoch + 1} of "
-            f"{self.schedule.epochs}: lower the learning rate or clip the gradient"
-        )
-
-    def record(self, name: str | None) -> FitRecord:
-        """Return what the fit says of itself."""
-        kinds = (each.kind.replace("_", "-") for each in self.repairs)
-        return FitRecord(
-            name=name or "+".join((type(self.net).__name__.lower(), *kinds)),
-            seed=self.seed,
-            repairs=self.repairs,
-            reads=tuple(
-                f"{port.channel} -> {consumer}" for port, consumer in self.data.ports.items()
-            ),
-            architecture=architecture(self.net),
-            parameters=sum(p.numel() for p in self.net.parameters() if p.requires_grad),
-            data=self.data.digested(self.host_targets, self.training),
-            loss=Loss(name=name_of(self.loss), code_sha256=code_sha256(self.loss)),
-            schedule=self.schedule,
-            initial_sha256=self.initial,
-            initial_loss=self.initial_loss,
-            order_sha256=tuple(self.order),
-            training_loss=tuple(self.curve),
-            validation=tuple(self.validation),
-            taps=self.taps,
-            weights_sha256=weights_sha256(self.net),
-            machine=machine(self.device.type),
-            duration_s=round(self.seconds, 3),
-        )
+def _architecture(net: nn.Module) -> Architecture:
+    lines = [str(net)]
+    for place, part in net.named_modules():
+        plain = {
+            name: value
+            for name, value in sorted(vars(part).items())
+            if isinstance(value, bool | int | float | str | tuple) and name != "training"
+        }
+        lines.append(f"{place or type(net).__name__}: {plain}")
+    return Architecture(
+        name=type(net).__name__,
+        structure="\n".join(lines),
+        tensors={
+            name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
+            for name, value in net.state_dict().items()
+        },
+    )
 
 
-def _cut(index: np.ndarray, schedule: Schedule) -> list[np.ndarray]:
-    return np.split(index, range(schedule.batch_size, len(index), schedule.batch_size))
-
-
-def _several(repair: Repair | Iterable[Repair], data: Windows) -> tuple[Repair, ...]:
-    given = (repair,) if isinstance(repair, Repair) else tuple(repair)
-    return tuple(each.against(data.interface, data.dt_s, data.consumers) for each in given)
+def _name_of(thing: Any) -> str:
+    named = thing if hasattr(thing, "__qualname__") else type(thing)
+    return named.__qualname__.replace("<locals>.", "")
