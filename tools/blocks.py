@@ -321,7 +321,7 @@ FILM = "film"
 PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
     "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
-    "effects": ("Effects of the repair", "[aria-labelledby=effects] figure.for-wide"),
+    "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
     "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency] > *"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
     FILM: ("One scene, all paths and both arms,", ""),

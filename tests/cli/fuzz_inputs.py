@@ -91,7 +91,7 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--scene": ("carts/000", "nowhere"),
             "--path": ("shared", "nobody"),
             "--signals": (None,),
-            "--out": ("a.gif", "a.mp4", "a.txt", "folder"),
+            "--out": ("a.gif", "a.txt", "folder"),
             "--seed": ("0", "7"),
             "--speed": ("2", "0", "nan"),
         },
@@ -124,7 +124,6 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--library": ("carts",),
             "--fault": FAULTS,
             "--json": (None,),
-            "--svg": ("a.svg", "folder"),
         },
     ),
     "map": (

@@ -123,7 +123,6 @@ def test_a_mistake_about_the_quadrotor(options, says, tmp_path):
         (["report"], ["folder"]),
         (["report", "nowhere"], ["nowhere", "holds runs"]),
         (["trace", "nothing"], ["'nothing'", "quadrotor"]),
-        (["trace", TOY, "--svg", "no/such/place/x.svg"], ["no/such/place/x.svg"]),
     ],
     ids=" ".join,
 )

@@ -12,7 +12,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.app import build
 from faultpath.cli.options import path
-from faultpath.store.outputs import DRAWING, PAGE
+from faultpath.store.outputs import PAGE
 
 
 @pytest.fixture(autouse=True)
@@ -61,24 +61,23 @@ THINGS = {"a device": _device, "a pipe": os.mkfifo, "a folder": Path.mkdir}
 
 
 @pytest.mark.parametrize("what", THINGS)
-def test_a_drawing_replaces_nothing_but_a_file(what: str, tmp_path: Path):
+def test_a_page_replaces_nothing_but_a_file(what: str, tmp_path: Path):
     place = tmp_path / "place"
     THINGS[what](place)
     before = place.lstat().st_mode
-    assert f"it is {what}" in faultpath("trace", TOY, "--svg", place).refused()
+    assert f"it is {what}" in faultpath(*OUTPUTS["report --out"], place).refused()
     assert place.lstat().st_mode == before
     assert os.listdir(tmp_path) == ["place"]
 
 
 REFERENCE = ROOT / "docs" / "reference"
 OUTPUTS = {
-    "trace --svg": ["trace", TOY, "--library", "carts", "--svg"],
     "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],
     "plan --out": ["plan", TOY, "--baseline=calibrated", "--repair=blind", "--out"],
     "replay --out": ["replay", REFERENCE / "toy", "--out"],
 }
 """Every option that takes the name of a file to write, and a command that ends with it."""
-ENDINGS = {"svg": "svg", "report": "html"}
+ENDINGS = {"report": "html"}
 
 
 @pytest.mark.parametrize("option", OUTPUTS)
@@ -96,26 +95,25 @@ def test_a_file_that_faultpath_did_not_write_is_not_replaced(
 
 
 def test_what_faultpath_wrote_is_replaced(tmp_path: Path):
-    place = tmp_path / "mine.svg"
+    place = tmp_path / "mine.html"
     place.touch()
     for _ in range(2):
-        ended = faultpath(*OUTPUTS["trace --svg"], place)
+        ended = faultpath(*OUTPUTS["report --out"], place)
         assert (ended.status, ended.err) == (0, "")
         assert place.stat().st_size > 100
 
 
 def test_what_faultpath_writes_is_known_again():
     assert PAGE.begins((REFERENCE / "toy" / "report.html").read_bytes()[:4096])
-    assert DRAWING.begins((ROOT / "docs" / "images" / "dock-interface.svg").read_bytes())
 
 
-def test_a_drawing_goes_where_a_link_leads(tmp_path: Path):
+def test_a_page_goes_where_a_link_leads(tmp_path: Path):
     (tmp_path / "deep").mkdir()
-    (tmp_path / "link").symlink_to("deep/interface.svg")
-    ended = faultpath(*OUTPUTS["trace --svg"], "link")
+    (tmp_path / "link").symlink_to("deep/page.html")
+    ended = faultpath(*OUTPUTS["report --out"], "link")
     assert (ended.status, ended.err) == (0, "")
     assert (tmp_path / "link").is_symlink()
-    assert "<svg" in (tmp_path / "deep" / "interface.svg").read_text()
+    assert "<html" in (tmp_path / "deep" / "page.html").read_text()
 
 
 AUDIT = "--baseline calibrated --repair blind --fault gain:scale=0.6 --library carts --scenes 2"

@@ -14,7 +14,6 @@ from faultpath.door.replaying import chosen_scenes, keep_signals, replay
 from faultpath.door.saved import read_run
 from faultpath.errors import UserError
 from faultpath.report.film import film
-from faultpath.report.rerun_export import export
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, SIGNALS, Signal
 
@@ -129,22 +128,11 @@ def test_a_scene_is_filmed(folder, tmp_path) -> None:
     still = replace(held, traces=replace(held.traces, positions={}))
     for source, name, seed, said in (
         (still, "x.gif", None, "gives no positions"),
-        (held, "x.png", None, "goes into a .gif, an .mp4 or an .rrd"),
+        (held, "x.png", None, "a .gif file"),
         (held, "x.gif", 7, "was not flown with seed 7"),
     ):
         with pytest.raises(UserError, match=said):
             film(source, SCENE, seed, (), 1.0, tmp_path / name)
-
-
-def test_a_scene_goes_to_rerun_with_its_signals(folder, found, tmp_path, capfd) -> None:
-    held = replace(read_run(folder)[0], signals={each.address: each.signals for each in found})
-    export(held, SCENE, None, tmp_path / "x.rrd")
-    assert (tmp_path / "x.rrd").read_bytes()[:4] == b"RRF2"
-    assert "WARN" not in capfd.readouterr().err
-    kept = (tmp_path / "x.rrd").read_bytes()
-    assert all(name in kept for name in (b"gain_estimate", b"vehicle", b"observed_slope"))
-    with pytest.raises(UserError, match="was not flown with seed 7"):
-        export(held, SCENE, 7, tmp_path / "y.rrd")
 
 
 def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:

@@ -14,8 +14,8 @@ from faultpath.plane.model import MapRecord
 from faultpath.plane.surface import Differences
 from faultpath.plane.words import cut
 from faultpath.record import RunProvenance
-from faultpath.report.figures.plane import correlation_picture, map_picture
 from faultpath.report.plane import page, tables
+from faultpath.report.plane_pictures import correlation_picture, map_picture
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
@@ -218,10 +218,9 @@ def test_of_ties_no_turning_size_is_shown() -> None:
     assert set(shown(record(alike(40))).values()) == {("–", "–", "–")}
 
 
-@pytest.mark.parametrize("narrow", [False, True])
-def test_the_map_says_what_is_compared_what_0_means_and_cuts_no_label(narrow: bool) -> None:
+def test_the_map_says_what_is_compared_what_0_means_and_cuts_no_label() -> None:
     made = record(reversal(40), against=("reconstruction", "predictor"))
-    drawn = [map_picture(made, narrow).render(), correlation_picture(made, narrow).render()]
+    drawn = [map_picture(made).render(), correlation_picture(made).render()]
     for each in drawn:
         assert "uccess of new minus that of old, pp" in each
         assert "0: both succeed equally often" in each

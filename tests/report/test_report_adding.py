@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faultpath.report.adding import adding
-from faultpath.report.figures.adding import adding_panels
+from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import read_pairs
@@ -55,7 +54,7 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) ->
     assert "under the shared fault" in shown.caption
     assert shown.caption.count("2.0 and 1.8 m/s²") == 2
     page = report_page(heard)
-    first = page[: page.index('<section aria-labelledby="interface"')]
+    first = page[: page.index('<section aria-labelledby="effects"')]
     assert first.count('class="term both') == 6 + 1  # the key has a sample
     assert f"Why: {TOPIC}" in first
 

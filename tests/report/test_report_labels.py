@@ -45,7 +45,7 @@ def _comparison(folder: Path) -> Path:
     return compare(runs).report(folder / "page.html")
 
 
-def test_a_cart_has_its_goal_and_commands_their_folder(
+def test_a_cart_has_its_goal(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:
     source = make(n_scenes=4, void=False)
@@ -59,9 +59,6 @@ def test_a_cart_has_its_goal_and_commands_their_folder(
     opened.wait_for_selector("#viewer[data-ready]")
     assert opened.locator(".v-goal").count() == len(source.record.paths)
     assert opened.locator("#viewer text", has_text="goal").count() == len(source.record.paths)
-    scene = opened.evaluate("document.querySelector('#viewer-scene option:checked').textContent")
-    command = f"faultpath replay '{folder}' --scene {scene} --signals"
-    assert opened.locator("#viewer-unrecorded code").inner_text() == command
     opened.close()
 
 

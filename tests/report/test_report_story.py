@@ -10,10 +10,17 @@ import pytest
 from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
 from faultpath.record import DecisionRecord, Path
-from faultpath.report.figures.fork import fork_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.story import Fork, Reader, fault_story, forks, isolation_words, out_of_reach
+from faultpath.report.story import (
+    Fork,
+    Reader,
+    fault_story,
+    fork_panels,
+    forks,
+    isolation_words,
+    out_of_reach,
+)
 from faultpath.report.svg import shortened
 from faultpath.trials import SystemSpec, library_of, load_system
 
@@ -23,9 +30,9 @@ EQUAL = dict.fromkeys(("correct", "predictor", "reconstruction", "shared"), (0.5
 
 
 def screen(source: ReportInput) -> str:
-    """Return the words of the first screen."""
+    """Return the words of the first screen, and of who gets the fault."""
     page = report_page(source)
-    found = page[page.index("<h1") : page.index('<section aria-labelledby="interface"')]
+    found = page[page.index("<h1") : page.index('<section aria-labelledby="frequency"')]
     return re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", found))
 
 

@@ -12,7 +12,6 @@ from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import parting_step
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import pack, unpack
-from faultpath.report.viewer_signals import plots
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 from faultpath.trials import FloorPlan, Pillar, Prism
@@ -93,24 +92,6 @@ def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> No
     heard = {TrialAddress("gru", "shared", 0, scene): (Signal("thrust", "thrust", "N", steps),)}
     data, _ = _unpacked(still, signals=heard)
     assert [each["scene"] for each in data["scenes"]] == [scene]
-
-
-def test_what_is_zero_throughout_has_no_axes(one_seed: ReportInput) -> None:
-    zero = np.zeros((5, 2), dtype=np.float32)
-    one = np.tile(np.array((0.0, 1.0), np.float32), (5, 1))
-    error = Signal("gain error at a.b", "gain error", "1", one)
-    nothing = Signal("wind error at a.b", "wind error", "m/s", zero)
-    at = TrialAddress("gru", "shared", 0, next(iter(one_seed.plans)))
-    assert [plot.title for plot in plots({at: (error, nothing)})] == ["gain error, 2"]
-    effects = tuple(
-        effect.model_copy(
-            update={"time_s": effect.success.model_copy(update={"value": 0.0, "low": 0, "high": 0})}
-        )
-        for effect in one_seed.record.effects
-    )
-    record = one_seed.record.model_copy(update={"effects": effects})
-    assert "Time on joint successes" in report_page(one_seed)
-    assert "Time on joint successes" not in report_page(replace(one_seed, record=record))
 
 
 def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: ReportInput) -> None:

@@ -31,9 +31,7 @@ def command(
     ] = False,
     out: Annotated[
         Path | None,
-        typer.Option(
-            parser=as_path, help="Film a scene into a .gif or .mp4, or write a .rrd; flies nothing."
-        ),
+        typer.Option(parser=as_path, help="Film a scene into a .gif; flies nothing."),
     ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, max=LARGEST, help="Seed to film; default the first.")
@@ -56,16 +54,12 @@ def command(
     console = SafeConsole()
     if out is not None:
         from faultpath.report.film import film
-        from faultpath.report.rerun_export import export
         from faultpath.store.outputs import FILM, check_output
 
         if signals:
             raise UserError("--out flies nothing, so there is nothing to hear: leave one out.")
         check_output(out, FILM)
-        if out.suffix == ".rrd":
-            export(held, scenes[0], seed, out)
-        else:
-            film(held, scenes[0], seed, tuple(path or ()), speed, out)
+        film(held, scenes[0], seed, tuple(path or ()), speed, out)
         console.print(f"Written: {out}", markup=False, soft_wrap=True)
         return 0
     if seed is not None:

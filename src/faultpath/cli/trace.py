@@ -1,11 +1,10 @@
 """`faultpath trace`: who reads what, as declared and over a few steps."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import LARGEST, SET, path, settings
+from faultpath.cli.options import LARGEST, SET, settings
 
 FOUND = 1
 
@@ -24,23 +23,18 @@ def command(
     ] = None,
     set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
-    svg: Annotated[
-        Path | None, typer.Option(parser=path, help="Draw what ran into this SVG file.")
-    ] = None,
 ) -> int:
-    """Print the information interface of a system and who read what, when; draw it with what
-    really ran. Exits with 1 where that differs from what is declared."""
+    """Print the information interface of a system and who read what, when.
+
+    Exits with 1 where that differs from what is declared."""
     from faultpath.door.display import SafeConsole
     from faultpath.door.reviewing import traced
     from faultpath.door.systems import choose
     from faultpath.patience import patience
-    from faultpath.report.interface_trace import draw_trace, trace_table
     from faultpath.report.terminal import interface_table
-    from faultpath.store.outputs import DRAWING, check_output, write_output
+    from faultpath.report.trace import trace_table
     from faultpath.tables.terminal import STYLES, Parted
 
-    if svg is not None:
-        check_output(svg, DRAWING)
     with patience(system, None):
         chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
     trace = traced(chosen, variant, library, scene, steps, seed, fault)
@@ -57,8 +51,4 @@ def command(
             console.print(f"Found: {finding}", markup=False, style=STYLES["bad"])
         if not trace.findings:
             console.print("What ran is what is declared.", style=STYLES["good"])
-    if svg is not None:
-        write_output(svg, draw_trace(chosen.system.interface, trace), DRAWING)
-        if not as_json:
-            console.print(f"Written: {svg}", markup=False, soft_wrap=True)
     return FOUND if trace.findings else 0

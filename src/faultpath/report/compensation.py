@@ -5,14 +5,12 @@ from math import exp
 from markupsafe import Markup
 
 from faultpath.flightlog import Combination, Compensation
-from faultpath.record.wording import counted, interval, plain
 from faultpath.report.frame import render
-from faultpath.report.scale import covering, tick_label
-from faultpath.report.svg import Svg
+from faultpath.report.svg import Svg, covering, tick_label
+from faultpath.record.wording import counted, interval, plain
 from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Table, line
 from faultpath.tables.html import html
-from faultpath.version import __version__
 
 CAVEAT = (
     "This is about the acceleration one control interval ahead on this flight. It says where "
@@ -138,7 +136,6 @@ def page(found: Compensation, log: str) -> str:
         ("tokens.css", "svg.css", "page.css"),
         (),
         log=log,
-        version=__version__,
         sentences=sentences(found),
         caveat=CAVEAT,
         picture=Markup(picture(found)),

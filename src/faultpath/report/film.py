@@ -1,7 +1,5 @@
 """A scene of a run as a moving picture: every path and both arms on one clock, from above."""
 
-import shutil
-import subprocess
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,16 +43,14 @@ _ARMS = ("baseline", "repair")
 def film(
     held: ReportInput, scene: str, seed: int | None, paths: Sequence[str], speed: float, out: Path
 ) -> None:
-    """Write a scene as `.gif` or `.mp4`; `paths` by default all, `seed` the one with which the
-    report shows the scene, else the first.
+    """Write a scene as `.gif`; `paths` by default all, `seed` the one with which the report shows
+    the scene, else the first.
 
-    Raises `UserError` for another ending, a seed that was not flown, a system without positions,
-    and where pillow or, for an mp4, ffmpeg is missing.
+    Raises `UserError` for another ending, a seed that was not run, a system without positions, and
+    where pillow is missing.
     """
-    if out.suffix not in (".gif", ".mp4"):
-        raise UserError(f"{out}: a scene goes into a .gif, an .mp4 or an .rrd; name it so.")
-    if out.suffix == ".mp4" and shutil.which("ffmpeg") is None:
-        raise UserError("an .mp4 needs ffmpeg, which is not installed here: write a .gif.")
+    if out.suffix != ".gif":
+        raise UserError(f"{out}: a film is a .gif file: name it so.")
     asked = held.record.question
     all_pairs = read_pairs(held.outcomes, held.record)
     first = [
@@ -229,9 +225,6 @@ class _Film:
 
 def _write(out: Path, frames: Iterator[Any], count: int, pace_s: float) -> None:
     try:
-        if out.suffix == ".mp4":
-            _encode(out, frames, pace_s)
-            return
         first, *rest = _with_palette(frames)
         held = [max(20, round(1000 * pace_s))] * (count - 1) + [round(1000 * _HOLD_S)]
         first.save(out, save_all=True, append_images=rest, duration=held, loop=0, optimize=True)
@@ -250,17 +243,3 @@ def _with_palette(frames: Iterator[Any]) -> Iterator[Any]:
     palette.putpalette([value for colour in colours for value in colour])
     for frame in frames:
         yield frame.quantize(palette=palette, dither=0)
-
-
-def _encode(out: Path, frames: Iterator[Any], pace_s: float) -> None:
-    first = next(frames)
-    size = f"{first.width}x{first.height}"
-    given = ("-f", "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", f"{1 / pace_s:g}", "-i", "-")
-    command = ("ffmpeg", "-y", "-loglevel", "error", *given, "-pix_fmt", "yuv420p", str(out))
-    pictures = [first, *frames]
-    held = round(_HOLD_S / pace_s) * pictures[-1:]
-    made = subprocess.run(
-        command, input=b"".join(each.tobytes() for each in (*pictures, *held)), check=False
-    )
-    if made.returncode:
-        raise UserError(f"ffmpeg could not write {out}: write a .gif.")

@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from faultpath.report.svg import template
 from faultpath.tables.escapes import visible
+from faultpath.version import __version__
 
 
 def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:
@@ -24,7 +25,11 @@ def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: 
         _environment()
         .get_template(page)
         .render(
-            policy=_policy(style, script), styles=Markup(style), scripts=Markup(script), **content
+            policy=_policy(style, script),
+            styles=Markup(style),
+            scripts=Markup(script),
+            version=__version__,
+            **content,
         )
     )
 

@@ -11,16 +11,16 @@ from faultpath.plane.asked import MapQuestion
 from faultpath.plane.lattice import SHARED
 from faultpath.plane.model import Flip, MapPoint, MapRecord
 from faultpath.plane.words import cut
-from faultpath.record import RunProvenance, wording
-from faultpath.report.figures.plane import correlation_picture, map_picture
+from faultpath.record import RunProvenance
+from faultpath.record import wording
 from faultpath.report.frame import render
+from faultpath.report.plane_pictures import correlation_picture, map_picture
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.store import make_folder, write_text
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.html import html
 from faultpath.tables.markdown import block
 from faultpath.tables.terminal import drawn
-from faultpath.version import __version__
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:
@@ -145,11 +145,10 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         record=record,
         asked=record.question,
         provenance=provenance,
-        version=__version__,
         sentences=[wording.typeset(each) for each in record.sentences],
         headline=wording.typeset(record.headline),
-        maps=[Markup(map_picture(record, narrow).render()) for narrow in (False, True)],
-        curves=[Markup(correlation_picture(record, narrow).render()) for narrow in (False, True)],
+        map=Markup(map_picture(record).render()),
+        curve=Markup(correlation_picture(record).render()),
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
         paths=Markup(html(paths)),

@@ -1,68 +1,82 @@
 """The record as tables: one list of quantities, with the paths as rows or as columns."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
-from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.plain import not_standing
 from faultpath.record.question import Question
 from faultpath.record.words import adjusted, only_alone
-from faultpath.report.thresholds import by_threshold
+from faultpath.record import wording
+from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
 from faultpath.tables.markdown import block
 
+_ARMS = ("baseline", "repair")
+DIFFERENCE = ("difference", "interval", "won")
+SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
+ALL = (
+    *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
+    *("power", "power-seen", "scenes", "void", "break-even"),
+)
 
-@dataclass(frozen=True)
-class _Of:
-    """What a quantity is read from: one path of a record."""
 
-    record: DecisionRecord
-    effect: Effect
+def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
+    """Return all that a record says of a path, by the name of the quantity."""
+    found = {b.path: wording.break_even(b.result) for b in record.break_even}
 
-    def rate(self, variant: str) -> Entry:
-        """Return the success of a variant over the scenes compared, percent."""
-        baseline = variant == self.record.question.baseline
-        rate = self.effect.baseline_percent if baseline else self.effect.repair_percent
-        return Entry(text=wording.plain(rate))
+    def number(value: float | None) -> str:
+        return MISSING if value is None else wording.plain(value)
 
-    def difference(self) -> Entry:
-        """Return the difference; bold is decided."""
-        return Entry(
-            text=wording.signed(self.effect.success.value),
-            detected=self.effect.detected,
-            aside=wording.reservation(self.effect),
-        )
+    beside = effect.mcnemar_p_value
+    return {
+        "baseline": wording.plain(effect.baseline_percent),
+        "repair": wording.plain(effect.repair_percent),
+        "difference": Entry(
+            text=wording.signed(effect.success.value),
+            detected=effect.detected,
+            aside=wording.reservation(effect),
+        ),
+        "interval": wording.interval(effect.success) or MISSING,
+        "won": wording.wins_losses(effect.wins, effect.losses),
+        "p": wording.p_value(effect.p_value),
+        "mcnemar": MISSING if beside is None else wording.p_value(beside),
+        "holm": wording.adjusted(effect),
+        "decided": decided_for(record.question, effect),
+        "power": number(effect.findable_pp),
+        "power-seen": number(effect.minimum_detectable_pp),
+        "scenes": str(effect.scenes),
+        "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
+        "break-even": found.get(effect.path, MISSING),
+    }
 
-    def decided(self) -> Entry:
-        """Return the arm that the family decides for, with what keeps it out of a headline."""
-        return decided_for(self.record.question, self.effect)
 
-    def void(self) -> Entry:
-        """Return the number of void pairs."""
-        count = self.effect.void_pairs
-        return Entry(text=str(count), tone="bad" if count else "")
-
-    def power(self) -> Entry:
-        """Return the difference that is found with 80 % power."""
-        least = self.effect.findable_pp
-        return Entry(text=MISSING if least is None else wording.plain(least))
-
-    def power_seen(self) -> Entry:
-        """Return it for as much discordance as was seen."""
-        least = self.effect.minimum_detectable_pp
-        return Entry(text=MISSING if least is None else wording.plain(least))
-
-    def mcnemar(self) -> Entry:
-        """Return exact McNemar's p, where another test decides."""
-        p = self.effect.mcnemar_p_value
-        return Entry(text=MISSING if p is None else wording.p_value(p))
-
-    def break_even(self) -> Entry:
-        """Return the fault frequencies at which neither arm is decided to be ahead."""
-        found = {b.path: wording.break_even(b.result) for b in self.record.break_even}
-        return Entry(text=found.get(self.effect.path, MISSING))
+def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
+    """Return the quantities of `names` that the record has, each with its label."""
+    effects, asked = record.effects, record.question
+    levels = {f"{100 * effect.success.level:g} % interval" for effect in effects}
+    labels = {
+        "baseline": asked.baseline,
+        "repair": asked.repair,
+        "difference": "Difference, pp",
+        "interval": levels.pop() if len(levels) == 1 else "Interval",
+        "won": "Won:lost",
+        "p": "p, alone",
+        "mcnemar": "p, exact McNemar",
+        "holm": "p, Holm" if record.stopped is None else "p, family",
+        "decided": "Decided for",
+        "power": "80 % power, pp",
+        "power-seen": "the same at the discordance seen, pp",
+        "scenes": "Scenes",
+        "void": "Void pairs",
+        "break-even": "Break-even, %",
+    }
+    there = {
+        "power": record.stopped is None,
+        "mcnemar": any(effect.mcnemar_p_value is not None for effect in effects),
+        "power-seen": any(effect.planning_detectable_pp for effect in effects),
+    }
+    return {name: labels[name] for name in names if there.get(name, True)}
 
 
 def decided_for(asked: Question, effect: Effect) -> Entry:
@@ -75,68 +89,35 @@ def decided_for(asked: Question, effect: Effect) -> Entry:
     return Entry(text=arm, aside=", ".join(filter(None, (effect.extreme, p))))
 
 
-DIFFERENCE = ("difference", "interval", "won")
-_ARMS = ("baseline", "repair")
-BEHIND = ("holm", "power", "scenes", "void", "break-even")
-"""Beside a forest plot, which has the rest."""
-SHOWN = (*_ARMS, *DIFFERENCE, *BEHIND)
-ALL = (
-    *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
-    *("power", "power-seen", "scenes", "void", "break-even"),
-)
-_QUANTITIES: Mapping[str, tuple[str, Callable[[_Of], Entry | str]]] = {
-    "baseline": ("", lambda of: of.rate(of.record.question.baseline)),
-    "repair": ("", lambda of: of.rate(of.record.question.repair)),
-    "difference": ("Difference, pp", _Of.difference),
-    "interval": ("", lambda of: wording.interval(of.effect.success) or MISSING),
-    "won": ("Won:lost", lambda of: wording.wins_losses(of.effect.wins, of.effect.losses)),
-    "p": ("p, alone", lambda of: wording.p_value(of.effect.p_value)),
-    "holm": ("", lambda of: wording.adjusted(of.effect)),
-    "decided": ("Decided for", _Of.decided),
-    "power": ("80 % power, pp", _Of.power),
-    "power-seen": ("the same at the discordance seen, pp", _Of.power_seen),
-    "mcnemar": ("p, exact McNemar", _Of.mcnemar),
-    "scenes": ("Scenes", lambda of: str(of.effect.scenes)),
-    "void": ("Void pairs", _Of.void),
-    "break-even": ("Break-even, %", _Of.break_even),
-}
-"""Label and entry of all that a record says of a path; labels left empty are the record's own."""
-
-
 def by_path(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
     """Return a table with a row for each path and a column for each of the quantities `names`."""
+    labels, titles = _labels(record, names), _titles(record)
     lines = [
         line(
-            _title(record, effect),
-            *(_QUANTITIES[name][1](_Of(record, effect)) for name in _named(record, names)),
+            title_of,
+            *(_entries(record, effect)[name] for name in labels),
             aside="primary" if effect.path == record.question.primary else "",
         )
-        for effect in record.effects
+        for title_of, effect in zip(titles, record.effects, strict=True)
     ]
-    columns = tuple(
-        _label(record, name) + (", %" if name in _ARMS else "") for name in _named(record, names)
-    )
-    return Table(title=title, corner="Path", columns=columns, lines=tuple(lines))
+    columns = (label + (", %" if name in _ARMS else "") for name, label in labels.items())
+    return Table(title=title, corner="Path", columns=tuple(columns), lines=tuple(lines))
 
 
 def by_quantity(
     record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
 ) -> Table:
     """Return a table with a column for each path and a row for each of the quantities `names`."""
-    lines = [
-        line(
-            _label(record, name),
-            *(_QUANTITIES[name][1](_Of(record, effect)) for effect in record.effects),
-            aside=name if name in _ARMS else "",
-        )
-        for name in _named(record, names)
-    ]
+    of = [_entries(record, effect) for effect in record.effects]
     return Table(
         name="faultpath",
         title=title,
         corner="Success, %",
-        columns=tuple(_title(record, effect) for effect in record.effects),
-        lines=tuple(lines),
+        columns=_titles(record),
+        lines=tuple(
+            line(label, *(entries[name] for entries in of), aside=name if name in _ARMS else "")
+            for name, label in _labels(record, names).items()
+        ),
         notes=tuple(notes),
     )
 
@@ -148,33 +129,28 @@ def whole_table(record: DecisionRecord) -> Table:
         f"{asked.repair} against {asked.baseline} on {asked.system}, fault {asked.fault}: "
         f"{record.flown} scenes of {asked.library}, {wording.seeds(asked.seeds)}"
     )
+    corrected = f"Holm's correction is for {record.hypotheses} contrasts."
+    if record.stopped is not None:
+        others = "" if record.hypotheses == 1 else ", half of it for the primary one"
+        corrected = (
+            f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
+            f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
+        )
+    ruled = f"Rule: {asked.ruled}. " if asked.ruled else ""
     notes = (
         f"Difference: success of {asked.repair} minus success of {asked.baseline}. Won:lost: "
         f"scenes in which only {asked.repair} or only {asked.baseline} succeeds. Void pairs count "
         "for neither side. Break-even: the fault frequencies at which neither is decided to be "
         "ahead, with the estimate in front; any: none is decided from which on one of them is.",
-        f"Primary contrast: {asked.primary}. {_ruled(record)}{_corrected(record)} Intervals and "
-        f"tests speak of {record.estimand}.",
+        f"Primary contrast: {asked.primary}. {ruled}{corrected} Intervals and tests speak of "
+        f"{record.estimand}.",
         *not_standing(record),
         record.verdict.headline,
     )
     table = by_quantity(record, ALL, title, notes)
-    return table.model_copy(update={"lines": (*table.lines, *_secondary(record))})
-
-
-def _ruled(record: DecisionRecord) -> str:
-    rule = record.question.ruled
-    return f"Rule: {rule}. " if rule else ""
-
-
-def _corrected(record: DecisionRecord) -> str:
-    if record.stopped is None:
-        return f"Holm's correction is for {record.hypotheses} contrasts."
-    others = "" if record.hypotheses == 1 else ", half of it for the primary one"
-    return (
-        f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
-        f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
-    )
+    more = secondary(record)
+    heading = (line(more.title), *more.lines) if more else ()
+    return table.model_copy(update={"lines": (*table.lines, *heading)})
 
 
 def markdown_table(record: DecisionRecord) -> str:
@@ -188,44 +164,89 @@ def latex_table(record: DecisionRecord) -> str:
     return "% Needs \\usepackage{booktabs}\n" + booktabs(whole_table(record))
 
 
-def _named(record: DecisionRecord, names: Sequence[str]) -> list[str]:
-    beside = any(effect.mcnemar_p_value is not None for effect in record.effects)
-    shown = {"power": record.stopped is None, "mcnemar": beside}
-    shown["power-seen"] = any(effect.planning_detectable_pp for effect in record.effects)
-    return [name for name in names if shown.get(name, True)]
-
-
-def _label(record: DecisionRecord, name: str) -> str:
+def ended(record: DecisionRecord) -> Table:
+    """Return how the trials of both arms ended on each path."""
     asked = record.question
-    levels = {f"{100 * effect.success.level:g} % interval" for effect in record.effects}
-    interval = levels.pop() if len(levels) == 1 else "Interval"
-    said = {
-        "baseline": asked.baseline,
-        "repair": asked.repair,
-        "interval": interval,
-        "holm": "p, Holm" if record.stopped is None else "p, family",
-    }
-    return said.get(name, _QUANTITIES[name][0])
+    statuses = ("success", "crash", "timeout", "failed")
+    cells = {(cell.path, cell.variant): cell for cell in record.cells}
+    shown = [s for s in statuses if any(getattr(cell, s) for cell in record.cells)]
+    lines: list[Line] = []
+    for path in record.paths:
+        lines.append(line(path.title))
+        for role, name in zip(_ARMS, (asked.baseline, asked.repair), strict=True):
+            if (cell := cells.get((path.name, name))) is not None:
+                time = cell.median_time_s
+                counts = (str(getattr(cell, status)) for status in shown)
+                median = MISSING if time is None else wording.plain(time, 2)
+                lines.append(line(name, *counts, median, aside=role))
+    return Table(
+        title="How trials ended",
+        corner="Arm",
+        columns=(*(asked.ends.get(s, s) for s in shown), "median time of successes, s"),
+        lines=tuple(lines),
+    )
 
 
-def _title(record: DecisionRecord, effect: Effect) -> str:
-    return next((path.title for path in record.paths if path.name == effect.path), effect.path)
-
-
-def _secondary(record: DecisionRecord) -> list[Line]:
-    asked, lines = record.question, list[Line]()
+def secondary(record: DecisionRecord) -> Table | None:
+    """Return time and metrics, repair minus baseline, path by path; `None` without any."""
+    asked = record.question
     shown = {"time on joint successes (s)": [effect.time_s for effect in record.effects]}
     for name, metric in asked.metrics.items():
         label = f"{metric.said(name)} ({metric.unit})"
         shown[label] = [effect.metrics.get(name) for effect in record.effects]
-    for label, estimates in shown.items():
-        if any(estimates):
-            title = f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}, {label}"
-            values = ("" if e is None else wording.signed(e.value, 2) for e in estimates)
-            ranges = ("" if e is None else wording.interval(e, 2) for e in estimates)
-            lines += [
-                line(title),
-                line("Difference", *(value or MISSING for value in values)),
-                line(_label(record, "interval"), *(ends or MISSING for ends in ranges)),
-            ]
-    return lines
+
+    def entry(e: Estimate | None) -> str:
+        return MISSING if e is None else wording.with_interval(e, 2)
+
+    lines = [line(label, *map(entry, e)) for label, e in shown.items() if any(e)]
+    if not lines:
+        return None
+    return Table(
+        title=f"Secondary, nothing is decided: {asked.repair} minus {asked.baseline}",
+        corner="Metric",
+        columns=_titles(record),
+        lines=tuple(lines),
+    )
+
+
+def by_threshold(record: DecisionRecord) -> Table | None:
+    """Return the chosen metric and success at each threshold of it, path by path; `None` without.
+
+    A trial succeeds at a threshold if it did not crash and its metric is on the better side.
+    """
+    asked = record.question
+    if not asked.metric:
+        return None
+    metric = asked.metrics[asked.metric]
+    said = metric.said(asked.metric)
+    sign = "≤" if metric.better == "less" else "≥"
+    means: list[str] = []
+    for effect in record.effects:
+        found = effect.metrics.get(asked.metric)
+        if found is None or effect.metric_means is None:
+            means.append(MISSING)
+            continue
+        one, two = effect.metric_means
+        means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(found, 3)}")
+    lines = [line(f"{said} ({metric.unit})", *means)]
+    for number, at in enumerate(asked.thresholds):
+        rates: list[str] = []
+        for effect in record.effects:
+            if len(effect.thresholds) <= number:
+                rates.append(MISSING)
+                continue
+            there = effect.thresholds[number]
+            one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
+            rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
+        lines.append(line(f"success if {said} {sign} {at:g} {metric.unit}, %", *rates))
+    return Table(
+        title=f"Secondary, nothing is decided: {asked.baseline} → {asked.repair}, difference",
+        corner=f"{said}: {metric.better} is better",
+        columns=_titles(record),
+        lines=tuple(lines),
+    )
+
+
+def _titles(record: DecisionRecord) -> tuple[str, ...]:
+    titles = {path.name: path.title for path in record.paths}
+    return tuple(titles.get(effect.path, effect.path) for effect in record.effects)

@@ -1,4 +1,4 @@
-"""Files that an option asks for, such as `--svg FILE`: what they may take the place of."""
+"""Files that an option asks for, such as `--out FILE`: what they may take the place of."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +21,6 @@ class Output:
     """Whether the first bytes of a file are of this kind, and written by faultpath."""
 
 
-DRAWING = Output("drawing", (".svg",), lambda head: head.startswith(b"<svg xmlns="))
 PAGE = Output(
     "page", (".html", ".htm"), lambda head: b'name="generator" content="faultpath' in head
 )
@@ -36,11 +35,7 @@ NUMBERS = Output(
     lambda head: head.startswith((b'{"format": 1, "profile"', b'{\n  "flown_s"')),
 )
 SCHEMA = Output("JSON Schema", (".json",), lambda head: head.startswith(b'{\n  "$defs"'))
-FILM = Output(
-    "film",
-    (".gif", ".mp4", ".rrd"),
-    lambda head: head.startswith((b"GIF8", b"RRF")) or head[4:8] == b"ftyp",
-)
+FILM = Output("film", (".gif",), lambda head: head.startswith(b"GIF8"))
 
 
 def check_output(path: Path, kind: Output) -> None:

@@ -1,7 +1,6 @@
 """Audits side by side, as a table, on the terminal, and as one page that needs no network."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from markupsafe import Markup
 from rich.console import Group, RenderableType
@@ -11,11 +10,8 @@ from rich.text import Text
 from faultpath.record import wording
 from faultpath.report.comparison import facts, words
 from faultpath.report.comparison.runs import Compared, titles
-from faultpath.report.comparison.sweep import COURSE, swept
-from faultpath.report.comparison.turning import turning
-from faultpath.report.figures.effects import EffectRow, effect_rows
-from faultpath.report.figures.multiples import Rows, multiple, shared_axis
-from faultpath.report.figures.over_sizes import over_sizes
+from faultpath.report.comparison.sweep import swept
+from faultpath.report.effects import Rows, effect_row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.tables import decided_for
 from faultpath.tables import MISSING, Entry, Line, Table, line
@@ -23,7 +19,6 @@ from faultpath.tables.escapes import markdown as escaped
 from faultpath.tables.html import html
 from faultpath.tables.markdown import block
 from faultpath.tables.terminal import drawn
-from faultpath.version import __version__
 
 
 def effects(runs: Sequence[Compared]) -> Table:
@@ -62,8 +57,6 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
         parts += [Text(f"{run.number}  {run.folder}"), verdict]
     parts += [Text(""), drawn(effects(runs)), Text("")]
     parts += [drawn(facts.table(runs, found))] if found else [Text(words.same(runs))]
-    if turns := turning(runs):
-        parts += [Text(""), drawn(turns), *map(Text, turns.notes)]
     return Group(*parts, Text(""), *map(Text, words.sentences(runs)))
 
 
@@ -77,51 +70,26 @@ def markdown(runs: Sequence[Compared]) -> str:
 
 def page(runs: Sequence[Compared]) -> str:
     """Return the comparison as one page."""
-    found, panels = facts.differing(runs), _panels(runs)
-    axis = shared_axis([rows for _, rows in panels])
-    sizes, turns = swept(runs), turning(runs)
-    drawn_over = sizes if len(runs) >= COURSE else None
+    found, labels = facts.differing(runs), facts.labels(runs)
+    panels: dict[str, Rows] = {
+        title: [
+            (label, effect_row(label, effect) if (effect := run.effect(path)) else run.absent(path))
+            for label, run in zip(labels, runs, strict=True)
+        ]
+        for path, title in titles(runs).items()
+    }
+    axis = shared_axis(list(panels.values()))
     return render(
         "comparison.html.j2",
-        ("tokens.css", "svg.css", "page.css", "comparison.css"),
+        ("tokens.css", "svg.css", "page.css"),
         (),
-        version=__version__,
         headline=words.headline(runs),
         sentences=words.sentences(runs),
         runs=runs,
-        panels=[
-            Markup(
-                over_sizes(title, drawn_over, rows, axis)
-                if drawn_over
-                else multiple(title, rows, axis)
-            )
-            for title, rows in panels
-        ],
+        panels=[Markup(panel(title, rows, axis)) for title, rows in panels.items()],
         effects=Markup(html(effects(runs))),
         facts=Markup(html(facts.table(runs, found))) if found else "",
         same=words.same(runs),
-        sizes=sizes,
-        turns=Markup(html(turns)) if turns else "",
-        turns_notes=turns.notes if turns else (),
+        sizes=swept(runs),
         w=wording,
     )
-
-
-def _panels(runs: Sequence[Compared]) -> list[tuple[str, Rows]]:
-    labels = facts.labels(runs)
-    return [
-        (title, [(label, _row(run, path)) for label, run in zip(labels, runs, strict=True)])
-        for path, title in titles(runs).items()
-    ]
-
-
-def _row(run: Compared, path: str) -> EffectRow | str:
-    effect = run.effect(path)
-    if effect is None:
-        return run.absent(path)
-    row = next(
-        row
-        for row, own in zip(effect_rows(run.record), run.record.effects, strict=True)
-        if own.path == path
-    )
-    return replace(row, note=wording.reservation(effect), sign=effect.sign)

@@ -8,12 +8,10 @@ from faultpath.record.family import ALPHA, CORRECT, alpha_shares
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.report.comparison import facts
 from faultpath.report.comparison.runs import Compared, joined, titles
-from faultpath.report.scale import tick_label
+from faultpath.report.svg import tick_label
 from faultpath.statistics import RULES, Sign
 from faultpath.statistics.decisions import holm
 
-COURSE = 3
-"""Sizes that show a course: two points do not."""
 _LEAST = 2
 _SIZED = re.compile(r"([^=,@]+)=([^=,@/]+)(.*)", re.DOTALL)
 _MAY_DIFFER = ("Fault", "Scenes flown", "Scenes compared")

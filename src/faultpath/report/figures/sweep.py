@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 
-from faultpath.record import wording
 from faultpath.record.reproduction import Point, Series, Sweep
-from faultpath.report.scale import Axis, draw_levels, draw_tick, tick_label
-from faultpath.report.svg import Svg, text_width
+from faultpath.record import wording
+from faultpath.report.svg import Axis, Svg, draw_levels, draw_tick, text_width, tick_label
 
 LOOKS = 4
 """Looks that lines take in turn: colour, dashes and mark differ together."""

@@ -4,8 +4,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import log10
 
-from faultpath.report.scale import Axis, covering, draw_interval, tick_label
-from faultpath.report.svg import Svg
+from faultpath.report.svg import Axis, Svg, covering, draw_interval, tick_label
 
 WIDTH = 150.0
 _HEIGHT, _LABELLED = 24.0, 35.0

@@ -5,14 +5,12 @@ from collections.abc import Mapping
 
 from markupsafe import Markup
 
-from faultpath.record import wording
 from faultpath.record.reproduction import ClaimVerdict, Reproduction
-from faultpath.report.figures.effects import effect_rows, forest
+from faultpath.record import wording
+from faultpath.report.effects import forest
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
-from faultpath.report.interface_drawing import draw_interface
-from faultpath.report.interface_wiring import StruckPath, struck_paths
 from faultpath.report.pairing import read_pairs
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.glossary import GLOSSARY
@@ -29,7 +27,6 @@ _SCRIPTS = ("page.js", *VIEWER_SCRIPTS, "reproduction.js")
 def reproduction_page(source: ReproductionInput) -> str:
     """Return the whole page as HTML: styles, scripts, pictures and data inside."""
     reproduction, decision = source.reproduction, source.decision
-    struck = struck_paths(decision) if decision else ()
     return render(
         "reproduction.html.j2",
         _STYLES,
@@ -53,8 +50,7 @@ def reproduction_page(source: ReproductionInput) -> str:
         footnotes=_footnotes(reproduction),
         sweeps=_sweeps(source),
         gallery=_gallery(source),
-        reversal=_reversal(source, struck),
-        struck=struck,
+        forest=Markup(forest(decision)) if decision else "",
         asked=decision and decision.question,
         paths={path.name: path.title for path in decision.paths} if decision else {},
         viewer=_flights(source),
@@ -98,18 +94,6 @@ def _gallery(source: ReproductionInput) -> list[Markup]:
         for shown in source.reproduction.gallery
         if shown.scene in source.plans
     ]
-
-
-def _reversal(source: ReproductionInput, struck: tuple[StruckPath, ...]) -> Mapping[str, object]:
-    drawing = Markup(draw_interface(source.interface, struck, source.variants, standalone=False))
-    if source.decision is None:
-        return {"interface": drawing, "forest": None}
-    rows, asked = effect_rows(source.decision), source.decision.question
-    return {
-        "interface": drawing,
-        "forest": Markup(forest(rows, asked.baseline, asked.repair)),
-        "forest_narrow": Markup(forest(rows, asked.baseline, asked.repair, narrow=True)),
-    }
 
 
 def _flights(source: ReproductionInput) -> Viewer | None:

@@ -1,21 +1,5 @@
 "use strict";
-// Pictures that answer to the pointer: the grid of pairs and the interface drawing.
 {
-  const cells = document.querySelectorAll("[data-pairs] .pair");
-  const byScene = new Map();
-  for (const cell of cells) {
-    const scene = cell.dataset.scene;
-    if (!byScene.has(scene)) byScene.set(scene, []);
-    byScene.get(scene).push(cell);
-  }
-  for (const cell of cells) {
-    const light = (on) => byScene.get(cell.dataset.scene).forEach((c) => c.classList.toggle("lit", on));
-    cell.addEventListener("pointerenter", () => light(true));
-    cell.addEventListener("pointerleave", () => light(false));
-    cell.addEventListener("focus", () => light(true));
-    cell.addEventListener("blur", () => light(false));
-  }
-
   // A grid is one stop of the tab key; arrow keys go from link to link, as they stand.
   for (const grid of document.querySelectorAll("[data-pairs] svg")) {
     const links = [...grid.querySelectorAll("a")];
@@ -36,22 +20,6 @@
       ahead[0][0].focus();
     });
   }
-
-  const choice = document.querySelector("[data-struck-choice]");
-  choice?.addEventListener("click", (event) => {
-    const button = event.target.closest("button");
-    if (!button) return;
-    for (const other of choice.querySelectorAll("button")) {
-      other.setAttribute("aria-pressed", String(other === button));
-    }
-    const show = button.dataset.show;
-    for (const part of document.querySelectorAll("[data-interface] [data-hit]")) {
-      const hit = show === "all" || part.dataset.hit.split(" ").includes(show);
-      if (part.classList.contains("tag-mark")) part.style.visibility = hit ? "" : "hidden";
-      else if (part.classList.contains("wire")) part.classList.toggle("hit", hit);
-      else part.querySelector(".tap").classList.toggle("hit", hit);
-    }
-  });
 
   // What is folded is printed.
   addEventListener("beforeprint", () => document.querySelectorAll("details.more").forEach((d) => (d.open = true)));

@@ -16,14 +16,10 @@ if (document.getElementById("viewer-data")) {
 
   const begin = (data) => {
     const spatial = data.space === "space";
-    const view = spatial ? new Scene3D(get("3d")) : null;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
     const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0 };
     // Along one axis the flight itself is a plot, and comes first.
     if (!spatial) state.plot = Math.max(0, data.plots.findIndex(({ title }) => title === "position"));
-    // The folder of the run is that of the page, unless somebody put the page on a server.
-    const here = location.protocol === "file:" ? decodeURIComponent(location.pathname).replace(/\/[^/]*$/, "") : "";
-    const folder = /^[\w@%+=:,./-]*$/.test(here) ? here : `'${here.replaceAll("'", "'\\''")}'`;
     const current = () => Flight.open(data.scenes[state.scene], data);
     const pairOf = (path) => current().pairs.find((p) => p.path === path);
     const pair = () => pairOf(state.path) ?? current().pairs[0];
@@ -65,7 +61,6 @@ if (document.getElementById("viewer-data")) {
       if (spatial) {
         drawPlan(get("plan"), scene, shown, state.step, data);
         drawHeight(get("height"), scene, shown, state.step, data);
-        view.show({ scene, pair: shown, step: state.step });
       }
       for (const { path, title, arms, plot } of columns) {
         const here = pairOf(path);
@@ -131,12 +126,6 @@ if (document.getElementById("viewer-data")) {
     const signals = (scene) => {
       const has = data.plots.map((_, place) => place).filter((place) => Small.range(scene, place, data));
       get("signals").hidden = !has.length;
-      const heard = (trial) => trial.struck.length || trial.attitude || trial.lines.length > (data.space === "line" ? 1 : 0);
-      const note = get("unrecorded");
-      if (note) {
-        note.hidden = !folder || scene.pairs.some((p) => Flight.flown(p).some((arm) => heard(p[arm])));
-        note.querySelector("code").textContent = `faultpath replay ${folder} --scene ${scene.scene} --signals`;
-      }
       for (const { plot } of columns) { plot.replaceChildren(); plot.hidden = !has.length; }
       if (!has.length) { range = null; return; }
       if (!has.includes(state.plot)) state.plot = has[0];
@@ -173,10 +162,9 @@ if (document.getElementById("viewer-data")) {
     const play = () => {
       let before = null, exact = state.step;
       const frame = (now) => {
-        if (before !== null) exact += ((now - before) / 1000 / data.dt_s) * Number(get("speed").value);
+        if (before !== null) exact += ((now - before) / 1000 / data.dt_s);
         before = now;
-        if (exact >= last() && !get("loop").checked) { show(last()); stop(); tell(); return; }
-        if (exact >= last() + 0.5 / data.dt_s) exact = 0;  // the end stays in sight for half a second
+        if (exact >= last()) { show(last()); stop(); tell(); return; }
         if (Math.floor(exact) !== state.step) show(Math.floor(exact));
         state.playing = requestAnimationFrame(frame);
       };

@@ -1,39 +1,9 @@
-"""A trace as a table, and as the drawing of the interface with what really ran."""
+"""A trace as a table."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
-from faultpath.interface import Interface
-from faultpath.report.interface_drawing import draw_interface
-from faultpath.report.interface_wiring import StruckPath
 from faultpath.review.tracing import TracedRead, TraceReport
 from faultpath.tables import Line, Table, line
-from faultpath.trials.shown import VariantShown
-
-
-@dataclass(frozen=True)
-class _Marked(StruckPath):
-    """Taps that something is said of."""
-
-    @property
-    def words(self) -> str:
-        """What is said."""
-        return self.title
-
-
-def draw_trace(interface: Interface, trace: TraceReport) -> str:
-    """Return the interface as SVG, with what the traced run read, and from where.
-
-    What is declared and was not read is dashed.
-    """
-    ran = VariantShown(
-        name=trace.variant,
-        consumers=tuple(sorted({read.consumer for read in trace.reads})),
-        bindings={read.channel: read.source for read in trace.reads},
-    )
-    altered = frozenset((read.channel, read.consumer) for read in trace.reads if read.altered_by)
-    marks = [_Marked(f"altered by the fault: {trace.fault}", altered, altered)] if altered else []
-    return draw_interface(interface, marks, (ran,))
 
 
 def trace_table(trace: TraceReport) -> Table:

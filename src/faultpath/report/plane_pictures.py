@@ -6,20 +6,28 @@ from itertools import pairwise, product
 from faultpath.plane.model import MapRecord
 from faultpath.plane.words import at_point
 from faultpath.record import wording
-from faultpath.report.scale import Axis, covering, draw_levels, draw_tick, tick_label
-from faultpath.report.svg import Svg, number, shortened
+from faultpath.report.svg import (
+    Axis,
+    Svg,
+    covering,
+    draw_levels,
+    draw_tick,
+    number,
+    shortened,
+    tick_label,
+)
 
-_WIDE, _NARROW = 420.0, 272.0
-"""Sides of the square."""
+_SIDE = 340.0
+"""Of the square."""
 _LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
 _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 """From which difference on, pp, an area has which opacity."""
 _EQUAL = "0: both succeed equally often"
 
 
-def map_picture(record: MapRecord, narrow: bool = False) -> Svg:
+def map_picture(record: MapRecord) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
-    asked, side = record.question, _NARROW if narrow else _WIDE
+    asked, side = record.question, _SIDE
     svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, _title(record), record.headline)
     x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + side)
     y = Axis(-asked.up_to, asked.up_to, _TOP + side, _TOP)
@@ -149,11 +157,11 @@ def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
     svg.text(146, 104, "flown, not decided")
 
 
-def correlation_picture(record: MapRecord, narrow: bool = False) -> Svg:
+def correlation_picture(record: MapRecord) -> Svg:
     """Return the expected difference over the correlation, in an arm's colour where decided."""
     joint, asked = record.joint, record.question
     told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
-    width = _LEFT + (_NARROW if narrow else _WIDE) + _RIGHT
+    width = _LEFT + _SIDE + _RIGHT
     svg = Svg(width, 286, f"Expected difference over the correlation, {asked.system}", told)
     x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
