@@ -19,8 +19,8 @@ from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
 from faultpath.record import RunProvenance, wording
-from faultpath.report.plane_pictures import correlation_picture, map_picture
 from faultpath.report.plane import shown, table_markdown, tables
+from faultpath.report.plane_pictures import correlation_picture, map_picture
 from faultpath.store import read_outcomes
 from faultpath.store.folder import OUTCOMES
 from faultpath.store.sealed import seal

@@ -5,9 +5,9 @@ from math import exp
 from markupsafe import Markup
 
 from faultpath.flightlog import Combination, Compensation
+from faultpath.record.wording import counted, interval, plain
 from faultpath.report.frame import render
 from faultpath.report.svg import Svg, covering, tick_label
-from faultpath.record.wording import counted, interval, plain
 from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Table, line
 from faultpath.tables.html import html

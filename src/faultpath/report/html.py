@@ -5,9 +5,9 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord
 from faultpath.record.plain import about, decided_words, plain_words
-from faultpath.record import wording
 from faultpath.report import story
 from faultpath.report.adding import adding, adding_panels, line_key
 from faultpath.report.effects import forest, frequency_panels

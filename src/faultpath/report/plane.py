@@ -11,8 +11,7 @@ from faultpath.plane.asked import MapQuestion
 from faultpath.plane.lattice import SHARED
 from faultpath.plane.model import Flip, MapPoint, MapRecord
 from faultpath.plane.words import cut
-from faultpath.record import RunProvenance
-from faultpath.record import wording
+from faultpath.record import RunProvenance, wording
 from faultpath.report.frame import render
 from faultpath.report.plane_pictures import correlation_picture, map_picture
 from faultpath.statistics.contrast import MIN_SCENES

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping, Sequence
 
+from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.plain import not_standing
 from faultpath.record.question import Question
 from faultpath.record.words import adjusted, only_alone
-from faultpath.record import wording
 from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs

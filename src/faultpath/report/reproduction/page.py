@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 from markupsafe import Markup
 
-from faultpath.record.reproduction import ClaimVerdict, Reproduction
 from faultpath.record import wording
+from faultpath.record.reproduction import ClaimVerdict, Reproduction
 from faultpath.report.effects import forest
 from faultpath.report.figures.gallery import scene_view
 from faultpath.report.figures.sweep import sweep_plot
