@@ -188,7 +188,7 @@ def _rule(run: Run) -> str:
 
 def headline(run: Run) -> str:
     """Return the record's headline as a quotation."""
-    return f"> **{wording.typeset(run.record.verdict.headline)}**"
+    return f"> **{run.record.verdict.headline}**"
 
 
 def contrast(run: Run) -> str:
@@ -296,7 +296,7 @@ def duration(run: Run) -> str:
 
 def picture(run: Run, part: str) -> str:
     """Return the picture of a part of the run's report."""
-    about = wording.typeset(run.record.verdict.headline)
+    about = run.record.verdict.headline
     kind = "gif" if part == FILM else "svg"
     return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.{kind})"
 

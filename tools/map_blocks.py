@@ -18,7 +18,7 @@ from faultpath.plane.decide import conclude as decide
 from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
-from faultpath.record import RunProvenance, wording
+from faultpath.record import RunProvenance
 from faultpath.report.plane import shown, table_markdown, tables
 from faultpath.report.plane_pictures import correlation_picture, map_picture
 from faultpath.store import read_outcomes
@@ -115,13 +115,13 @@ def _terminal(run: Mapped) -> str:
 
 
 def _picture(run: Mapped, part: str) -> str:
-    return f"![{wording.typeset(run.record.headline)}]({{images}}/{run.name}-{part}.svg)"
+    return f"![{run.record.headline}]({{images}}/{run.name}-{part}.svg)"
 
 
 def _said(run: Mapped) -> str:
     record, asked = run.record, run.record.question
-    lines = [f"> **{wording.typeset(record.headline)}**"]
-    lines += [f"> {wording.typeset(each)}" for each in record.sentences]
+    lines = [f"> **{record.headline}**"]
+    lines += [f"> {each}" for each in record.sentences]
     flown = flown_by(run.provenance, asked.system, asked.options)
     return "\n>\n".join(lines) + f"\n\n{flown}"
 

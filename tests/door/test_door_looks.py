@@ -6,7 +6,7 @@ import pytest
 
 import faultpath
 from faultpath.door import carrying_out
-from faultpath.record.plain import plain_words
+from faultpath.record.summary import answers
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 ASKED = {
@@ -30,7 +30,7 @@ def audited(**asked) -> faultpath.Run:
 
 
 def said(run: faultpath.Run) -> str:
-    return " ".join((*run.record.findings, *plain_words(run.record).values()))
+    return " ".join((*run.record.findings, *answers(run.record).values()))
 
 
 def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):

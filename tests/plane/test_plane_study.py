@@ -103,7 +103,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         scenes=4,
     )
     assert not made.question.relative
-    assert made.question.said(-0.25) == "-0.25 m"
+    assert made.question.said(-0.25) == "−0.25 m"
     (fault,) = made.study([(0, 16)]).rows[1].arm.faults
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 

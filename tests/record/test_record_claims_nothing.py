@@ -7,10 +7,18 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
-from faultpath.record import CORRECT, SHARED, DecisionRecord, StopRule, StopWhen, decide, wording
-from faultpath.record.headline import MOST_WORDS
+from faultpath.record import (
+    CORRECT,
+    SHARED,
+    DecisionRecord,
+    StopRule,
+    StopWhen,
+    decide,
+    phrases,
+    wording,
+)
 from faultpath.record.model import Change, Effect
-from faultpath.record.plain import about, decided_words, plain_words
+from faultpath.record.summary import MOST_WORDS, answers, in_short
 from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
@@ -131,7 +139,7 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
     yield made.verdict.headline
     yield from made.verdict.sentences
     yield from made.verdict.would_change
-    yield from plain_words(made).values()
+    yield from answers(made).values()
 
 
 def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
@@ -191,19 +199,19 @@ def check(made: DecisionRecord) -> None:
     for effect in made.effects:
         sign = effects.get(effect.path, 0)
         for who, side in ((REPAIR, 1), (BASELINE, -1)):
-            assert claimed(effect.words, who) == (sign == side)
-        assert ("no difference is detected" not in effect.words) or sign == 0
-        assert effect.acted or "nothing was tested" in effect.words
+            assert claimed(phrases.effect(made, effect), who) == (sign == side)
+        said = phrases.effect(made, effect)
+        assert ("no difference is detected" not in said) or sign == 0
+        assert effect.acted or "nothing was tested" in said
     for change in made.changes:
         opposite = effects[change.isolated] * effects[change.shared] < 0
-        assert ("reverses" in change.words) == opposite
-        assert ("Interaction detected" in change.words) == (
-            not opposite and changes[change.isolated] != 0
-        )
+        said = phrases.change(made, change)
+        assert ("reverses" in said) == opposite
+        assert ("Interaction detected" in said) == (not opposite and changes[change.isolated] != 0)
     turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
     extreme = {e.path for e in made.effects if e.extreme}
     assert ("Do not" in whole) == bool(turned - extreme and SHARED not in extreme)
-    plain = plain_words(made)
+    plain = answers(made)
     advised = "Ask which" in " ".join(plain.values())
     if made.scenes < made.scenes_needed:
         assert list(plain) == ["Not decided", "How sure"]
@@ -217,15 +225,14 @@ def check(made: DecisionRecord) -> None:
         assert not claimed(follows, BASELINE) or -1 in told
         alone = any(each.turn == "interaction" for each in made.changes)
         assert ("does not stand for the shared one" in follows) == alone
-    known = about(made)
     for effect in made.effects:
-        short = decided_words(known, effect)
+        short, said = in_short(made, effect), phrases.effect(made, effect)
         low, high = effect.success.low or 0.0, effect.success.high or 0.0
         if effect.unsettled:
-            assert "failed" in effect.words
+            assert "failed" in said
             assert "failed" in short
         elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
-            assert "interval alone decides nothing" in effect.words
+            assert "interval alone decides nothing" in said
             assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
         for who, side in SIDES:
             assert claimed(short, who) == (effects.get(effect.path, 0) == side)
@@ -289,8 +296,8 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
         assert low is not None
         assert high is not None
         assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
-        assert ("it is smaller than" in effect.words) <= small
-        assert (effect.minimum_detectable_pp, effect.mid_p_value) == (None, None)
+        assert ("it is smaller than" in phrases.effect(made, effect)) <= small
+        assert effect.minimum_detectable_pp is None
         for other in (effect.time_s, *effect.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
     if "differ by less than" in made.verdict.headline:

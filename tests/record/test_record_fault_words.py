@@ -26,7 +26,7 @@ SAID = {
     "mass:scale=1.1": "Mass is supplied 10 % too high (times 1.1).",
     "thrust_scale:scale=0.9": "Thrust scale is supplied 10 % too low (times 0.9).",
     "mass:scale=1": "Mass is supplied as it is (times 1).",
-    "mass:scale=-0.5": "Mass is supplied times -0.5.",
+    "mass:scale=-0.5": "Mass is supplied times −0.5.",
     "mass:scale=3": "Mass is supplied times 3.",
     "wind:scale=1.25": "Wind is supplied 25 % too large (times 1.25).",
     "wind:scale=1/0.5/1": "Wind is supplied times (1, 0.5, 1).",
@@ -36,7 +36,7 @@ SAID = {
     "mass:offset=-0.3": "Mass is supplied 0.3 kg too low.",
     "mass:offset=0": "Mass is supplied as it is (shifted by 0 kg).",
     "wind:offset=2": "Wind is supplied, each of its numbers, 2 m/s too high.",
-    "wind:offset=1/0/-1": "Wind is shifted by (1, 0, -1) m/s.",
+    "wind:offset=1/0/-1": "Wind is shifted by (1, 0, −1) m/s.",
     "action:offset=1": "Action is supplied, each of its numbers, 1 (N, rad/s) too high.",
     "mass:quantise=0.25": "Mass is rounded to multiples of 0.25 kg.",
     "mass:erase": "Mass is replaced by 1.5 kg, which carries no information.",
@@ -46,7 +46,7 @@ SAID = {
     "wind:noise=0.1,relative": (
         "Wind is supplied with noise drawn at each step, standard deviation 10 % of the reading."
     ),
-    "mass:drift=-0.1": "Mass is supplied with an error that grows by -0.1 kg a second.",
+    "mass:drift=-0.1": "Mass is supplied with an error that grows by −0.1 kg a second.",
     "mass:drift=0,walk_per_sqrt_s=0.2": (
         "Mass is supplied with a random walk of standard deviation 0.2 kg after a second."
     ),

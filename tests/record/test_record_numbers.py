@@ -38,8 +38,6 @@ def test_counts_make_the_effect_and_the_p_value(counts):
     assert effect.scenes == 100
     assert effect.joint_successes == both
     assert effect.p_value == pytest.approx(exact_p(wins, losses), rel=1e-9)
-    assert effect.mid_p_value is not None
-    assert effect.mid_p_value <= effect.p_value
     low, high = effect.success.low, effect.success.high
     assert low is not None
     assert high is not None
@@ -70,12 +68,6 @@ def test_the_time_is_compared_where_both_arrived():
     assert effect.time_s.value == pytest.approx(1.5)
     assert effect.metrics["terminal_distance_m"].value == pytest.approx(1.5)
     assert effect.metrics["min_clearance_m"].value == pytest.approx(0.0)
-
-
-def test_without_a_joint_success_there_is_no_time_to_compare():
-    (effect,) = record({CORRECT: (0, 20, 5)}).effects
-    assert effect.time_s is None
-    assert effect.joint_successes == 0
 
 
 @pytest.mark.parametrize(
@@ -194,13 +186,6 @@ def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_eve
     assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)
 
 
-def test_scenes_that_failed_anywhere_are_left_out_together():
-    failed = ((REPAIR, CORRECT, 0), (BASELINE, CORRECT, 1), (BASELINE, "observer", 2))
-    made = decide(question(), paths(CORRECT, "observer"), _with_failures(*failed))
-    assert [effect.scenes for effect in made.effects] == [97, 97]
-    assert [effect.void_pairs for effect in made.effects] == [2, 1]
-
-
 def test_when_every_pair_is_void_there_is_nothing_to_decide():
     every = tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
@@ -213,7 +198,7 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     (correct,) = made.effects
     assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
     assert not made.break_even
-    said = "With only the observer struck, no pair of trials is left to compare"
+    said = "With only the observer faulted, no pair of trials is left to compare"
     assert made.verdict.headline.startswith(said)
     assert made.findings[0].startswith(said)
     assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {
@@ -255,7 +240,6 @@ def test_several_seeds_are_averaged_within_each_scene():
     assert effect.success.value == pytest.approx((15 + 5) / 2)
     assert (effect.wins, effect.losses) == ((20, 10), (5, 5))
     assert effect.scenes == 100
-    assert effect.mid_p_value is None
     assert "sign test" in effect.test
     assert effect.success.n_seeds == 2
 
@@ -272,12 +256,6 @@ def test_seeds_that_change_nothing_are_counted_once():
         assert many.wins == one.wins
     assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.verdict.sentences)
     assert "seeds" not in " ".join(once.verdict.sentences)
-
-
-def test_a_seed_that_repeats_another_is_counted_once_beside_one_that_does_not():
-    made = seeded({CORRECT: [(40, 9, 2), (40, 9, 2), (38, 12, 3)]})
-    assert made.effects[0].wins == (9, 12)
-    assert "Some of the 3 seeds gave the same outcome" in " ".join(made.verdict.sentences)
 
 
 def test_a_change_has_an_interval_even_where_no_scene_differs():
@@ -378,8 +356,3 @@ def test_a_reversal_is_rarely_announced_where_the_isolated_effect_is_zero():
 def test_equal_methods_are_rarely_announced_to_differ(n_seeds):
     """One in twenty at most; 200 audits may show 8 % by chance."""
     assert aa_audits(50, n_seeds, 200, 0.5) <= 0.08
-
-
-def test_a_record_says_the_same_every_time():
-    cells = {CORRECT: (50, 10, 5), "observer": (40, 3, 25), SHARED: (40, 20, 5)}
-    assert record(cells) == record(cells)

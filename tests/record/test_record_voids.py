@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
-from faultpath.record import CORRECT, SHARED, DecisionRecord, decide
+from faultpath.record import CORRECT, SHARED, DecisionRecord, decide, phrases
+from faultpath.record.compared import Voids
 from faultpath.record.family import decide_paths
-from faultpath.record.plain import plain_words
-from faultpath.record.voids import Voids
+from faultpath.record.summary import answers
 from faultpath.trials import OutcomeTable, Status
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
@@ -73,10 +73,11 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     effect = open_.effects[0]
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
     assert effect.p_value < 0.05
-    assert "failed" in effect.words
+    said = phrases.effect(open_, effect)
+    assert "failed" in said
     assert "failed" in open_.verdict.headline
-    assert "no difference" not in " ".join((open_.verdict.headline, effect.words)).lower()
-    assert "hangs on trials that failed" in plain_words(open_)["Not decided"]
+    assert "no difference" not in " ".join((open_.verdict.headline, said)).lower()
+    assert "depends on trials that failed" in answers(open_)["Not decided"]
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
     assert safe.effects[0].sign == 1
     assert "new is ahead" in safe.verdict.headline

@@ -67,7 +67,7 @@ def test_an_isolated_win_is_shown_by_a_scene_where_only_that_arm_survives_there(
     pairs = scenes(one_seed, "nnrn", "lnnb", "bblb", "bbbb", "bbrb", "rbrl", "bbrb", "brrb")
     assert begun(one_seed, record, pairs)[0] == 4
     said = captions(record, pairs)[next(p.scene for p in pairs if p.index == 4), 0]
-    assert "only gru-dcc succeeds with only the reconstruction struck" in said.lower()
+    assert "only gru-dcc succeeds with only the reconstruction faulted" in said.lower()
     assert "both succeed under the shared fault" in said
     assert "3 of 8 scenes go like this one there, 2 on every path." in said
 

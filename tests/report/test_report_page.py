@@ -144,7 +144,7 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
         assert row[3].startswith(signed(effect.success.value).replace("+0.0", "0.0"))
         adjusted = effect.adjusted_p_value or 0.0
         assert row[6] == ("< 0.001" if adjusted < 0.001 else f"{adjusted:.3f}")
-        assert row[7] == plain(effect.findable_pp or 0.0)
+        assert row[7] == plain(effect.minimum_detectable_pp or 0.0)
         assert row[8:10] == [str(effect.scenes), str(effect.void_pairs)]
         result = breaks.get(effect.path)
         assert row[10] == ("–" if result is None else wording.break_even(result))

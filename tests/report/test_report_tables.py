@@ -37,7 +37,7 @@ def _expected(record: DecisionRecord) -> dict[str, list[str]]:
         "p, alone": [_p(e.p_value) for e in effects],
         "p, Holm": [_p(e.adjusted_p_value) for e in effects],
         "Decided for": [_decided(e) for e in effects],
-        "80 % power, pp": [f"{e.findable_pp:.1f}" for e in effects],
+        "80 % power, pp": [f"{e.minimum_detectable_pp:.1f}" for e in effects],
         "Scenes": [str(e.scenes) for e in effects],
         "Void pairs": [str(e.void_pairs) for e in effects],
         "Break-even, %": [frequency(e.path) for e in effects],
@@ -193,7 +193,7 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p_in_every_table(
     record = one_seed.record
     open_ = record.effects[-1].model_copy(update={"sign": 0, "adjusted_p_value": 0.25})
     made = record.model_copy(update={"effects": (*record.effects[:-1], open_)})
-    assert "0.250" in decided_for(made.question, open_).aside
+    assert "0.250" in decided_for(made, open_).aside
     assert "the interval by itself leaves out 0" in markdown_table(made)
     console = Console(file=io.StringIO(), width=120)
     console.print(decision(made))

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
-from scipy.stats import binom, binomtest, spearmanr
+from scipy.stats import binomtest, spearmanr
 from statsmodels.stats.contingency_tables import mcnemar
 
 from faultpath.statistics import Resamples, success_effect, with_test
-from faultpath.statistics.distributions import sign_mid_p_value, sign_p_value
+from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.estimate import Discordant
 from faultpath.studies.quantities.summaries import spearman
 
@@ -34,38 +34,19 @@ def test_exact_mcnemar_agrees_with_statsmodels_and_scipy(first_only, second_only
         assert ours == 1.0
 
 
-def test_both_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pairs():
+def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pairs():
     """1,891 tables, each against sums of binomial coefficients in whole numbers."""
     tables = 0
     for total in range(61):
         ways = [comb(total, k) for k in range(total + 1)]
         for first_only in range(total + 1):
             fewer = min(first_only, total - first_only)
-            tail, at = sum(ways[: fewer + 1]), ways[fewer]
+            tail = sum(ways[: fewer + 1])
             exact = min(Fraction(1), Fraction(2 * tail, 2**total))
-            mid = min(Fraction(1), Fraction(2 * tail - at, 2**total))
             counts = first_only, total - first_only
             assert sign_p_value(*counts) == pytest.approx(float(exact), rel=1e-12)
-            assert sign_mid_p_value(*counts) == pytest.approx(float(mid), rel=1e-12)
             tables += 1
     assert tables == 1891
-
-
-@settings(deadline=None)
-@given(COUNT, COUNT)
-def test_mid_p_takes_half_of_the_observed_weight_off_each_side(first_only, second_only):
-    total = first_only + second_only
-    exact, mid = sign_p_value(first_only, second_only), sign_mid_p_value(first_only, second_only)
-    if first_only == second_only:
-        assert mid == pytest.approx(1.0)
-    else:
-        assert mid == pytest.approx(exact - binom.pmf(first_only, total, 0.5), abs=1e-12)
-        assert mid < exact
-
-
-def test_mid_p_known_value():
-    # 2 * P(X < 1) + P(X = 1) for 1 of 6 at even odds: (2 * 1 + 6) / 64
-    assert sign_mid_p_value(1, 5) == pytest.approx(8 / 64)
 
 
 def found(first, second):

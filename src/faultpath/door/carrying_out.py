@@ -16,7 +16,7 @@ from faultpath.execution import (
 )
 from faultpath.planning import Audit
 from faultpath.record import DecisionRecord, Question
-from faultpath.record.looks import after_looks
+from faultpath.record.decide import after_looks
 from faultpath.statistics import RULES
 from faultpath.store import write_text
 from faultpath.store.manifest import kin

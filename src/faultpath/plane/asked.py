@@ -9,6 +9,7 @@ from faultpath.errors import UserError
 from faultpath.faults import AnyFault, parse_fault
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface, module_of
+from faultpath.record.wording import MINUS
 from faultpath.trials import System, Variant
 
 _BOTH_SIGNS = ("scale", "offset")
@@ -48,8 +49,8 @@ class MapQuestion(Frozen, allow_inf_nan=False):
     def said(self, size: float) -> str:
         """Return a size in words: `+20 %`, or `+0.2 m`."""
         if self.relative:
-            return f"{100 * size:+.3g} %" if size else "0 %"
-        return f"{size:+.3g} {self.unit}".removesuffix(" 1")
+            return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
+        return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
 
 
 @dataclass(frozen=True)

@@ -107,7 +107,7 @@ class MapPlan:
 
     def differences(self, points: Sequence[Point], found: Compared) -> Differences:
         """Return success at all points."""
-        arms = [found.trials[self.path(point)].arms for point in points]
+        arms = [found.arms[self.path(point)] for point in points]
         repair, baseline = (np.array(each, dtype=np.float64) for each in zip(*arms, strict=True))
         return Differences(tuple(points), repair, baseline)
 

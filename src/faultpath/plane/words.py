@@ -1,11 +1,12 @@
 """What is said of a map: only what was decided, each time with the sizes at which it was."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 from faultpath.plane.asked import MapQuestion
 from faultpath.plane.lattice import SHARED
 from faultpath.plane.model import CorrelationRegion, Expectation, Flip, MapPoint, MapRecord
+from faultpath.record.wording import MINUS, plain, series, signed
 from faultpath.statistics.contrast import MIN_SCENES
 
 _DIGITS = 3
@@ -44,10 +45,10 @@ def headline(record: MapRecord) -> str:
 def _range(region: CorrelationRegion) -> str:
     low, high = math.ceil(100 * region.low - 1e-6) / 100, math.floor(100 * region.high + 1e-6) / 100
     if region.low == -1.0:
-        return f"up to {high:g}"
-    if region.high == 1.0:
-        return f"from {low:g} on"
-    return f"from {low:g} to {high:g}"
+        said = f"up to {high:g}"
+    else:
+        said = f"from {low:g} on" if region.high == 1.0 else f"from {low:g} to {high:g}"
+    return said.replace("-", MINUS)
 
 
 def sentences(record: MapRecord) -> tuple[str, ...]:
@@ -86,8 +87,9 @@ def _distribution(record: MapRecord) -> str:
 
 def _expected(asked: MapQuestion, found: Expectation) -> str:
     at = {0.0: "With independent errors", 1.0: "With errors that are correlated fully"}
-    where = at.get(found.correlation, f"With a correlation of {found.correlation:g}")
-    numbers = f"({found.value:+.1f} pp [{found.low:.1f}, {found.high:.1f}])"
+    of = f"{found.correlation:g}".replace("-", MINUS)
+    where = at.get(found.correlation, f"With a correlation of {of}")
+    numbers = f"({signed(found.value)} pp [{plain(found.low)}, {plain(found.high)}])"
     if not found.sign:
         return f"{where} no expected difference is decided {numbers}."
     return f"{where} {_winner(asked, found.sign)} is expected to succeed more often {numbers}."
@@ -115,8 +117,9 @@ def _reversals(record: MapRecord) -> Iterable[str]:
         for sign in (-1, 1):
             found = [size for size, (point, _) in turned.items() if point.sign == sign]
             if found:
+                sizes = series([asked.said(size) for size in found])
                 yield (
-                    f"Sharing the error reverses the ranking at {_listed(asked, found)}: with the "
+                    f"Sharing the error reverses the ranking at {sizes}: with the "
                     f"{module} alone wrong {_winner(asked, sign)} is ahead, with both wrong alike "
                     f"{_winner(asked, -sign)}."
                 )
@@ -160,11 +163,6 @@ def _plain(asked: MapQuestion, size: float) -> str:
     return asked.said(size).removeprefix("+")
 
 
-def _listed(asked: MapQuestion, found: Sequence[float]) -> str:
-    words = [asked.said(size) for size in found]
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
 def at_point(asked: MapQuestion, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
     pair = ", ".join(
@@ -172,4 +170,5 @@ def at_point(asked: MapQuestion, point: MapPoint) -> str:
         for module, size in zip(asked.against, point.errors, strict=True)
     )
     decided = f"{_winner(asked, point.sign)} ahead" if point.sign else "not decided"
-    return f"{pair}: {point.difference:+.1f} pp [{point.low:.1f}, {point.high:.1f}], {decided}"
+    interval = f"[{plain(point.low)}, {plain(point.high)}]"
+    return f"{pair}: {signed(point.difference)} pp {interval}, {decided}"

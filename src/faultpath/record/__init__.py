@@ -1,8 +1,7 @@
 """The decision: effects, break-even frequency, verdict."""
 
 from faultpath.record.decide import decide, primary_path, stops
-from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import DecisionRecord, Path, StruckTap
+from faultpath.record.model import CORRECT, SHARED, DecisionRecord, Path, StruckTap
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.question import Generalise, Question, StopRule, StopWhen
 from faultpath.record.reproduction import (

@@ -2,29 +2,54 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from faultpath.errors import UserError
-from faultpath.record.family import CORRECT
-from faultpath.record.voids import Arms, Voids
+from faultpath.record.model import CORRECT
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import ALPHA
 from faultpath.trials.pairing import Bools, Mismatch, Pairs, Side, mismatch_words, pair
 from faultpath.trials.table import OutcomeTable
 
+Arms: TypeAlias = tuple[Bools, Bools]
+"""Success of the repair and of the baseline, each `[scenes, seeds]`."""
+
 
 @dataclass(frozen=True)
-class PathTrials:
-    """The trials of one path: all that are compared, and success by the seeds that differ."""
+class Voids:
+    """What failed trials leave open on one path, over all scenes whose conditions agree.
 
-    pairs: Pairs
-    arms: Arms
+    Where the trials of both arms failed neither is favoured, and both count as no success; where
+    that of one did, it could have gone either way.
+    """
+
+    failed: tuple[int, int]
+    """Failed trials of the repair and of the baseline."""
+    alone: tuple[int, int]
+    """Pairs in which only that of the repair failed, or only that of the baseline."""
+    as_failures: Arms
+    """Success, where what failed counts as no success."""
+    against: Arms
+    """Success, where what is open goes against the repair."""
+    favour: Arms
+    """Success, where it goes for the repair."""
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one arm failed more often than chance explains."""
+        return sign_p_value(*self.alone) <= ALPHA
 
 
 @dataclass(frozen=True)
 class Compared:
     """What is compared, path by path, and what is not."""
 
-    trials: Mapping[str, PathTrials]
+    pairs: Mapping[str, Pairs]
+    """All trials that are compared."""
+    arms: Mapping[str, Arms]
+    """Success, by the seeds that differ."""
     void: tuple[str, ...]
     """Paths of which no pair is left beside the others."""
     mismatches: tuple[Mismatch, ...]
@@ -34,13 +59,7 @@ class Compared:
     @property
     def scenes(self) -> int:
         """Scenes that every path compared has."""
-        return len(next(iter(self.trials.values())).pairs.scenes)
-
-    @property
-    def seeds(self) -> tuple[int, int]:
-        """How many seeds were run and how many of them differ."""
-        first = next(iter(self.trials.values()))
-        return first.pairs.first.success.shape[1], first.arms[0].shape[1]
+        return len(next(iter(self.pairs.values())).scenes)
 
 
 def compared(
@@ -52,24 +71,16 @@ def compared(
 ) -> Compared:
     """Return the trials of two variants that are compared; `UserError` when no scene is left.
 
-    Of seeds that repeat others one is kept; all of them where not only those that are `distinct`
-    are asked for.
+    Of seeds that repeat others one is kept, unless not only those that are `distinct` are asked
+    for: a sequential audit keeps all, because which differ is only seen later, and the value of a
+    scene has to be what it was when it was flown.
     """
     pairs = {path: pair(table, Side(repair, path), Side(baseline, path)) for path in paths}
     mismatches = tuple(each for path in pairs.values() for each in path.mismatches)
-    left = _comparable(pairs, mismatches)
-    void = tuple(name for name in pairs if name not in left)
-    trials, seeds = _trials(left, distinct)
-    return Compared(trials, void, mismatches, _voids(left, seeds))
-
-
-def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> dict[str, Pairs]:
-    """Return the paths that have scenes in common: those with the fewest pairs go first.
-
-    A fault under which every trial fails must not cost what the other paths show.
-    """
     left = dict(pairs)
-    while not _shared_scenes(left.values()):
+    # A fault under which every trial fails must not cost what the other paths show: those with the
+    # fewest pairs go first.
+    while not (kept := _shared_scenes(left.values())):
         faulty = [name for name in left if name != CORRECT]
         if not faulty or not left[CORRECT].scenes:
             raise UserError(
@@ -78,32 +89,26 @@ def _comparable(pairs: Mapping[str, Pairs], mismatches: Sequence[Mismatch]) -> d
                 + "".join(f" {words}" for words in mismatch_words(mismatches))
             )
         del left[min(faulty, key=lambda name: len(left[name].scenes))]
-    return left
+    cut = {name: each.only(kept) for name, each in left.items()}
+    success = {name: (each.first.success, each.second.success) for name, each in cut.items()}
+    every = np.concatenate([arm for arms in success.values() for arm in arms])
+    seeds = list(range(every.shape[1]))
+    if distinct:
+        first = {column.tobytes(): seed for seed, column in reversed(list(enumerate(every.T)))}
+        seeds = sorted(first.values())
+    return Compared(
+        pairs=cut,
+        arms={name: (one[:, seeds], two[:, seeds]) for name, (one, two) in success.items()},
+        void=tuple(name for name in pairs if name not in left),
+        mismatches=mismatches,
+        voids=_voids(left, seeds),
+    )
 
 
 def _shared_scenes(pairs: Iterable[Pairs]) -> tuple[str, ...]:
     first, *others = pairs
     every = [set(each.scenes) for each in others]
     return tuple(scene for scene in first.scenes if all(scene in scenes for scenes in every))
-
-
-def _trials(
-    pairs: Mapping[str, Pairs], distinct: bool
-) -> tuple[dict[str, PathTrials], Sequence[int]]:
-    """Cut all paths to the scenes that every one has, and success to the seeds that differ.
-
-    A sequential audit keeps all seeds: which of them differ is only seen later, and the value of a
-    scene has to be what it was when it was flown.
-    """
-    kept = _shared_scenes(pairs.values())
-    cut = {name: each.only(kept) for name, each in pairs.items()}
-    arms = [arm.success for each in cut.values() for arm in (each.first, each.second)]
-    seeds = _distinct(arms) if distinct else list(range(arms[0].shape[1]))
-    trials = {
-        name: PathTrials(each, (each.first.success[:, seeds], each.second.success[:, seeds]))
-        for name, each in cut.items()
-    }
-    return trials, seeds
 
 
 def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]:
@@ -126,11 +131,3 @@ def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]
             favour=(repair | ours, baseline),
         )
     return found
-
-
-def _distinct(arms: Sequence[Bools]) -> list[int]:
-    stacked = np.concatenate(arms)
-    seen: dict[bytes, int] = {}
-    for seed, column in enumerate(stacked.T):
-        seen.setdefault(column.tobytes(), seed)
-    return list(seen.values())

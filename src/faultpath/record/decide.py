@@ -1,39 +1,40 @@
 """From the outcome table to the decision record."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 
 from faultpath.errors import UserError
-from faultpath.record import breakeven_words, sequential, void_words, words
-from faultpath.record.cells import arms_shown, untested_paths
-from faultpath.record.compared import Compared, PathTrials, compared
-from faultpath.record.family import (
+from faultpath.record import phrases, wording
+from faultpath.record.compared import Compared, compared
+from faultpath.record.described import cells_of, percent, secondary, untested_paths
+from faultpath.record.family import Family, alpha_shares, decide_paths, led
+from faultpath.record.model import (
     CORRECT,
     SHARED,
-    Family,
-    alpha_shares,
-    decide_paths,
-    led,
-    percent,
+    Change,
+    DecisionRecord,
+    Effect,
+    FailedTrials,
+    Path,
+    PathBreakEven,
+    Stopped,
+    Verdict,
 )
-from faultpath.record.headline import headline
-from faultpath.record.model import Change, DecisionRecord, Effect, Path, PathBreakEven, Verdict
-from faultpath.record.question import Question
-from faultpath.record.secondary import secondary
-from faultpath.record.voids import Arms, Voids, filled
+from faultpath.record.question import EarlierLook, Question
+from faultpath.record.summary import headline
 from faultpath.statistics import (
-    Contrast,
-    Estimate,
+    Region,
     Resamples,
     break_even,
     detectable,
     mixture_curve,
     only,
 )
-from faultpath.statistics.distributions import sign_mid_p_value, sign_p_value
-from faultpath.statistics.estimate import Discordant
+from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.rules import EM
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
+
+FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 
 
 def decide(
@@ -54,72 +55,45 @@ def decide(
     """
     asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
     found = _compared(asked, paths, table)
-    trials = found.trials
-    if question.generalise == "models" and found.seeds[1] < 2:
+    if asked.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
         raise UserError(
             "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
             "models: leave --generalise models out."
         )
-    n_scenes = found.scenes
-    cells = arms_shown(asked, paths, table)
+    cells = cells_of(asked, paths, table)
     untested = untested_paths(paths, cells)
-    resamples = Resamples.draw(question.library_hash, n_scenes, seed=resamples_seed)
+    resamples = Resamples.draw(question.library_hash, found.scenes, seed=resamples_seed)
     family = _family(asked, paths, found, untested, resamples)
-    stopped = sequential.stopped(asked, family, _scenes(table))
-    estimand = words.estimand(asked)
-    about = words.About(
-        asked, n_scenes, family.scenes_needed, frozenset(stopped.small if stopped else ())
-    )
-    effects = tuple(
-        _effect(about, name, each, family, resamples, untested, found.voids)
-        for name, each in trials.items()
-    )
-    changes = tuple(_change(about, name, family, effects) for name in family.changes)
-    breaks = tuple(
-        _break_even(about, name, family, effects)
-        for name in trials
-        if name != CORRECT and name not in untested
-    )
-    return DecisionRecord(
+    effects = {
+        path: _effect(asked, path, found, family, resamples, path not in untested)
+        for path in found.arms
+    }
+    record = DecisionRecord(
         question=asked,
         paths=tuple(paths),
         cells=cells,
-        effects=effects,
-        changes=changes,
-        break_even=breaks,
-        scenes=n_scenes,
+        effects=tuple(effects.values()),
+        changes=tuple(_change(asked, path, family) for path in family.changes),
+        break_even=tuple(
+            _break_even(asked, family, effects[CORRECT], effects[path])
+            for path in effects
+            if path != CORRECT and path not in untested
+        ),
+        scenes=found.scenes,
         scenes_needed=family.scenes_needed,
         hypotheses=family.hypotheses,
-        estimand=estimand,
-        verdict=Verdict(
-            headline=headline(about, effects, changes),
-            sentences=(
-                *words.opening(about, found.seeds),
-                *sequential.sentences(asked, stopped),
-                *(effect.words for effect in effects),
-                *(change.words for change in changes),
-                *breakeven_words.sentences(breaks, effects),
-                *words.barely_acted(asked, paths, cells),
-                *words.saturated(asked, effects),
-            ),
-            would_change=(
-                *sequential.more(asked, stopped, not all(effect.detected for effect in effects)),
-                *words.would_change(about, effects),
-            ),
-        ),
-        stopped=stopped,
-        # Those of a record that is decided anew are given, and among them what is found again.
-        findings=tuple(
-            dict.fromkeys(
-                (
-                    *void_words.void_paths(found.void),
-                    *void_words.failed_trials(about, effects),
-                    *mismatch_words(found.mismatches),
-                    *findings,
-                )
-            )
-        ),
+        estimand=phrases.estimand(asked),
+        verdict=Verdict(headline="", sentences=(), would_change=()),
+        stopped=_stopped(asked, family, table),
     )
+    noted = (
+        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in found.void),
+        *phrases.failed_trials(record),
+        *mismatch_words(found.mismatches),
+        *findings,  # of a record that is decided anew, with some of the above among them
+    )
+    said = phrases.verdict(record, headline(record))
+    return record.model_copy(update={"verdict": said, "findings": tuple(dict.fromkeys(noted))})
 
 
 def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
@@ -128,40 +102,9 @@ def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> boo
         found = _compared(question, paths, table)
     except UserError:  # no pair is sound so far
         return False
-    untested = untested_paths(paths, arms_shown(question, paths, table))
-    family = _family(question, paths, found, untested, None)
-    held = sequential.stopped(question, family, _scenes(table))
+    untested = untested_paths(paths, cells_of(question, paths, table))
+    held = _stopped(question, _family(question, paths, found, untested, None), table)
     return held is not None and held.reached
-
-
-def _compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
-    names = [path.name for path in paths]
-    arms = question.repair, question.baseline
-    return compared(*arms, names, table, distinct=question.stop is None)
-
-
-def _family(
-    question: Question,
-    paths: Sequence[Path],
-    found: Compared,
-    untested: Collection[str],
-    resamples: Resamples | None,
-) -> Family:
-    shares = alpha_shares([path.name for path in paths], question.primary)
-    return decide_paths(
-        {name: each.arms for name, each in found.trials.items()},
-        rule=question.rule,
-        primary=question.primary,
-        resamples=resamples,
-        models=question.generalise == "models",
-        untested=untested,
-        shares=None if question.stop is None else shares,
-        voids=found.voids,
-    )
-
-
-def _scenes(table: OutcomeTable) -> int:
-    return len({row.outcome.scene for row in table.rows})
 
 
 def primary_path(named: str, paths: Sequence[Path]) -> str:
@@ -178,104 +121,180 @@ def primary_path(named: str, paths: Sequence[Path]) -> str:
     return led(named, names)
 
 
+def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:
+    """Return a record that tells of other conclusions from its trials, and what they cost.
+
+    `earlier` are records of the same arms by the same code, with the looks that they tell of. The
+    same question asked again is no look, and one with too few scenes to announce anything is none.
+    A sequential audit allows for all looks with the same primary contrast.
+    """
+    known: list[EarlierLook] = []
+    for each in earlier:
+        known += each.earlier if each.few else (*each.earlier, _look(each.question))
+    looks = tuple(look for look in dict.fromkeys(known) if look != _look(record.question))
+    if not looks:
+        return record
+    record = record.model_copy(update={"earlier": looks})
+    return record.model_copy(update={"findings": (*record.findings, phrases.looks(record))})
+
+
+def _look(asked: Question) -> EarlierLook:
+    if asked.stop is not None:
+        return EarlierLook(scenes=None, primary=asked.primary)
+    return EarlierLook(
+        scenes=asked.n_scenes,
+        primary=asked.primary,
+        generalise=asked.generalise,
+        rule=asked.rule,
+    )
+
+
+def _compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
+    names = [path.name for path in paths]
+    arms = question.repair, question.baseline
+    return compared(*arms, names, table, distinct=question.stop is None)
+
+
+def _family(
+    question: Question,
+    paths: Sequence[Path],
+    found: Compared,
+    untested: Sequence[str],
+    resamples: Resamples | None,
+) -> Family:
+    shares = alpha_shares([path.name for path in paths], question.primary)
+    return decide_paths(
+        found.arms,
+        rule=question.rule,
+        primary=question.primary,
+        resamples=resamples,
+        models=question.generalise == "models",
+        untested=untested,
+        shares=None if question.stop is None else shares,
+        voids=found.voids,
+    )
+
+
+def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
+    """Return how a sequential audit stands with these trials; `None` of one that is not."""
+    rule = question.stop
+    if rule is None:
+        return None
+    small = tuple(p for p in family.effects if _within(family, p, rule.margin_pp or 0.0))
+    settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
+    wanted = set(family.effects) if rule.when == "all-decided" else {question.primary}
+    scenes = len({row.outcome.scene for row in table.rows})
+    return Stopped(scenes=scenes, reached=wanted <= settled, small=small)
+
+
+def _within(family: Family, path: str, margin_pp: float) -> bool:
+    """Return whether the effect is smaller than the margin, at the level of its share.
+
+    Every claim on a contrast, of who is ahead or of how little, follows from this one interval.
+    """
+    effect = family.effects[path]
+    if effect.decision is None or effect.n_scenes < family.scenes_needed:
+        return False
+    level = 1.0 - effect.decision.critical_p
+    for each in (effect, *family.fills.get(path, ())):  # whatever failed trials would have been
+        low, high = each.ends(level) or (-100.0, 100.0)
+        if low <= -margin_pp or high >= margin_pp:
+            return False
+    return True
+
+
 def _effect(
-    about: words.About,
+    asked: Question,
     path: str,
-    trials: PathTrials,
+    found: Compared,
     family: Family,
     resamples: Resamples,
-    untested: Collection[str],
-    voids: Mapping[str, Voids],
+    acted: bool,
 ) -> Effect:
-    repair, baseline = trials.arms
-    found = family.effects[path]
-    assert found.counts is not None
-    assert found.test is not None
-    counts = found.counts.per_seed
-    others = secondary(trials.pairs, resamples, about.question)
-    effect = Effect(
+    repair, baseline = found.arms[path]
+    effect, pairs = family.effects[path], found.pairs[path]
+    assert effect.counts is not None
+    assert effect.test is not None
+    counts = effect.counts.per_seed
+    wins, losses = (tuple(getattr(c, f) for c in counts) for f in ("first_only", "second_only"))
+    rates = percent(baseline), percent(repair)
+    failed, least = None, None
+    if path in family.fills:
+        fills, voids = family.fills[path], found.voids[path]
+        failed = FailedTrials(
+            repair=voids.failed[0],
+            baseline=voids.failed[1],
+            as_failures=fills.as_failures.estimate(),
+            against_pp=fills.against.value,
+            favour_pp=fills.favour.value,
+            uneven=voids.uneven,
+            unsettled=f"effect/{path}" in family.unsettled,
+        )
+    # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
+    # that stops where it has decided.
+    if effect.decision and asked.generalise == "scenes" and asked.stop is None:
+        level = effect.decision.critical_p
+        least = detectable(repair, baseline, rule=asked.rule, alpha=level, on_top=True)
+    return Effect(
         path=path,
-        success=_scoped(about, found),
-        sign=found.sign,
-        test=found.test.name,
-        p_value=found.test.p_value,
-        adjusted_p_value=found.decision.adjusted_p if found.decision else None,
-        mcnemar_p_value=_exact(sign_p_value, counts) if found.test.name == EM else None,
-        mid_p_value=_exact(sign_mid_p_value, counts)
-        if len(counts) == 1 and not about.sequential
+        success=effect.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
+        sign=effect.sign,
+        test=effect.test.name,
+        p_value=effect.test.p_value,
+        adjusted_p_value=effect.decision.adjusted_p if effect.decision else None,
+        mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
+        scenes=len(pairs.scenes),
+        void_pairs=pairs.void,
+        failed=failed,
+        wins=wins,
+        losses=losses,
+        baseline_percent=rates[0],
+        repair_percent=rates[1],
+        extreme="floor"
+        if max(rates) < FLOOR_PERCENT
+        else "ceiling"
+        if min(rates) > CEILING_PERCENT
         else None,
-        scenes=len(trials.pairs.scenes),
-        void_pairs=trials.pairs.void,
-        failed=filled(voids, family.fills, path, f"effect/{path}" in family.unsettled),
-        wins=tuple(count.first_only for count in counts),
-        losses=tuple(count.second_only for count in counts),
-        baseline_percent=percent(baseline),
-        repair_percent=percent(repair),
-        extreme=family.extremes[path],
-        acted=path not in untested,
-        minimum_detectable_pp=_detectable(about, found, trials.arms),
-        planning_detectable_pp=_detectable(about, found, trials.arms, on_top=True),
-        time_s=others.time_s,
-        joint_successes=others.joint_successes,
-        metrics=others.metrics,
-        metric_means=others.metric_means,
-        thresholds=others.thresholds,
-        words="",
+        acted=acted,
+        minimum_detectable_pp=least,
+        **secondary(pairs, resamples, asked),
     )
-    return effect.model_copy(update={"words": words.effect_words(about, effect)})
 
 
-def _detectable(
-    about: words.About, found: Contrast, arms: Arms, on_top: bool = False
-) -> float | None:
-    """Return the least difference that the rule finds at the level that Holm left this contrast.
-
-    None is known for newly trained models, whose spread a few seeds do not give, and of an audit
-    that stops where it has decided.
-    """
-    if found.decision is None or about.question.generalise == "models" or about.sequential:
-        return None
-    rule, alpha = about.question.rule, found.decision.critical_p
-    return detectable(*arms, rule=rule, alpha=alpha, on_top=on_top)
-
-
-def _exact(test: Callable[[int, int], float], counts: Sequence[Discordant]) -> float:
-    return test(counts[0].first_only, counts[0].second_only)
-
-
-def _scoped(about: words.About, contrast: Contrast) -> Estimate:
-    estimand = words.estimand(about.question)
-    return contrast.estimate().model_copy(update={"estimand": estimand})
-
-
-def _change(about: words.About, path: str, family: Family, effects: Sequence[Effect]) -> Change:
-    found, of = family.changes[path], {effect.path: effect for effect in effects}
+def _change(asked: Question, path: str, family: Family) -> Change:
+    found = family.changes[path]
     assert found.test is not None
     assert found.decision is not None
-    change = Change(
+    return Change(
         isolated=path,
         shared=SHARED,
-        change=_scoped(about, found),
+        change=found.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
         sign=found.sign,
         test=found.test.name,
         p_value=found.test.p_value,
         adjusted_p_value=found.decision.adjusted_p,
         unsettled=f"change/{path}" in family.unsettled,
         turn=family.turns[path],
-        words="",
     )
-    said = words.change_words(about, of[path], of[SHARED], change)
-    return change.model_copy(update={"words": said})
 
 
-def _break_even(
-    about: words.About, path: str, family: Family, effects: Sequence[Effect]
-) -> PathBreakEven:
-    ends = family.effects[CORRECT], family.effects[path]
+def _break_even(asked: Question, family: Family, correct: Effect, faulty: Effect) -> PathBreakEven:
+    ends = family.effects[CORRECT], family.effects[faulty.path]
     level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
     found = break_even(*ends, level=level)
-    of = {effect.path: effect for effect in effects}
-    said = breakeven_words.clause(about.question, found.regions, of[CORRECT], of[path])
-    result = only(found, breakeven_words.borne_out(found.regions, of[CORRECT], of[path]))
-    curve = mixture_curve(*ends, level=level)
-    return PathBreakEven(path=path, result=result, curve=curve, words=said)
+    borne_out = [each for each in found.regions if _borne_out(each, correct, faulty)]
+    return PathBreakEven(
+        path=faulty.path,
+        result=only(found, borne_out),
+        curve=mixture_curve(*ends, level=level),
+        words=phrases.frequency(asked, found.regions, correct, faulty),
+    )
+
+
+def _borne_out(region: Region, correct: Effect, faulty: Effect) -> bool:
+    """Return whether effects bear a region out to the end: what a table and a picture show."""
+    low = region.low > 0.0 or (correct.leads and region.sign == correct.sign)
+    high = region.high < 1.0 or (faulty.leads and region.sign == faulty.sign)
+    inner = region.low > 0.0 and region.high < 1.0
+    shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
+    return low and high and not inner and shown

@@ -1,10 +1,11 @@
 """What an audit may announce, decided together: one function, from outcomes to decisions."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from faultpath.record.model import Extreme
-from faultpath.record.voids import Arms, Bools, Fills, Voids, nearest, open_again
+from faultpath.record.compared import Arms, Voids
+from faultpath.record.model import CORRECT, SHARED
 from faultpath.statistics import (
     RULES,
     Contrast,
@@ -19,11 +20,17 @@ from faultpath.statistics import (
     turn,
     with_test,
 )
+from faultpath.statistics.estimate import PairedTest
 
-CORRECT = "correct"
-SHARED = "shared"
 ALPHA = 0.05
-FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
+
+
+class Fills(NamedTuple):
+    """The effect of one path with what failed trials leave open filled in."""
+
+    as_failures: Contrast
+    against: Contrast
+    favour: Contrast
 
 
 @dataclass(frozen=True)
@@ -35,8 +42,6 @@ class Family:
     changes: Mapping[str, Contrast]
     """Shared minus isolated, by the isolated path."""
     turns: Mapping[str, Turn]
-    extremes: Mapping[str, Extreme | None]
-    """By path: where both arms are at the floor or at the ceiling."""
     hypotheses: int
     scenes_needed: int
     fills: Mapping[str, Fills]
@@ -105,11 +110,12 @@ def decide_paths(
             for path in isolated
         }
         if any(sum(each.alone) for each in voids.values()):
-            least = {name: nearest(*pair, rule) for name, pair in ends.items()}
+            least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
             stands = decide_family(least, alpha, shares, weights)
             unsettled = [name for name in made if made[name].sign not in (0, stands[name].sign)]
     for name in unsettled:
-        made[name] = open_again(made[name])
+        decision = made[name].decision
+        made[name] = replace(made[name], decision=decision and decision._replace(sign=0))
     effects = {path: made.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
     changes = {path: made[_change(path)] for path in isolated}
     uneven = {path for path, each in (voids or {}).items() if each.uneven}
@@ -127,12 +133,21 @@ def decide_paths(
         effects=effects,
         changes=changes,
         turns={path: told(path, each) for path, each in changes.items()},
-        extremes={path: _extreme(*arms) for path, arms in success.items()},
         hypotheses=len(family if shares is None else shares),
         scenes_needed=needed,
         fills=fills,
         unsettled=tuple(unsettled),
     )
+
+
+def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
+    """Return the tested contrast nearest to no difference that what is open allows."""
+    low, high = with_test(against, rule), with_test(favour, rule)
+    assert low.test is not None
+    assert high.test is not None
+    if low.test.leans > 0:
+        return low
+    return high if high.test.leans < 0 else replace(low, test=PairedTest(low.test.name, 1.0, 0))
 
 
 def led(primary: str, paths: Collection[str]) -> str:
@@ -163,15 +178,3 @@ def _change(path: str) -> str:
 
 def _isolated(tested: Collection[str]) -> list[str]:
     return [path for path in tested if path not in (CORRECT, SHARED)] if SHARED in tested else []
-
-
-def percent(success: Bools) -> float:
-    """Return success in percent."""
-    return 100.0 * float(success.sum()) / success.size
-
-
-def _extreme(repair: Bools, baseline: Bools) -> Extreme | None:
-    rates = percent(repair), percent(baseline)
-    if max(rates) < FLOOR_PERCENT:
-        return "floor"
-    return "ceiling" if min(rates) > CEILING_PERCENT else None

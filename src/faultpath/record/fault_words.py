@@ -6,10 +6,10 @@ from typing import Any
 
 from faultpath.errors import UserError
 from faultpath.faults import Fault, parse_fault
-from faultpath.faults.base import number
+from faultpath.faults.base import number as plain_number
 from faultpath.interface import Interface
 from faultpath.record.question import Question
-from faultpath.record.words import capital
+from faultpath.record.wording import MINUS, capital
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,11 @@ class _Reading:
             else number(what.std) + " times"
         )
         return f"standard deviation {of} the reading"
+
+
+def number(value: Any) -> str:
+    """Return a number, or nested numbers, with real minus signs."""
+    return plain_number(value).replace("-", MINUS)
 
 
 def fault_words(question: Question, interface: Interface, dt_s: float) -> str:

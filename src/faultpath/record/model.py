@@ -1,16 +1,13 @@
 """The decision record: what was asked, what came out, and what it means."""
 
-from typing import Any, Literal, cast
+from typing import Literal
 
-from pydantic import model_validator
-
-from faultpath.record.earlier import EarlierLook
-from faultpath.record.question import Question
-from faultpath.record.voids import FailedTrials
+from faultpath.record.question import EarlierLook, Question
 from faultpath.results import Result
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
-from faultpath.trials.metrics import VEHICLE
 
+CORRECT = "correct"
+SHARED = "shared"
 Extreme = Literal["floor", "ceiling"]
 """Both arms below 10 %, or both above 90 %."""
 
@@ -60,6 +57,24 @@ class Cell(Result):
     altered_trials: int
 
 
+class FailedTrials(Result):
+    """What failed trials leave open of an effect, as a record tells it."""
+
+    repair: int
+    """Failed trials of the repair on this path."""
+    baseline: int
+    as_failures: Estimate
+    """The difference over all scenes, where what failed counts as no success."""
+    against_pp: float
+    """The difference where the trials of pairs of which one failed go against the repair."""
+    favour_pp: float
+    """Where they go for it."""
+    uneven: bool
+    """Whether one arm failed more often than chance explains: then no headline rests on it."""
+    unsettled: bool
+    """Whether the scenes compared decide for an arm, and what is open could undo that."""
+
+
 class AtThreshold(Result):
     """Success under another rule: the trial did not crash, and its metric is good enough."""
 
@@ -85,7 +100,6 @@ class Effect(Result):
     not in it."""
     mcnemar_p_value: float | None = None
     """Exact McNemar's, to stand beside that of another test of one seed; it decides nothing."""
-    mid_p_value: float | None
     scenes: int
     """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
     void_pairs: int
@@ -103,11 +117,8 @@ class Effect(Result):
     acted: bool
     """Whether the fault changed anything in any trial of the path; correct inputs count as so."""
     minimum_detectable_pp: float | None
-    """True difference that the deciding rule finds with 80 % power, if as many pairs are discordant
-    as were seen, whatever the difference."""
-    planning_detectable_pp: float | None = None
-    """The same if the difference adds to the discordance seen, the number to plan by; `None` in
-    records that do not say."""
+    """True difference that the deciding rule finds with 80 % power, if it comes on top of the
+    discordance that was seen."""
     time_s: Estimate | None
     """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
     joint_successes: int
@@ -117,17 +128,6 @@ class Effect(Result):
     """Of the question's metric: baseline and repair."""
     thresholds: tuple[AtThreshold, ...] = ()
     """For each of the question's thresholds."""
-    words: str
-
-    @model_validator(mode="before")
-    @classmethod
-    def _of_a_vehicle(cls, given: Any) -> Any:
-        """Take in records in which the metrics of a vehicle were fields."""
-        if not isinstance(given, dict) or "metrics" in given:
-            return cast("Any", given)
-        fields = cast("dict[str, Any]", given)
-        metrics = {name: value for name in VEHICLE if (value := fields.get(name)) is not None}
-        return {k: v for k, v in fields.items() if k not in VEHICLE} | {"metrics": metrics}
 
     @property
     def detected(self) -> bool:
@@ -141,9 +141,9 @@ class Effect(Result):
         return self.sign != 0 and self.extreme is None and not self.uneven
 
     @property
-    def findable_pp(self) -> float | None:
-        """True difference that would be found in 8 of 10 audits."""
-        return self.planning_detectable_pp or self.minimum_detectable_pp
+    def estimate(self) -> Estimate:
+        """The difference in success."""
+        return self.success
 
     @property
     def uneven(self) -> bool:
@@ -184,7 +184,11 @@ class Change(Result):
     turn: Turn
     """`reversal`: both effects are decided, with opposite signs. `interaction`: the change alone
     is decided."""
-    words: str
+
+    @property
+    def estimate(self) -> Estimate:
+        """The change itself."""
+        return self.change
 
 
 class Stopped(Result):
@@ -231,6 +235,19 @@ class DecisionRecord(Result):
     """Of a sequential audit."""
     earlier: tuple[EarlierLook, ...] = ()
     """Concluded before, from the same trials and otherwise."""
+
+    @property
+    def few(self) -> bool:
+        """Whether there are too few scenes to decide anything."""
+        return self.scenes < self.scenes_needed
+
+    def winner(self, sign: int) -> str:
+        """Return the arm of a decided side."""
+        return self.question.repair if sign > 0 else self.question.baseline
+
+    def is_small(self, effect: Effect) -> bool:
+        """Whether an effect was shown to be smaller than the margin of a sequential audit."""
+        return self.stopped is not None and effect.path in self.stopped.small
 
     @property
     def flown(self) -> str:

@@ -75,3 +75,13 @@ class Question(Result):
     def ruled(self) -> str:
         """The rule in words, with the time it is of; empty for a sequential audit."""
         return "" if self.stop else RULES[self.rule].words
+
+
+class EarlierLook(Result):
+    """What was asked when an audit was concluded before; a record cannot allow for that."""
+
+    scenes: int | None
+    """`None` of a sequential audit, which allows for its number."""
+    primary: str
+    generalise: str = "scenes"
+    rule: RuleName = "exact"

@@ -1,15 +1,17 @@
-"""How numbers are written. Pictures, tables and pages all use these, so they agree to the digit."""
+"""How numbers, lists and places are written: in sentences, tables and pictures alike."""
 
+import math
 import re
+from collections.abc import Sequence
 
-from faultpath.record.breakeven_words import first, last
-from faultpath.record.model import Effect
+from faultpath.record.model import CORRECT, SHARED, Effect
 from faultpath.record.question import Question
 from faultpath.statistics import BreakEven, Estimate
 
 MINUS = "−"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
+_SLACK = 1e-6
+"""On a percentage that is a whole number but for rounding."""
 
 
 def signed(value: float, digits: int = 1) -> str:
@@ -68,6 +70,16 @@ def break_even(result: BreakEven) -> str:
     return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} % {pieces}"
 
 
+def first(frequency: float) -> int:
+    """Return the first whole percentage at or above a frequency."""
+    return math.ceil(100.0 * frequency - _SLACK)
+
+
+def last(frequency: float) -> int:
+    """Return the last whole percentage at or below a frequency."""
+    return math.floor(100.0 * frequency + _SLACK)
+
+
 def percent(fraction: float) -> str:
     """Return a fraction as whole percent, without the sign."""
     return f"{100.0 * fraction:.0f}"
@@ -90,11 +102,6 @@ def ended(question: Question, status: str) -> str:
     return question.ends.get(status, status)
 
 
-def typeset(text: str) -> str:
-    """Return a record's sentence with real minus signs before its numbers."""
-    return _HYPHEN_FOR_MINUS.sub(MINUS, text)
-
-
 def unit(name: str) -> str:
     """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
     return re.sub(r"\^(-?\d)", lambda found: found[1].translate(_RAISED), name)
@@ -113,3 +120,20 @@ def seeds(values: tuple[int, ...]) -> str:
 def counted(count: int, noun: str) -> str:
     """Return `1 pair` or `2 pairs`."""
     return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def where(path: str) -> str:
+    """Return a path as part of a sentence."""
+    if path == CORRECT:
+        return "under correct inputs"
+    return "under the shared fault" if path == SHARED else f"with only the {path} faulted"
+
+
+def capital(words: str) -> str:
+    """Return words with a capital letter in front, whatever follows."""
+    return words[:1].upper() + words[1:]
+
+
+def series(items: Sequence[str]) -> str:
+    """Return `a`, `a and b` or `a, b and c`."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))

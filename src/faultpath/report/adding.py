@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.record import CORRECT, wording
-from faultpath.record.words import where
+from faultpath.record.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair
 from faultpath.report.svg import (

@@ -49,7 +49,7 @@ def effect_row(label: str, effect: Effect, note: str = "") -> EffectRow:
         effect=effect.success,
         sign=effect.sign,
         note=", ".join(filter(None, (note, wording.reservation(effect)))),
-        band_pp=None if effect.detected else effect.findable_pp,
+        band_pp=None if effect.detected else effect.minimum_detectable_pp,
     )
 
 

@@ -7,7 +7,8 @@ from markupsafe import Markup
 
 from faultpath.record import wording
 from faultpath.record.model import DecisionRecord
-from faultpath.record.plain import about, decided_words, plain_words
+from faultpath.record.phrases import change
+from faultpath.record.summary import answers, in_short
 from faultpath.report import story
 from faultpath.report.adding import adding, adding_panels, line_key
 from faultpath.report.effects import forest, frequency_panels
@@ -53,10 +54,11 @@ def report_page(source: ReportInput) -> str:
         n_trials=len(source.outcomes.rows),
         paths=titles,
         tiles=[
-            (name, title, effects.get(name), decided_words(about(record), effects.get(name)))
+            (name, title, effects.get(name), in_short(record, effects.get(name)))
             for name, title in titles.items()
         ],
-        plain=plain_words(record),
+        plain=answers(record),
+        changes=[(each, change(record, each)) for each in record.changes],
         adding=why,
         adding_key=[(Markup(sample), name) for sample, name in line_key(why)] if why else (),
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),

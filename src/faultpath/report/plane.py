@@ -97,7 +97,7 @@ def _flip(record: MapRecord, flip: Flip) -> Line:
 
 
 def _said(asked: MapQuestion, size: float | None) -> str:
-    return MISSING if size is None else wording.typeset(asked.said(size))
+    return MISSING if size is None else asked.said(size)
 
 
 def every_point(record: MapRecord) -> Table:
@@ -144,8 +144,8 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         record=record,
         asked=record.question,
         provenance=provenance,
-        sentences=[wording.typeset(each) for each in record.sentences],
-        headline=wording.typeset(record.headline),
+        sentences=record.sentences,
+        headline=record.headline,
         map=Markup(map_picture(record).render()),
         curve=Markup(correlation_picture(record).render()),
         flips=Markup(html(turns[0])) if turns else "",

@@ -11,7 +11,7 @@ from faultpath.interface import module_of
 from faultpath.record import CORRECT, SHARED
 from faultpath.record.fault_words import fault_words, spelled_out
 from faultpath.record.model import Path, StruckTap
-from faultpath.record.words import capital, series
+from faultpath.record.wording import capital, series
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg, shortened
 from faultpath.report.taps import Tap

@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 
 from faultpath.record import wording
 from faultpath.record.model import DecisionRecord, Effect
-from faultpath.record.plain import not_standing
-from faultpath.record.question import Question
-from faultpath.record.words import adjusted, only_alone
+from faultpath.record.phrases import adjusted, only_alone
+from faultpath.record.summary import not_standing
 from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.latex import booktabs
@@ -17,7 +16,7 @@ DIFFERENCE = ("difference", "interval", "won")
 SHOWN = (*_ARMS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
     *(*_ARMS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
-    *("power", "power-seen", "scenes", "void", "break-even"),
+    *("power", "scenes", "void", "break-even"),
 )
 
 
@@ -42,9 +41,8 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "p": wording.p_value(effect.p_value),
         "mcnemar": MISSING if beside is None else wording.p_value(beside),
         "holm": wording.adjusted(effect),
-        "decided": decided_for(record.question, effect),
-        "power": number(effect.findable_pp),
-        "power-seen": number(effect.minimum_detectable_pp),
+        "decided": decided_for(record, effect),
+        "power": number(effect.minimum_detectable_pp),
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
         "break-even": found.get(effect.path, MISSING),
@@ -66,7 +64,6 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
         "holm": "p, Holm" if record.stopped is None else "p, family",
         "decided": "Decided for",
         "power": "80 % power, pp",
-        "power-seen": "the same at the discordance seen, pp",
         "scenes": "Scenes",
         "void": "Void pairs",
         "break-even": "Break-even, %",
@@ -74,18 +71,17 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
     there = {
         "power": record.stopped is None,
         "mcnemar": any(effect.mcnemar_p_value is not None for effect in effects),
-        "power-seen": any(effect.planning_detectable_pp for effect in effects),
     }
     return {name: labels[name] for name in names if there.get(name, True)}
 
 
-def decided_for(asked: Question, effect: Effect) -> Entry:
+def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
     """Return the arm that the family decides for, with what keeps it out of a headline, or the
     p-value that keeps it from being decided where the interval alone leaves out 0."""
     if not effect.acted:
         return Entry(text="not tested")
-    arm = {1: asked.repair, -1: asked.baseline}.get(effect.sign, MISSING)
-    p = adjusted(asked, effect) if only_alone(effect) else ""
+    arm = record.winner(effect.sign) if effect.sign else MISSING
+    p = adjusted(record, effect) if only_alone(effect) else ""
     return Entry(text=arm, aside=", ".join(filter(None, (effect.extreme, p))))
 
 

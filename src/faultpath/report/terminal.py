@@ -6,7 +6,7 @@ from rich.text import Text
 
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.record.model import DecisionRecord
-from faultpath.record.plain import not_standing
+from faultpath.record.summary import not_standing
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
 from faultpath.tables import Line, Table, line
 from faultpath.tables.terminal import Parted, drawn

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.record import SHARED, DecisionRecord, Question
-from faultpath.record.words import capital, series, where
+from faultpath.record.wording import capital, series, where
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, by_scene
 from faultpath.store import TrialAddress

@@ -62,13 +62,6 @@ def sign_p_value(first: int, second: int) -> float:
     return min(1.0, 2.0 * float(binomial_cdf(min(first, second), first + second, 0.5)))
 
 
-def sign_mid_p_value(first: int, second: int) -> float:
-    """Return the mid-p version: half of the weight of the observed count is left out per side."""
-    fewer, total = min(first, second), first + second
-    below, upto = binomial_cdf([fewer - 1, fewer], total, 0.5)
-    return min(1.0, float(below + upto)) if total else 1.0
-
-
 def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
     """Return the two-sided p of Student's t test that ``values`` [n] have mean 0; 1 if all are 0.
 

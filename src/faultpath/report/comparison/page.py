@@ -45,7 +45,7 @@ def _line(run: Compared, label: str, path: str) -> Line:
         return line(label, MISSING, MISSING, run.absent(path))
     rates = map(wording.plain, (effect.baseline_percent, effect.repair_percent))
     difference = Entry(text=wording.with_interval(effect.success), detected=effect.detected)
-    return line(label, " → ".join(rates), difference, decided_for(run.asked, effect))
+    return line(label, " → ".join(rates), difference, decided_for(run.record, effect))
 
 
 def shown(runs: Sequence[Compared]) -> RenderableType:

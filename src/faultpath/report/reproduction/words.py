@@ -1,5 +1,7 @@
 """How the figures of claims are written, on the page and in the terminal."""
 
+import re
+
 from faultpath.record import wording
 from faultpath.record.reproduction import Answer, ClaimVerdict, Ledger, Part, Size
 
@@ -22,6 +24,7 @@ STATES: dict[Size, str] = {
     "not comparable": "none",
 }
 """Each size as a name for styles and addresses."""
+_HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
 _DIFFERENCES = ("pp", "s", "m")
@@ -33,7 +36,7 @@ def typeset(text: str) -> str:
     """Return a claim's words with the signs that plain text has no letters for."""
     for plain, sign in _SIGNS_IN_TEXT:
         text = text.replace(plain, sign)
-    return wording.typeset(text)
+    return _HYPHEN_FOR_MINUS.sub(wording.MINUS, text)
 
 
 def figure(of: ClaimVerdict | Part) -> str:
