@@ -95,7 +95,7 @@ def test_an_interval_that_leaves_out_0_undetected_shows_its_p(one_seed: ReportIn
     record = one_seed.record.model_copy(update={"effects": effects, "changes": ()})
     said = screen(replace(one_seed, record=record))
     assert "no difference detected (p = 0.250 after Holm)" in said
-    assert "Under the shared fault the interval by itself leaves out 0" in said
+    assert "Under the shared fault, the interval by itself leaves out 0" in said
 
 
 def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: ReportInput) -> None:
