@@ -105,7 +105,7 @@ def test_selectors_change_the_flights(page: Page) -> None:
     assert page.locator("#viewer-paths button").first.get_attribute("aria-pressed") == "true"
     assert "gru-dcc" in page.locator("#viewer-ends").inner_text()
     assert page.locator("#viewer-across .column:visible").count() == 4
-    assert page.locator("#viewer-across canvas:visible").count() == 8
+    assert page.locator("#viewer-across .small svg:visible").count() == 4
 
 
 def test_no_label_of_the_heights_is_cut_off(page: Page, three_seeds: ReportInput) -> None:

@@ -36,6 +36,7 @@ def tap_table(source: ReportInput) -> Table:
         lines += [
             line(consumer, *_entries(record, source.variants, (channel.name, consumer)), name=True)
             for consumer in channel.consumers
+            if any(consumer in variant.consumers for variant in source.variants)
         ]
     asked = record.question
     columns = (f"baseline {asked.baseline}", f"repair {asked.repair}")

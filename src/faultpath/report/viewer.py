@@ -25,7 +25,7 @@ from faultpath.store import TrialAddress
 from faultpath.store.signals import Signal, Signals
 from faultpath.trials import FloorPlan, Outcome, Status
 
-SCRIPTS = ("unpacking.js", "plan.js", "small.js", "viewer.js")
+SCRIPTS = ("flights.js", "viewer.js")
 """Of a page with the viewer, in this order."""
 
 _MOST_WITH_SIGNALS = 12

@@ -1,7 +1,6 @@
 // The controls of the viewer: scene, path and time, kept in the address; every change draws anew.
 if (document.getElementById("viewer-data")) {
   const get = (id) => document.getElementById(`viewer-${id}`);
-  const clear = (node, ...children) => { node.replaceChildren(...children); return node; };
   const make = (tag, text = "", attributes = {}) => {
     const node = document.createElement(tag);
     node.textContent = text;
@@ -24,49 +23,49 @@ if (document.getElementById("viewer-data")) {
     const pairOf = (path) => current().pairs.find((p) => p.path === path);
     const pair = () => pairOf(state.path) ?? current().pairs[0];
     const last = () => Flight.last(current());
-    const number = (value, digits, unit) => (value === null || value === undefined ? "" : `${value.toFixed(digits)} ${unit}`);
 
     const name = (s) => {
       const title = s.title.includes(s.scene) ? s.title : s.scene + (s.title ? `, ${s.title}` : "");
       return several ? `${title}, seed ${s.seed}` : title;
     };
-    const option = (place) => make("option", name(data.scenes[place]), { value: place });
     const group = (label, places) => {
       const made = make("optgroup", "", { label });
-      made.append(...places.map(option));
+      made.append(...places.map((place) => make("option", name(data.scenes[place]), { value: place })));
       return made;
     };
     const all = data.scenes.map((_, place) => place);
-    clear(get("scene"), ...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", all));
+    get("scene").replaceChildren(...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", all));
 
-    // One column a path: a small picture for each arm, the plot of the signal, how both ended.
+    // One column a path: both arms from above, how they ended, and the plot of the signal.
     const columns = data.paths.map(({ name: path, title }) => {
       const column = make("div", "", { class: "column", "data-path": path });
-      const arms = Object.fromEntries(Flight.arms.map((arm) => [arm, { canvas: make("canvas", "", { role: "img" }), told: make("p", "", { class: `told ${arm}` }) }]));
-      const plot = make("div", "", { class: "signal" });
-      column.append(make("h3", title));
-      for (const arm of Flight.arms) {
-        const box = make("div", "", { class: "arm" });
-        box.append(...(spatial ? [arms[arm].canvas] : []), arms[arm].told);
-        column.append(box);
-      }
-      column.append(plot);
-      return { path, title, column, arms, plot };
+      const plan = make("div", "", { class: "plan small" }), plot = make("div", "", { class: "signal" });
+      const told = Flight.arms.map((arm) => make("p", "", { class: `told ${arm}` }));
+      column.append(make("h3", title), ...(spatial ? [plan] : []), ...told, plot);
+      return { path, title, column, plan, told, plot };
     });
-    clear(get("across"), ...columns.map((c) => c.column));
+    get("across").replaceChildren(...columns.map((c) => c.column));
 
-    let range = null, bounds = null;
+    let range = null;
     const redraw = () => {
-      const scene = current(), shown = pair();
+      const scene = current(), shown = pair(), clock = { last: last(), dt: data.dt_s, step: state.step };
       if (spatial) {
-        drawPlan(get("plan"), scene, shown, state.step, data);
-        drawHeight(get("height"), scene, shown, state.step, data);
+        Draw.plan(get("plan"), `Tracks in ${scene.scene} from above`, scene, shown, state.step, data, true);
+        const heights = Flight.drawn(shown).map((arm) => ({ arm, line: 0, values: Array.from(shown[arm].track[2], (v) => v / 100) }));
+        const { low, high } = Flight.bounds(null, [shown]), floor = Math.min(0, Math.floor(low[2]));
+        Draw.lines(get("height"), `Height over time in ${scene.scene}`, heights, [floor, Math.max(Math.ceil(high[2]), floor + 1)], clock);
       }
-      for (const { path, title, arms, plot } of columns) {
+      for (const { path, title, plan, told, plot } of columns) {
         const here = pairOf(path);
         if (!here) continue;
-        if (spatial) for (const arm of Flight.arms) Small.flight(arms[arm].canvas, scene, here[arm], arm, state.step, bounds);
-        if (range) Small.plot(plot, `${data.plots[state.plot].title}, ${title}`, here, state.step, scene, state.plot, range, data);
+        if (spatial) Draw.plan(plan, `${title}, from above. ${told.map((p) => p.textContent).join(". ")}`, scene, here, state.step, data, false);
+        const lines = range ? Signals.lines(here, state.plot, data) : [];
+        plot.hidden = !lines.some(({ values }) => values.some((v) => v));
+        if (plot.hidden) continue;
+        const goal = Signals.goal(scene, state.plot, data), { title: of, zero } = data.plots[state.plot];
+        const spans = Flight.flown(here).flatMap((arm) => here[arm].struck);
+        const level = goal === null ? { level: zero ? 0 : null } : { level: goal, name: "goal" };
+        Draw.lines(plot, `${of}, ${title}`, lines, range, { ...clock, spans, ...level });
       }
       const wind = Flight.drawn(shown).map((arm) => Flight.wind(shown[arm], state.step))[0];
       get("wind").textContent = wind ? `Wind at the vehicle: ${Math.hypot(...wind).toFixed(1)} m/s, drawn as the way of ${Flight.ARROW_S} s.` : "";
@@ -74,24 +73,37 @@ if (document.getElementById("viewer-data")) {
       get("time").value = String(state.step);
     };
 
-    const term = (label, value, cls = "") => {
-      const box = make("div");
-      box.append(make("dt", label, { class: cls }), make("dd", value));
-      return box;
-    };
     const ends = (shown) => {
+      const term = (label, value, cls = "") => {
+        const box = make("div");
+        box.append(make("dt", label, { class: cls }), make("dd", value));
+        return box;
+      };
       const arms = Flight.arms.map((arm) => {
-        const end = shown[arm], line = { baseline: "dashed", repair: "solid" }[arm];
-        const label = `${arm}: ${data[arm]} (${line})`;
-        if (!end) return term(label, "did not run", arm);
-        const far = number(end.distance_m, 2, "m");
-        const parts = [`${Small.signs[end.status] ?? "□"} ${end.ended}`, end.status === "failed" ? "" : number(end.time_s, 2, "s"), far && `${far} from the goal`, end.hit && `hit ${end.hit[0]}`];
-        return term(label, parts.filter(Boolean).join(", "), arm);
+        const end = shown[arm], far = end?.distance_m;
+        const told = Flight.told(arm, end).slice(arm.length + 2) + (far === null || far === undefined ? "" : `, ${far.toFixed(2)} m from the goal`);
+        return term(`${arm}: ${data[arm]} (${{ baseline: "dashed", repair: "solid" }[arm]})`, told, arm);
       });
       const parting = shown.parting_step === null
         ? `never more than ${data.parting_m} m`
         : `□ more than ${data.parting_m} m from ${(shown.parting_step * data.dt_s).toFixed(2)} s on`;
-      clear(get("ends"), ...arms, ...(spatial ? [term("apart", parting)] : []));
+      get("ends").replaceChildren(...arms, ...(spatial ? [term("apart", parting)] : []));
+    };
+
+    // Offers what was recorded of a scene; a choice that it has not got is another one there.
+    const signals = (scene) => {
+      const has = data.plots.map((_, place) => place).filter((place) => Signals.range(scene, place, data));
+      get("signals").hidden = !has.length;
+      range = null;
+      if (!has.length) return;
+      if (!has.includes(state.plot)) state.plot = has[0];
+      const label = ({ title, unit }) => (unit && unit !== "1" ? `${title} (${unit})` : title);
+      get("signal").replaceChildren(...has.map((place) => make("option", label(data.plots[place]), { value: place })));
+      get("signal").value = String(state.plot);
+      range = Signals.range(scene, state.plot, data);
+      const { lines } = data.plots[state.plot];
+      get("lines").replaceChildren(...lines.map((line, n) => make("li", line, { class: `line-${Math.min(n, 3)}` })));
+      get("lines").hidden = lines.length < 2;
     };
 
     const reset = (step) => {
@@ -106,37 +118,16 @@ if (document.getElementById("viewer-data")) {
         button.setAttribute("aria-pressed", String(button.dataset.path === shown.path));
         button.disabled = !pairOf(button.dataset.path);
       }
-      if (spatial) bounds = Flight.bounds(scene);
       signals(scene);
-      for (const { path, title, column, arms } of columns) {
+      for (const { path, column, told } of columns) {
         const here = pairOf(path);
         column.hidden = !here;
         column.classList.toggle("chosen", path === shown.path);
-        for (const arm of Flight.arms) {
-          const told = here ? Small.told(arm, here[arm]) : "";
-          arms[arm].told.textContent = told;
-          arms[arm].canvas.setAttribute("aria-label", `${title}, from above. ${told}`);
-        }
+        Flight.arms.forEach((arm, i) => { told[i].textContent = here ? Flight.told(arm, here[arm]) : ""; });
       }
       ends(shown);
       redraw();
     };
-
-    // Offers what was recorded of a scene; a choice that it has not got is another one there.
-    const signals = (scene) => {
-      const has = data.plots.map((_, place) => place).filter((place) => Small.range(scene, place, data));
-      get("signals").hidden = !has.length;
-      for (const { plot } of columns) { plot.replaceChildren(); plot.hidden = !has.length; }
-      if (!has.length) { range = null; return; }
-      if (!has.includes(state.plot)) state.plot = has[0];
-      clear(get("signal"), ...has.map((place) => make("option", label(data.plots[place]), { value: place })));
-      get("signal").value = String(state.plot);
-      range = Small.range(scene, state.plot, data);
-      const { lines } = data.plots[state.plot];
-      clear(get("lines"), ...lines.map((line, n) => make("li", line, { class: `line-${Math.min(n, 3)}` })));
-      get("lines").hidden = lines.length < 2;
-    };
-    const label = ({ title, unit }) => (unit && unit !== "1" ? `${title} (${unit})` : title);
 
     // The address tells what is shown, and shows what it tells.
     const tell = () => {
@@ -162,7 +153,7 @@ if (document.getElementById("viewer-data")) {
     const play = () => {
       let before = null, exact = state.step;
       const frame = (now) => {
-        if (before !== null) exact += ((now - before) / 1000 / data.dt_s);
+        if (before !== null) exact += (now - before) / 1000 / data.dt_s;
         before = now;
         if (exact >= last()) { show(last()); stop(); tell(); return; }
         if (Math.floor(exact) !== state.step) show(Math.floor(exact));
@@ -185,12 +176,10 @@ if (document.getElementById("viewer-data")) {
     get("on").addEventListener("click", by(1));
     get("play").addEventListener("click", () => { if (state.playing) { stop(); tell(); } else play(); });
     addEventListener("hashchange", listen);
-    // A picture that waits for a resize or for a change of colours is drawn in the next frame.
+    // Drawn anew in the next frame, when sizes are known.
     let waiting = 0;
-    const soon = () => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(redraw); };
-    addEventListener("resize", soon);
+    addEventListener("resize", () => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(redraw); });
     addEventListener("beforeprint", redraw);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", soon);
     document.getElementById("viewer").hidden = false;
     if (!listen()) reset();
     document.getElementById("viewer").dataset.ready = "";
