@@ -6,7 +6,7 @@ import pytest
 import torch
 
 from faultpath.quadrotor.evidence.inputs import Subject
-from faultpath.quadrotor.models import PACKAGE, PREDICTORS, RECONSTRUCTIONS
+from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.predictors import PredictorInputs
 from faultpath.quadrotor.predictors import module as prediction
 from faultpath.quadrotor.system import Quadrotor
@@ -88,7 +88,7 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, told):
 
 @pytest.mark.parametrize("name", ["wm-a", "wm-u+dcc", "wm-a-wind", "true-parameter", "dki-drag"])
 def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
-    model = PREDICTORS[name].load(name, 0, PACKAGE)
+    model = PREDICTORS[name].load(name, 0)
     with torch.inference_mode():
         present = at_present(windows, model, None, {"wind": "true_wind"})
         played, inputs = present.positions(), told[-1]
@@ -101,7 +101,7 @@ def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
 
 @pytest.mark.parametrize("name", ["gru", "gru-withheld"])
 def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
-    model = RECONSTRUCTIONS[name].load(name, 0, PACKAGE)
+    model = RECONSTRUCTIONS[name].load(name, 0)
     with torch.inference_mode():
         played = at_present(windows, None, model, {"wind": "reconstructed_wind"}).wind()
         supplied = _calibration(windows) if model.network.calibrated else None

@@ -6,7 +6,7 @@ A new option is one field of `QuadrotorChoices`: flags, help and messages follow
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from faultpath.trials import Offered
 
@@ -34,25 +34,11 @@ class ClearanceName(StrEnum):
     TRUE = "true"
 
 
-class PlannerName(StrEnum):
-    """MPPI with the distance to the goal that the platform has, or with that along the horizon."""
-
-    MPPI = "mppi"
-    RUNNING = "running"
-
-
 class SamplerName(StrEnum):
     """Samplers of candidates; see `planners.sampler`."""
 
     AUTOREGRESSIVE = "autoregressive"
     MODE_PRESERVING = "mode-preserving"
-
-
-class PlantName(StrEnum):
-    """What integrates the vehicle's motion; the vehicle is the same."""
-
-    TORCH = "torch"
-    MUJOCO = "mujoco"
 
 
 class DeviceName(StrEnum):
@@ -97,15 +83,31 @@ class QuadrotorChoices(BaseModel):
         "Which training of it; variants that name a predictor take the seed of their arm.",
         Offered(0, 1, 2),
     ] = 0
+    estimator: Annotated[
+        str,
+        "What turns sensors into the state, or your own as file.py:factory.",
+        Offered("exact", factories=True),
+    ] = "exact"
+    sensor_noise: Annotated[
+        float,
+        Field(ge=0),
+        "Noise and bias of the raw sensors for estimators; 1 is usual.",
+    ] = 0.0
     planner: Annotated[
-        PlannerName,
-        "MPPI as the platform has it, or on the distance to the goal along the horizon.",
-    ] = PlannerName.MPPI
+        str,
+        "MPPI as the platform has it, or on the distance to the goal along the horizon, or your "
+        "own as file.py:factory.",
+        Offered("mppi", "running", factories=True),
+    ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[
         int, "Candidates a replan.", Offered(512, 1024, 2048)  # paper, Sections IV-A and VII-B
     ] = 512
-    plant: Annotated[PlantName, "What integrates the vehicle's motion."] = PlantName.TORCH
+    plant: Annotated[
+        str,
+        "What integrates the vehicle's motion, or your own as file.py:factory.",
+        Offered("torch", "mujoco", factories=True),
+    ] = "torch"
     device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU
     bring: Annotated[
         str,
@@ -119,7 +121,8 @@ class QuadrotorChoices(BaseModel):
 
         A reconstruction may be named with the predictor that it feeds, `wm-a-wind/my.py:create`.
         """
-        named = [*self.bring.split(","), *([self.predictor] if ":" in self.predictor else [])]
+        slots = (self.predictor, self.estimator, self.planner, self.plant)
+        named = [*self.bring.split(","), *(name for name in slots if ":" in name)]
         return tuple(dict.fromkeys(_own(name.strip()) for name in named if name.strip()))
 
 

@@ -9,8 +9,6 @@ from faultpath.quadrotor.choices import (
     ClearanceName,
     DeviceName,
     Environment,
-    PlannerName,
-    PlantName,
     QuadrotorChoices,
     SamplerName,
 )
@@ -49,7 +47,7 @@ class QuadrotorOptions(QuadrotorChoices):
             )
         if choices.environment is Environment.FREE_SPACE:
             given.setdefault("clearance", ClearanceName.TRUE)
-        if choices.plant is not PlantName.TORCH and choices.device is not DeviceName.CPU:
+        if choices.plant != "torch" and choices.device is not DeviceName.CPU:
             raise UserError(
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
             )
@@ -75,8 +73,8 @@ class QuadrotorOptions(QuadrotorChoices):
 
     @property
     def plant_class(self) -> type[Plant]:
-        """What flies the vehicles; `ModuleNotFoundError` where its package is not installed."""
-        if self.plant is PlantName.MUJOCO:
+        """What of ours flies the vehicles; `ModuleNotFoundError` where its package is missing."""
+        if self.plant == "mujoco":
             from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
 
             return MujocoPlant
@@ -88,9 +86,9 @@ class QuadrotorOptions(QuadrotorChoices):
         return PLATFORM.planner.sampler.model_copy(update={"candidates": self.candidates})
 
     def build_planner(self) -> Planner:
-        """Return the planner that the options name."""
+        """Return the planner of ours that the options name."""
         planner = PLATFORM.planner
-        weights = planner.running if self.planner is PlannerName.RUNNING else planner.weights
+        weights = planner.running if self.planner == "running" else planner.weights
         bundled = self.sampler is SamplerName.MODE_PRESERVING
         sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
         return MPPI(sampler, NavigationCost(weights), planner.temperature)

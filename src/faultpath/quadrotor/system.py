@@ -16,8 +16,10 @@ from faultpath.loop import Deliverer, Loop, Module, Plant
 from faultpath.quadrotor import native
 from faultpath.quadrotor.brought import bring
 from faultpath.quadrotor.checkpoint import shipped_folder
-from faultpath.quadrotor.choices import ClearanceName, DeviceName, PlantName
+from faultpath.quadrotor.choices import ClearanceName, DeviceName
 from faultpath.quadrotor.device import arithmetic, describe
+from faultpath.quadrotor.estimators import Estimator
+from faultpath.quadrotor.estimators.protocol import SENSORS, with_estimators
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import clearance_model
 from faultpath.quadrotor.options import QuadrotorOptions
@@ -67,12 +69,17 @@ class Quadrotor(LoopSystem):
         horizon = settings.planner.sampler.horizon
         clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
         shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
-        return quadrotor_interface().shaped(shapes)
+        return with_estimators(quadrotor_interface().shaped(shapes), self._estimators)
 
     @property
     @override
     def fault_presets(self) -> Mapping[str, FaultPreset]:
         return {"calibration": calibration, "noisy_state": noisy_state}
+
+    @property
+    def _estimators(self) -> Sequence[Estimator]:
+        parts = (part.blank for part in self.brought.values())
+        return tuple(part for part in parts if isinstance(part, Estimator))
 
     def library(self, name: str) -> Library:
         """See `System.library`; a file's library keeps its path for a name, to be found again."""
@@ -92,8 +99,8 @@ class Quadrotor(LoopSystem):
         computes = (
             native.describe() if options.device is DeviceName.CPU else describe(options.device)
         )
-        flies = {PlantName.TORCH: "", PlantName.MUJOCO: ", the plant on MuJoCo"}[options.plant]
-        return computes + flies
+        flies = {"torch": "", "mujoco": ", the plant on MuJoCo"}
+        return computes + flies.get(options.plant, f", the plant {options.plant}")
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`: the kernels' arithmetic on this machine, and the options."""
@@ -119,10 +126,14 @@ class Quadrotor(LoopSystem):
     @override
     def plant(self) -> Plant:
         options, free, place = self.options, self.options.free_space, self.options.place
+        own = self.brought.get(options.plant)
+        read = {port.channel for each in self._estimators for port in each.ports}
+        sensors = sorted(SENSORS.keys() & read)
 
         def world(scenes: Sequence[str]) -> World:
             flown, winds = self._records(scenes), PLATFORM.winds
-            return World(flown, options.wind, free, place, options.plant_class, winds)
+            flies = options.plant_class if own is None else own.load(None)
+            return World(flown, options.wind, free, place, flies, winds)
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:
             return _renderer(self._records(scenes), free, place)
@@ -131,15 +142,15 @@ class Quadrotor(LoopSystem):
             return _field(self._records(scenes), free, place)
 
         if options.clearance is ClearanceName.TRUE:
-            return VehiclePlant(world, camera=None, field=field)
-        return VehiclePlant(world, camera=camera, field=None)
+            return VehiclePlant(world, None, field, sensors, options.sensor_noise)
+        return VehiclePlant(world, camera, None, sensors, options.sensor_noise)
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
         setup, place = self.setups[variant], self.options.place
         predictor = setup.load_predictor(seed, place)
         reconstruction = setup.load_reconstruction(seed, place)
-        found = modelled(predictor, reconstruction, place)
+        found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, place))
         found.append(Planning(setup.load_planner(seed, self.options), place))
         if self.options.clearance is not ClearanceName.TRUE:
             found.append(

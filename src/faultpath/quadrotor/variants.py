@@ -8,7 +8,7 @@ variant with the predictor of the options.
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import torch
@@ -17,7 +17,7 @@ from faultpath.loop import Module
 from faultpath.quadrotor.brought import Brought
 from faultpath.quadrotor.choices import ClearanceName
 from faultpath.quadrotor.device import CPU
-from faultpath.quadrotor.estimators import ExactEstimator
+from faultpath.quadrotor.estimators import Estimator, ExactEstimator
 from faultpath.quadrotor.models import (
     PREDICTORS,
     RECONSTRUCTIONS,
@@ -56,12 +56,14 @@ class Setup:
     """`None` for a predictor without a wind input."""
     planner: str | None = None
     """One that the user brings; `None` for that of the options."""
+    estimator: str | None = None
+    """One that the user brings; `None` for the exact one."""
     brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
 
     @property
     def uses(self) -> set[str | None]:
         """The parts that it flies with."""
-        return {self.predictor, self.wind, self.planner}
+        return {self.predictor, self.wind, self.planner, self.estimator}
 
     def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
         """Return the predictor for an arm of this seed; blank for `None`."""
@@ -87,6 +89,10 @@ class Setup:
             return options.build_planner()
         return self.brought[self.planner].load(seed, options.place)
 
+    def load_estimator(self, seed: int | None, device: torch.device = CPU) -> Estimator | None:
+        """Return the user's estimator for an arm of this seed, if the variant has one."""
+        return self.brought[self.estimator].load(seed, device) if self.estimator else None
+
     def wiring(self, options: QuadrotorOptions) -> Wiring:
         """Describe the setup to an audit: in words, and which sources it takes."""
         seen = options.clearance is not ClearanceName.TRUE
@@ -103,6 +109,8 @@ class Setup:
             words = f"{words}. Wind: {said}"
         if self.planner is not None:
             words = f"{words}. Planning: {self.brought[self.planner].description}"
+        if self.estimator is not None:
+            words = f"{words}. Estimating: {self.brought[self.estimator].description}"
         return Wiring(f"{words}.", bindings)
 
     def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
@@ -131,16 +139,29 @@ def setups(
 def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[Setup]:
     chosen, seed = options.predictor, options.predictor_seed
     winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
+    base = Setup(
+        chosen,
+        chosen,
+        seed,
+        None,
+        planner=options.planner if options.planner in mine else None,
+        estimator=options.estimator if options.estimator in mine else None,
+        brought=mine,
+    )
     if _has_wind(chosen, mine):
         for wind in winds:
-            yield Setup(wind, chosen, seed, wind, brought=mine)
-    named = [(name, name, None, None) for name in (*PREDICTORS, *_of(Predictor, mine))]
-    named += [(name, chosen, seed, name) for name in _of(Planner, mine)]
-    for name, predicts, trained, plans in named:
-        windy = _has_wind(predicts, mine)
-        yield Setup(name, predicts, trained, ZERO_WIND if windy else None, plans, mine)
+            yield replace(base, name=wind, wind=wind)
+    named = [
+        replace(base, name=name, predictor=name, predictor_seed=None)
+        for name in (*PREDICTORS, *_of(Predictor, mine))
+    ]
+    named += [replace(base, name=name, planner=name) for name in _of(Planner, mine)]
+    named += [replace(base, name=name, estimator=name) for name in _of(Estimator, mine)]
+    for setup in named:
+        windy = _has_wind(setup.predictor, mine)
+        yield replace(setup, wind=ZERO_WIND if windy else None)
         for wind in winds if windy else ():
-            yield Setup(f"{name}/{wind}", predicts, trained, wind, plans, mine)
+            yield replace(setup, name=f"{setup.name}/{wind}", wind=wind)
 
 
 def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:
@@ -153,13 +174,17 @@ def _has_wind(name: str, brought: Mapping[str, Brought]) -> bool:
 
 
 def modelled(
-    predictor: Predictor, reconstruction: Reconstruction | None, device: torch.device
+    predictor: Predictor,
+    reconstruction: Reconstruction | None,
+    device: torch.device,
+    estimator: Estimator | None = None,
 ) -> list[Module]:
-    """Return the estimator and the modules of a predictor and a wind reconstruction, if any.
+    """Return the estimators and the modules of a predictor and a wind reconstruction, if any.
 
     A flight has them before its planner, a recorded window before what was executed.
     """
-    found: list[Module] = [ExactEstimator(), Prediction(predictor, device)]
+    found: list[Module] = [] if estimator is None else [estimator]
+    found += [ExactEstimator(estimator.writes if estimator else ()), Prediction(predictor, device)]
     if reconstruction is not None:
         found.append(WindReconstruction(reconstruction, device))
     if "history" in predictor.reads:

@@ -1,30 +1,28 @@
-"""The estimator: what the controller knows of the vehicle, and where it has that from."""
+"""The exact estimator: faults are put on what it says, behind it."""
+
+from collections.abc import Collection
 
 from torch import Tensor
 
-from faultpath.loop import Inputs, Memory, Module, Outputs
-
-STATE_SOURCES = {
-    "position": "position_estimate",
-    "velocity": "velocity_estimate",
-    "attitude": "attitude_estimate",
-    "body_rate": "body_rate_measurement",
-}
-CALIBRATION_SOURCES = {"mass": "mass_estimate", "thrust_scale": "thrust_scale_estimate"}
+from faultpath.loop import Inputs, Memory, Outputs
+from faultpath.quadrotor.estimators.protocol import SOURCES, Estimator
 
 
-class ExactEstimator(Module):
-    """Estimates without error (the paper's): faults are put on what it says, behind it.
+class ExactEstimator(Estimator):
+    """Estimates without error (the paper's): the one module that takes the plant's truth past all
+    taps.
 
-    It is the one module that takes the plant's truth past all taps.
+    Args:
+        besides: Sources that another estimator writes.
     """
 
-    name = "estimator"
-    writes = (*CALIBRATION_SOURCES.values(), *STATE_SOURCES.values())
     truths = ("vehicle",)
+
+    def __init__(self, besides: Collection[str] = ()) -> None:
+        self._names = {name: s for name, s in SOURCES.items() if s not in besides}
+        self.writes = tuple(self._names.values())
 
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Return the truth, `[B, ...]` each."""
         truth: dict[str, Tensor] = inputs.truth("vehicle")
-        sources = CALIBRATION_SOURCES | STATE_SOURCES
-        return {source: truth[name] for name, source in sources.items()}, memory
+        return {source: truth[name] for name, source in self._names.items()}, memory

@@ -1,14 +1,17 @@
 """The simulated vehicles in their scenes, as the plant of the loop."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import torch
 from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
+from faultpath.quadrotor import so3
 from faultpath.quadrotor.device import host_readable
+from faultpath.quadrotor.estimators.protocol import Errors, raw
 from faultpath.quadrotor.lanes import lanes_last, scenes_first
 from faultpath.quadrotor.perception import DepthRenderer, mounted
 from faultpath.quadrotor.perception.module import geometric_clearance
@@ -33,6 +36,8 @@ class Flying:
     camera: DepthRenderer | None
     clearance: Query | None
     """Of the geometry itself."""
+    errors: Errors
+    """Of the raw sensors."""
 
 
 class VehiclePlant(Plant):
@@ -42,6 +47,8 @@ class VehiclePlant(Plant):
         world: Makes the world of some scenes, by id.
         camera: Makes their camera; `None`: nothing reads depth.
         field: Makes their distance field; `None`: nothing reads the true clearance.
+        sensors: Channels of the raw sensors that an estimator reads.
+        sensor_noise: How large their errors are; see `estimators.protocol.SENSORS`.
     """
 
     name = "vehicle"
@@ -53,15 +60,20 @@ class VehiclePlant(Plant):
         world: Callable[[Sequence[str]], World],
         camera: Callable[[Sequence[str]], DepthRenderer] | None,
         field: Callable[[Sequence[str]], DistanceField] | None,
+        sensors: Sequence[str] = (),
+        sensor_noise: float = 0.0,
     ) -> None:
         self.steps = CONTROL_STEPS
         self._world = world
         self._camera = camera
         self._field = field
+        self._sensors = tuple(sensors)
+        self._sensor_noise = sensor_noise
         self.senses = (
             *("mission_goal", "true_physics", "true_wind", "zero_wind"),
             *(("depth_image",) if camera else ()),
             *(("true_clearance",) if field else ()),
+            *map(raw, sensors),
         )
 
     def start(self, batch: Batch) -> Flying:
@@ -70,6 +82,7 @@ class VehiclePlant(Plant):
             world=self._world(batch.scenes),
             camera=self._camera(batch.scenes) if self._camera else None,
             clearance=geometric_clearance(self._field(batch.scenes)) if self._field else None,
+            errors=Errors(batch.scenes, batch.seed, self._sensor_noise),
         )
 
     def sense(self, state: Flying) -> Outputs:
@@ -88,6 +101,9 @@ class VehiclePlant(Plant):
             sensed["depth_image"] = state.camera.render(here)
         if state.clearance is not None:
             sensed["true_clearance"] = state.clearance
+        for name in self._sensors:
+            exact = scenes_first(_SENSED[name](world), count)
+            sensed[raw(name)] = exact + state.errors.of(name, world.step, exact)
         return sensed
 
     def advance(self, state: Flying, inputs: Inputs) -> Flying:
@@ -125,6 +141,23 @@ class VehiclePlant(Plant):
 def commanded(inputs: Inputs, lanes: Tensor) -> Tensor:
     """Return the command `[4, L]` that reaches the actuators: N and rad/s."""
     return lanes_last(inputs[ACTION], lanes)
+
+
+def _specific_force(world: World) -> Tensor:
+    """Thrust and drag over mass in the body frame, `[3, L]`, m/s^2."""
+    vehicle, state = world.vehicle, world.state
+    force = vehicle.drag_kgps * so3.rotate_back(state.rotation, world.wind_mps - state.velocity)
+    force[2] += vehicle.thrust_scale * world.plant_state.thrusts.sum(0)
+    return force / vehicle.mass_kg
+
+
+_SENSED: Mapping[str, Callable[[World], Tensor]] = MappingProxyType(
+    {
+        "gyroscope": lambda world: world.state.rate,
+        "specific_force": _specific_force,
+        "position_fix": lambda world: world.state.position,
+    }
+)
 
 
 def _truth(world: World) -> dict[str, Tensor]:
