@@ -1,4 +1,4 @@
-"""An estimator as a user would bring it: a complementary filter of gyroscope, force and position."""
+"""An estimator as a user would bring it: gyroscope, specific force and position fixes, filtered."""
 
 import torch
 
