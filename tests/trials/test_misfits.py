@@ -8,7 +8,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.blame import described
 from faultpath.faults import Fault, Scale
-from faultpath.flightlog.columns import ColumnMap
+from faultpath.flightlog.reading import ColumnMap
 from faultpath.misfits import Misfit, misfit_of
 from faultpath.proposal.study import StudyFile
 

@@ -27,7 +27,7 @@ def command(
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
     from faultpath.flightlog import compensation, read_columns, read_flight
-    from faultpath.flightlog.columns import HEAVIEST_KG
+    from faultpath.flightlog.reading import HEAVIEST_KG
 
     said = read_columns(columns)
     if mass is not None:

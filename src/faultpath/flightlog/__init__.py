@@ -1,8 +1,8 @@
 """Recorded flights of real vehicles: what a shared calibration error does to them."""
 
-from faultpath.flightlog.columns import ColumnMap, read_columns
 from faultpath.flightlog.compensation import Combination, Compensation, compensation
 from faultpath.flightlog.flight import Flight, read_flight
+from faultpath.flightlog.reading import ColumnMap, read_columns
 
 __all__ = [
     "ColumnMap",

@@ -1,11 +1,10 @@
 """Which acceleration error a shared calibration error leaves on a flight (paper, Eq. 2)."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import product
 from typing import Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.errors import UserError
@@ -73,28 +72,6 @@ class Compensation(_Frozen):
         )
 
 
-@dataclass(frozen=True)
-class _Errors:
-    flight: Flight
-    settled: np.ndarray
-    """Whether an interval counts, `[N]`."""
-
-    def of(self, observer: float, predictor: float) -> Floats:
-        """Return the error of the combined acceleration at each interval that counts, m/s^2."""
-        flight = self.flight
-        wind = _held(flight, _disturbance(flight, observer))
-        combined = nominal(flight, predictor) + through_air(flight, wind) / (
-            flight.mass_kg * (1 + predictor)
-        )
-        found = np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[self.settled]
-        if not np.isfinite(found).all():
-            raise UserError(
-                "the log and its map leave an acceleration without end: correct mass, drag and "
-                "units in the map"
-            )
-        return found
-
-
 @np.errstate(all="ignore")  # what comes of it is judged
 def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Compensation:
     """Return the error of a_0 + B w for correct, isolated and shared calibration errors.
@@ -114,13 +91,27 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
     for size in sizes:
         if not -1 < size < 1 or size == 0:
             raise UserError(f"the calibration error {size:g} is not between -1 and 1, or is 0")
-    settled = _settled(flight)
-    errors = _Errors(flight, settled)
-    pairs = [(0.0, 0.0)]
+    begins = np.searchsorted(flight.stretch, flight.stretch)
+    settled = flight.time_s - flight.time_s[begins] >= WARM_UP_S - 1e-9
+    correct = (0.0, 0.0)
+    pairs = [correct]
     for size in sizes:
-        pairs += [(r, p) for r, p in product((0.0, size), repeat=2) if (r, p) != (0.0, 0.0)]
-    of = {pair: errors.of(*pair) for pair in pairs}
+        pairs += [pair for pair in product((0.0, size), repeat=2) if pair != correct]
+    of = {pair: _error(flight, settled, *pair) for pair in pairs}
     medians = Medians(flight.stretch[settled], list(of.values()))
+    combinations: list[Combination] = []
+    for pair in pairs:
+        ratio = None if pair == correct else medians.log_ratio(of[pair], of[correct])
+        combinations.append(
+            Combination(
+                observer=pair[0],
+                predictor=pair[1],
+                error_mps2=medians.value(of[pair], "m/s^2"),
+                log_ratio=ratio,
+                decided=ratio and _decided(ratio),
+            )
+        )
+    shared = {size: medians.log_ratio(of[size, size], of[size, 0.0]) for size in sizes}
     return Compensation(
         flown_s=len(settled) * INTERVAL_S,
         intervals=int(settled.sum()),
@@ -130,51 +121,33 @@ def compensation(flight: Flight, sizes: tuple[float, ...] = (0.1, -0.1)) -> Comp
         mass_kg=flight.mass_kg,
         newton_per_unit=flight.newton_per_unit,
         drag_kgps=flight.drag_kgps,
-        combinations=tuple(_combination(medians, pair, of) for pair in pairs),
-        shared=tuple(_shared(medians, size, of) for size in sizes),
+        combinations=tuple(combinations),
+        shared=tuple(
+            SharedAgainstIsolated(error=size, log_ratio=ratio, decided=_decided(ratio))
+            for size, ratio in shared.items()
+        ),
     )
 
 
-def _combination(
-    medians: Medians, pair: tuple[float, float], of: Mapping[tuple[float, float], Floats]
-) -> Combination:
-    correct = (0.0, 0.0)
-    ratio = None if pair == correct else medians.log_ratio(of[pair], of[correct])
-    return Combination(
-        observer=pair[0],
-        predictor=pair[1],
-        error_mps2=medians.value(of[pair], "m/s^2"),
-        log_ratio=ratio,
-        decided=None if ratio is None else _decided(ratio),
-    )
-
-
-def _shared(
-    medians: Medians, size: float, of: Mapping[tuple[float, float], Floats]
-) -> SharedAgainstIsolated:
-    ratio = medians.log_ratio(of[size, size], of[size, 0.0])
-    return SharedAgainstIsolated(error=size, log_ratio=ratio, decided=_decided(ratio))
+def _error(flight: Flight, settled: NDArray[np.bool_], observer: float, predictor: float) -> Floats:
+    """Return the error of the combined acceleration at each interval that counts, m/s^2."""
+    residual = flight.acceleration_mps2 - nominal(flight, observer)
+    raw = through_air(flight, residual * flight.mass_kg * (1 + observer), inverse=True)
+    held = np.zeros_like(raw)
+    for index in range(1, len(raw)):
+        if flight.stretch[index] == flight.stretch[index - 1]:
+            held[index] = held[index - 1] + LOW_PASS * (raw[index - 1] - held[index - 1])
+    force = through_air(flight, held)
+    combined = nominal(flight, predictor) + force / (flight.mass_kg * (1 + predictor))
+    found = np.linalg.norm(combined - flight.acceleration_mps2, axis=1)[settled]
+    if not np.isfinite(found).all():
+        raise UserError(
+            "the log and its map leave an acceleration without end: correct mass, drag and units "
+            "in the map"
+        )
+    return found
 
 
 def _decided(ratio: Estimate) -> Decided:
     low, high = ratio.interval or (0.0, 0.0)
     return "more" if low > 0.0 else "less" if high < 0.0 else "not decided"
-
-
-def _disturbance(flight: Flight, error: float) -> Floats:
-    residual = flight.acceleration_mps2 - nominal(flight, error)
-    return through_air(flight, residual * flight.mass_kg * (1 + error), inverse=True)
-
-
-def _held(flight: Flight, raw: Floats) -> Floats:
-    held = np.zeros_like(raw)
-    for index in range(1, len(raw)):
-        if flight.stretch[index] == flight.stretch[index - 1]:
-            held[index] = held[index - 1] + LOW_PASS * (raw[index - 1] - held[index - 1])
-    return held
-
-
-def _settled(flight: Flight) -> np.ndarray:
-    first = {number: flight.time_s[flight.stretch == number][0] for number in set(flight.stretch)}
-    begun = np.array([first[number] for number in flight.stretch])
-    return flight.time_s - begun >= WARM_UP_S - 1e-9

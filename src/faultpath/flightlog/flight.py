@@ -1,6 +1,6 @@
 """A recorded flight on a grid of control intervals."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -8,8 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation, Slerp
 
 from faultpath.errors import UserError
-from faultpath.flightlog.columns import SPEED_UNITS, ColumnMap
-from faultpath.flightlog.reading import Floats, Series, read_series
+from faultpath.flightlog.reading import SPEED_UNITS, ColumnMap, Floats, Series, read_series
 
 GRAVITY_MPS2 = 9.80665
 INTERVAL_S = 0.05  # paper, Section IV-A
@@ -72,40 +71,32 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
 
 
 def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
+    """Return the ends of the control intervals of each stretch, and how many pauses there are."""
     columns = list(series.values())
-    begin = max(float(each.time_s[0]) for each in columns)
-    end = min(float(each.time_s[-1]) for each in columns)
-    breaks = _pauses(columns)
-    starts = [begin, *(after for _, after in breaks)]
-    stops = [*(before for before, _ in breaks), end]
+    pauses: list[tuple[float, float]] = []
+    for each in columns:
+        steps = np.diff(each.time_s)
+        long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
+        pauses += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
+    merged: list[tuple[float, float]] = []
+    for before, after in sorted(pauses):
+        if merged and before < merged[-1][1]:
+            merged[-1] = merged[-1][0], max(merged[-1][1], after)
+        else:
+            merged.append((before, after))
+    starts = [max(float(each.time_s[0]) for each in columns), *(after for _, after in merged)]
+    stops = [*(before for before, _ in merged), min(float(each.time_s[-1]) for each in columns)]
     grids = [
-        _grid(start, stop) for start, stop in zip(starts, stops, strict=True) if stop - start >= 2.0
+        start + INTERVAL_S * np.arange(int((stop - start) / INTERVAL_S) + 1, dtype=np.float64)
+        for start, stop in zip(starts, stops, strict=True)
+        if stop - start >= 2.0
     ]
     if not grids:
         raise UserError(
             f"{path}: no two seconds of flight in which all columns have readings: look for gaps, "
             "and whether the columns are of one flight"
         )
-    return grids, len(breaks)
-
-
-def _pauses(columns: Iterable[Series]) -> list[tuple[float, float]]:
-    found: list[tuple[float, float]] = []
-    for each in columns:
-        steps = np.diff(each.time_s)
-        long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
-        found += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
-    merged: list[tuple[float, float]] = []
-    for before, after in sorted(found):
-        if merged and before < merged[-1][1]:
-            merged[-1] = merged[-1][0], max(merged[-1][1], after)
-        else:
-            merged.append((before, after))
-    return merged
-
-
-def _grid(start: float, stop: float) -> Floats:
-    return start + INTERVAL_S * np.arange(int((stop - start) / INTERVAL_S) + 1, dtype=np.float64)
+    return grids, len(merged)
 
 
 def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> Slerp:

@@ -7,7 +7,6 @@ from markupsafe import Markup
 from faultpath.flightlog import Combination, Compensation
 from faultpath.record.wording import counted, interval, plain
 from faultpath.report.frame import render
-from faultpath.report.svg import Svg, covering, tick_label
 from faultpath.statistics import Estimate
 from faultpath.tables import MISSING, Table, line
 from faultpath.tables.html import html
@@ -105,30 +104,6 @@ def table(found: Compensation) -> Table:
     )
 
 
-def picture(found: Compensation) -> str:
-    """Return the medians and their intervals, one row a combination."""
-    rows = found.combinations
-    shown = [row.error_mps2 for row in rows]
-    ends = [end for each in shown for end in (each.low, each.value, each.high) if end is not None]
-    pitch, top = 34.0, 14.0
-    bottom = top + pitch * len(rows)
-    svg = Svg(460, bottom + 42, "Error of the combined acceleration, median over the flight")
-    axis = covering(ends).at(118, 446)
-    for tick in axis.ticks():
-        if tick >= 0:
-            svg.line((axis(tick), top), (axis(tick), bottom), "zero" if tick == 0 else "axis")
-            svg.text(axis(tick), bottom + 16, tick_label(tick), "small soft", "middle")
-    svg.text(282, bottom + 34, "m/s², against the observed acceleration", "small soft", "middle")
-    for index, row in enumerate(rows):
-        y = top + pitch * (index + 0.5)
-        error = row.error_mps2
-        svg.text(104, y + 4, _label(row), "", "end")
-        if error.low is not None and error.high is not None:
-            svg.line((axis(error.low), y), (axis(error.high), y), "range")
-        svg.circle((axis(error.value), y), 4.5, "dot", tip=f"{plain(error.value, 2)} m/s²")
-    return svg.render()
-
-
 def page(found: Compensation, log: str) -> str:
     """Return all of it as one page that opens without a network."""
     return render(
@@ -138,6 +113,5 @@ def page(found: Compensation, log: str) -> str:
         log=log,
         sentences=sentences(found),
         caveat=CAVEAT,
-        picture=Markup(picture(found)),
         table=Markup(html(table(found))),
     )
