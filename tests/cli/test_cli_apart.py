@@ -27,12 +27,12 @@ ENDINGS = {
 WORK = """
 import atexit, ctypes, os, sys, threading, time
 from faultpath.cli import apart
-from faultpath.patience import patience
+from faultpath.setup_limit import setup_limit
 apart._LAST_S = 0.2
 def work():
     print("said")
     sys.stdout.flush()
-    with patience("mine.py:create", None):
+    with setup_limit("mine.py:create", None):
         pass
     {}
     sys.stdout.write("written")

@@ -12,7 +12,7 @@ from unittest.mock import Mock
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath import patience
+from faultpath import setup_limit
 from faultpath.blame import described
 from faultpath.loop.module import Progress
 from faultpath.trials import Outcome

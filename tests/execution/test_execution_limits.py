@@ -10,7 +10,7 @@ import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
 
-from faultpath import patience
+from faultpath import setup_limit
 from faultpath.errors import UserError
 from faultpath.execution import run_study
 from faultpath.execution.limits import FEW, FIRST_S, LEAST_S, TIMES, TimeLimit

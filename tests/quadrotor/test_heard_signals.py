@@ -3,7 +3,7 @@
 import numpy as np
 
 from faultpath.execution.attempt import Done, attempt
-from faultpath.execution.differences import difference
+from faultpath.execution.again import difference
 from faultpath.faults import parse_fault
 from faultpath.quadrotor.evidence.signals import quadrotor_signals
 from faultpath.quadrotor.system import Quadrotor

@@ -16,7 +16,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import NoReturn
 
-from faultpath import patience
+from faultpath import setup_limit
 from faultpath.text import one_line
 
 _SENT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
@@ -87,7 +87,7 @@ def _work(command: Callable[[], object], shared: mmap.mmap) -> NoReturn:
         text = doing.encode(errors="replace")[: _SIZE - _TEXT]
         shared[_TEXT:] = text.ljust(_SIZE - _TEXT, b"\0")
 
-    patience.hear(note)
+    setup_limit.observe(note)
     try:
         command()
         status = 0

@@ -12,7 +12,6 @@ from faultpath.cli.options import (
     FAILED_TRIALS,
     SET,
     Executor,
-    MemoryLimit,
     Share,
     TimeLimit,
     numbers,
@@ -113,7 +112,6 @@ def command(
     ] = None,
     executor: Executor = "local",
     time_limit: TimeLimit = None,
-    memory_limit: MemoryLimit = None,
     no_signals: Annotated[
         bool,
         typer.Option(
@@ -157,7 +155,6 @@ def command(
         workers=workers,
         executor=executor,
         time_limit_s=time_limit,
-        memory_limit_gib=memory_limit,
         signals=not no_signals,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )

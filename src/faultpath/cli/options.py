@@ -22,18 +22,10 @@ FAILED_TRIALS = 1
 TimeLimit = Annotated[
     float | None,
     typer.Option(
-        help="Seconds that a block of scenes may take; default 20 times the slowest so far, at "
-        "least 300, and 3600 for the first."
+        help="Seconds that a block of scenes may take; default what the system says, else 3600."
     ),
 ]
 """`--time-limit` of the verbs that fly."""
-
-
-MemoryLimit = Annotated[
-    float | None,
-    typer.Option(help="GiB that a worker process may take; a trial that asks for more fails."),
-]
-"""`--memory-limit` of the verbs that fly."""
 
 
 Executor = Annotated[

@@ -47,13 +47,13 @@ def command(
     """Perturb an input on recorded windows, all else fixed: how far do predictions move?"""
     from faultpath.evidence import Recording
     from faultpath.evidence.probe import ProbePlan, expected_perturbations
-    from faultpath.patience import patience
+    from faultpath.setup_limit import setup_limit
     from faultpath.trials import SystemSpec, load_measurer, load_system
 
     chosen = names(variants, "--variants")
     measure = load_measurer(system)
     options = settings(set_ or [])
-    with patience(system, None):
+    with setup_limit(system, None):
         built = load_system(SystemSpec(name=system, options=options))
     plan = ProbePlan(
         recording=Recording(library=library, variant=recorded_with, options=options),
@@ -83,12 +83,13 @@ def command(
 def _measure(
     measure: "Measurer", plan: "ProbePlan", scenes: int | None, folder: Path, workers: int
 ) -> "EvidenceTable":
-    from faultpath.door.display import Display, Now, SafeConsole
+    from faultpath.door.display import Display, SafeConsole
+    from faultpath.work import Progress
 
     with Display(SafeConsole(stderr=True)).progress("Measuring") as show:
 
         def note(done: float, total: float) -> None:
-            show(Now(done, total, f"{done:.0f} of {total:.0f} flights"))
+            show(Progress(done, total, f"{done:.0f} of {total:.0f} flights"))
 
         return measure(plan.measurements(), scenes, folder, workers, note)
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.audit import Json, tell, tell_json
-from faultpath.cli.options import Executor, MemoryLimit, TimeLimit, path
+from faultpath.cli.options import Executor, TimeLimit, path
 
 
 def command(
@@ -23,7 +23,6 @@ def command(
         ),
     ] = None,
     time_limit: TimeLimit = None,
-    memory_limit: MemoryLimit = None,
     executor: Executor = "local",
     as_json: Json = False,
 ) -> int:
@@ -39,7 +38,6 @@ def command(
         folder=out,
         workers=workers,
         time_limit_s=time_limit,
-        memory_limit_gib=memory_limit,
         executor=executor,
         progress=Display(console, ("faultpath", *sys.argv[1:])),
     )

@@ -78,11 +78,11 @@ def _flag(option: _Option) -> str:
 
 
 def _options(system: str, forgiving: bool) -> Sequence[_Option]:
-    from faultpath.patience import patience
+    from faultpath.setup_limit import setup_limit
     from faultpath.trials import system_options
 
     try:
-        with patience(system, None):
+        with setup_limit(system, None):
             return system_options(system)
     except (Exception, SystemExit):
         if forgiving:

@@ -30,12 +30,12 @@ def command(
     from faultpath.door.display import SafeConsole
     from faultpath.door.reviewing import traced
     from faultpath.door.systems import choose
-    from faultpath.patience import patience
     from faultpath.report.terminal import interface_table
     from faultpath.report.trace import trace_table
+    from faultpath.setup_limit import setup_limit
     from faultpath.tables.terminal import STYLES, Parted
 
-    with patience(system, None):
+    with setup_limit(system, None):
         chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
     trace = traced(chosen, variant, library, scene, steps, seed, fault)
     console = SafeConsole()

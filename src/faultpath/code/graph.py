@@ -1,15 +1,43 @@
-"""From a module to every file that it may run, by following imports."""
+"""From a module to every file that it may run, by following imports without running anything."""
 
+import ast
 import os
+import sys
+import sysconfig
 from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import Enum
+from functools import cache
+from hashlib import sha256
+from importlib.machinery import ModuleSpec
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions
 from pathlib import Path
-
-from faultpath.code.imports import Import, contents
-from faultpath.code.places import Kind, file_of, kind_of, locate, release
+from types import ModuleType
+from weakref import WeakKeyDictionary
 
 _OURS = "faultpath"
+_BY_NAME = frozenset({"import_module", "__import__"})
+_BY_PATH = frozenset(
+    {
+        "spec_from_file_location",
+        "run_path",
+        "run_module",
+        "SourceFileLoader",
+        "exec_module",
+        "walk_packages",
+        "iter_modules",
+    }
+)
+_INSTALLED = frozenset({"site-packages", "dist-packages"})
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
+
+
+class Kind(Enum):
+    """Whose a file is."""
+
+    STANDARD = "part of Python"
+    INSTALLED = "part of an installed package"
+    LOCAL = "the user's own"
 
 
 @dataclass(frozen=True)
@@ -24,8 +52,18 @@ class Root:
     @property
     def path(self) -> Path | None:
         """The module's file, if there is one."""
-        spec = locate(self.module) if self.file is None else None
-        return self.file if spec is None else file_of(spec)
+        return self.file or file_of(locate(self.module))
+
+
+@dataclass(frozen=True)
+class Contents:
+    """A file's digest and what it imports."""
+
+    sha256: str
+    imports: tuple[tuple[str, int, tuple[str, ...]], ...] = ()
+    """Module, leading dots, and names taken from it, of each import anywhere in the file."""
+    computed: bool = False
+    """Whether it also imports by a name that is known only when it runs."""
 
 
 class Graph:
@@ -34,10 +72,6 @@ class Graph:
     Files count wherever an import of them stands, so that one inside a function counts before it
     runs. A module that imports by a computed name may load whatever lies beside and below it:
     all of that counts. Installed packages are not entered, except those that hold a root.
-
-    Of faultpath's own packages the `__init__` files only pass names on. They are looked through
-    for the module that a name comes from: importing one name would else reach the whole package,
-    and a change of a report would count as a change of every flight.
     """
 
     def __init__(self) -> None:
@@ -46,13 +80,8 @@ class Graph:
         self.packages: dict[str, str] = {}
         """Versions of what is installed, by top-level package."""
         self._entered: set[str] = set()
-        self._seen: set[tuple[str, bool]] = set()
+        self._seen: set[str] = set()
         self._paths: set[Path] = set()
-
-    @property
-    def modules(self) -> frozenset[str]:
-        """Names of all modules that were asked for, whether they are there or not."""
-        return frozenset(name for name, _ in self._seen)
 
     def add(self, root: Root) -> None:
         """Follow everything that a root imports."""
@@ -64,35 +93,29 @@ class Graph:
             self._file(root.file, root.file.name, "", root.module)
 
     def _module(self, name: str) -> None:
-        """Take in a module and, as an import does, the packages that it lies in."""
+        """Take in the packages that a module lies in, as an import does, and the module."""
         parts = name.split(".")
-        for end in range(1, len(parts) + 1):
-            self._one(".".join(parts[:end]), passing=end < len(parts))
-
-    def _one(self, name: str, passing: bool) -> None:
-        if (name, passing) in self._seen or (name, False) in self._seen:
-            return
-        self._seen.add((name, passing))
-        if name == _OURS:
-            return  # it hands on the front door, which decides no result, to whoever asks for it
-        spec = locate(name)
-        path = None if spec is None else file_of(spec)
-        if spec is None or path is None:
-            return
-        top = name.partition(".")[0]
-        if top != _OURS:
-            kind = kind_of(path)
-            if kind is Kind.STANDARD:
-                return
-            if kind is Kind.INSTALLED and top not in self._entered:
-                version = self.packages.get(top) or release(top)
-                if version is not None:
-                    self.packages[top] = version
-                    return
-        package = name if spec.submodule_search_locations is not None else name.rpartition(".")[0]
-        if passing and top == _OURS and contents(name, path).imports.facade:
-            return
-        self._file(path, _file_name(name, path), package, name)
+        for each in (".".join(parts[:end]) for end in range(1, len(parts) + 1)):
+            if each in self._seen or each == _OURS:  # its front door decides no result
+                continue
+            self._seen.add(each)
+            spec = locate(each)
+            path = file_of(spec)
+            if spec is None or path is None:
+                continue
+            if parts[0] != _OURS:
+                kind = kind_of(path)
+                if kind is Kind.STANDARD:
+                    continue
+                if kind is Kind.INSTALLED and parts[0] not in self._entered:
+                    version = self.packages.get(parts[0]) or release(parts[0])
+                    if version is not None:
+                        self.packages[parts[0]] = version
+                        continue
+            stem = each.replace(".", "/")
+            label = f"{stem}/{path.name}" if path.stem == "__init__" else f"{stem}{path.suffix}"
+            folder = spec.submodule_search_locations is not None
+            self._file(path, label, each if folder else each.rpartition(".")[0], each)
 
     def _file(self, path: Path, label: str, package: str, name: str) -> None:
         path = Path(os.path.realpath(path))
@@ -103,61 +126,26 @@ class Graph:
         if label in self.files:
             label = f"{path.parent.name}/{label}"
         self.files[label] = (path, found.sha256)
-        for each in found.imports.imports:
-            self._follow(each, package)
-        if found.imports.computed and not name.startswith(f"{_OURS}."):
+        for module, level, names in found.imports:
+            if base := _absolute(module, level, package):
+                self._module(base)
+                for each in names:
+                    self._module(f"{base}.{each}")
+        if found.computed and not name.startswith(f"{_OURS}."):
             for beside in _sources(path.parent):
                 parts = beside.relative_to(path.parent).with_suffix("").parts
                 inside = ".".join(part for part in (package, *parts[:-1]) if part)
                 below = beside.relative_to(path.parent.parent).as_posix()
                 self._file(beside, below, inside, ".".join((package, *parts)).strip("."))
 
-    def _follow(self, each: Import, package: str) -> None:
-        base = _absolute(each, package)
-        if not base:
-            return
-        if not each.names:
-            self._module(base)
-            return
-        for name, _ in each.names:
-            if name == "*":
-                self._module(base)
-            elif not self._passed_on(base, name):
-                self._module(base)
-                self._module(f"{base}.{name}")
 
-    def _passed_on(self, base: str, name: str) -> bool:
-        """Follow a name of one of faultpath's facades to where it comes from, if it is one."""
-        if base.partition(".")[0] != _OURS:
-            return False
-        spec = locate(base)
-        path = None if spec is None else file_of(spec)
-        if spec is None or path is None or spec.submodule_search_locations is None:
-            return False
-        found = contents(base, path).imports
-        if not found.facade:
-            return False
-        for each in found.imports:
-            for original, here in each.names:
-                if here == name:
-                    self._follow(Import(each.module, ((original, original),), each.level), base)
-                    return True
-        self._module(f"{base}.{name}")
-        return True
-
-
-def _absolute(each: Import, package: str) -> str:
-    if not each.level:
-        return each.module
+def _absolute(module: str, level: int, package: str) -> str:
+    if not level:
+        return module
     parts = package.split(".")
-    if not package or each.level > len(parts):
-        return each.module if not package else ""  # a file of its own has no package to look in
-    return ".".join((*parts[: len(parts) - each.level + 1], *filter(None, (each.module,))))
-
-
-def _file_name(name: str, path: Path) -> str:
-    stem = name.replace(".", "/")
-    return f"{stem}/{path.name}" if path.stem == "__init__" else f"{stem}{path.suffix}"
+    if not package or level > len(parts):
+        return "" if package else module  # a file of its own has no package to look in
+    return ".".join((*parts[: len(parts) - level + 1], *filter(None, (module,))))
 
 
 def _sources(folder: Path) -> Iterator[Path]:
@@ -172,36 +160,144 @@ def _sources(folder: Path) -> Iterator[Path]:
         yield from (Path(place) / each for each in sorted(files) if each.endswith(".py"))
 
 
-@dataclass(frozen=True)
-class Shadowed:
-    """A module that is another one than the folder's own."""
+def locate(name: str) -> ModuleSpec | None:
+    """Return where a module comes from, `None` for one that is not there.
 
-    module: str
-    found: Path
-    own: Path
-
-
-def shadowed(root: Root, folder: Path) -> Shadowed | None:
-    """Return the first module that `root` imports and that is not the one in `folder`.
-
-    A process holds one module of a name. Where two systems have a `helper.py` each, the second
-    would run the first one's, and its own would count for nothing. Modules of Python and of
-    installed packages go before a file of that name, as everybody expects who writes
-    `import logging` in a package that has a `logging.py`.
+    One that this process has imported comes from where it was found; any other is looked for as
+    an import would, except that no package is run on the way.
     """
-    graph = Graph()
-    graph.add(root)
-    for name in sorted(graph.modules):
-        own, spec = _own(name, folder), locate(name)
-        found = None if spec is None else file_of(spec)
-        if own is None or found is None or name.partition(".")[0] == "faultpath":
+    loaded = getattr(sys.modules.get(name), "__spec__", None)
+    if loaded is not None:
+        return loaded
+    parent, _, last = name.rpartition(".")
+    path = None
+    if parent:
+        package = locate(parent)
+        if package is None or package.submodule_search_locations is None:
+            return None
+        path = list(package.submodule_search_locations)
+    for finder in sys.meta_path:
+        try:
+            spec = finder.find_spec(name, path)
+        except (ImportError, AttributeError, ValueError):
             continue
-        if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) is Kind.LOCAL:
-            return Shadowed(name, found, own)
+        except KeyError:  # a folder without `__init__.py` whose parent is not imported
+            spec = ModuleSpec(name, None, is_package=True)
+            spec.submodule_search_locations = [os.path.join(each, last) for each in path or ()]
+        if spec is not None:
+            return spec
     return None
 
 
-def _own(name: str, folder: Path) -> Path | None:
-    place = folder.joinpath(*name.split("."))
-    files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
-    return next((file for file in files if os.path.isfile(file)), None)
+def file_of(spec: ModuleSpec | None) -> Path | None:
+    """Return the file of a module, `None` for a built-in one or a package without a file."""
+    if spec is None or not spec.has_location or spec.origin is None:
+        return None
+    path = Path(spec.origin)
+    archive = getattr(spec.loader, "archive", None)
+    return path if path.is_file() or archive is None else Path(archive)
+
+
+@cache
+def _folders(*names: str) -> tuple[str, ...]:
+    paths = (sysconfig.get_path(name) for name in names)
+    return tuple(dict.fromkeys(os.path.realpath(path) + os.sep for path in paths if path))
+
+
+def kind_of(path: Path) -> Kind:
+    """Return whose a file is, by where it lies."""
+    return _kind_in(path.parent)
+
+
+@cache
+def _kind_in(folder: Path) -> Kind:
+    real = os.path.realpath(folder) + os.sep
+    if not _INSTALLED.isdisjoint(folder.parts) or real.startswith(_folders("purelib", "platlib")):
+        return Kind.INSTALLED
+    return Kind.STANDARD if real.startswith(_folders("stdlib", "platstdlib")) else Kind.LOCAL
+
+
+@cache
+def release(package: str) -> str | None:
+    """Return the version of the distribution that holds a top-level package, `None` without one.
+
+    One that was installed from a folder or an archive of the user's own keeps its version while
+    its contents change; a digest of what was installed stands beside it.
+    """
+    if package in sys.stdlib_module_names:  # no distribution has them, and looking takes seconds
+        return None
+    try:
+        found = distribution(package)
+    except (PackageNotFoundError, ValueError):
+        names = packages_distributions().get(package)
+        if not names:
+            return None
+        found = distribution(names[0])
+    if found.read_text("direct_url.json") is None:
+        return found.version
+    lines = (found.read_text("RECORD") or "").splitlines()
+    held = sorted(line for line in lines if "sha256=" in line and "dist-info" not in line)
+    return f"{found.version} ({sha256(repr(held).encode()).hexdigest()[:16]})"
+
+
+_read: dict[str, Contents] = {}
+"""By digest: a file is taken apart once."""
+_loaded: WeakKeyDictionary[ModuleType, Contents] = WeakKeyDictionary()
+"""What a module was when it was first asked for: later edits do not reach what is loaded."""
+
+
+def contents(name: str, path: Path) -> Contents:
+    """Return the contents of module `name`, in `path`.
+
+    Of a module that this process has imported they stay what they were at the first call, because
+    what runs here does not change with the file. `OSError` when the file cannot be read.
+    """
+    module = sys.modules.get(name)
+    file = getattr(module, "__file__", None)
+    if module is None or file is None or os.path.realpath(file) != os.path.realpath(path):
+        return _contents(path)
+    if module not in _loaded:
+        _loaded[module] = _contents(path)
+    return _loaded[module]
+
+
+def _contents(path: Path) -> Contents:
+    data = path.read_bytes()
+    digest = sha256(data).hexdigest()
+    if digest not in _read:
+        _read[digest] = _taken_apart(data, digest) if path.suffix == ".py" else Contents(digest)
+    return _read[digest]
+
+
+def _taken_apart(source: bytes, digest: str) -> Contents:
+    """Read imports off a source file; it has none where Python cannot read it."""
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError, RecursionError):
+        return Contents(digest)
+    found: list[tuple[str, int, tuple[str, ...]]] = []
+    waiting: list[ast.AST] = list(tree.body)
+    while waiting:  # statements alone: imports stand in no expression
+        node = waiting.pop()
+        if isinstance(node, ast.Import):
+            found += [(alias.name, 0, ()) for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = tuple(alias.name for alias in node.names if alias.name != "*")
+            found.append((node.module or "", node.level, names))
+        for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
+            children = getattr(node, inner, ())
+            waiting += children if isinstance(children, list) else ()
+    computed = False
+    if any(word.encode() in source for word in _BY_NAME | _BY_PATH):
+        for call in (node for node in ast.walk(tree) if isinstance(node, ast.Call)):
+            function = call.func
+            called = getattr(function, "attr", "") or getattr(function, "id", "")
+            first = call.args[0] if call.args else None
+            if called not in _BY_NAME:
+                computed |= called in _BY_PATH
+            elif isinstance(first, ast.Constant) and isinstance(first.value, str):
+                module = first.value.lstrip(".")
+                found.append((module, len(first.value) - len(module), ()))
+            else:
+                computed = True
+    return Contents(digest, tuple(found), computed)

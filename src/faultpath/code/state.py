@@ -4,8 +4,7 @@ import gc
 import json
 import platform
 import sys
-from collections.abc import Generator, Iterable, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from hashlib import file_digest, sha256
 from pathlib import Path
@@ -13,7 +12,6 @@ from pathlib import Path
 from pydantic import Field
 
 from faultpath.code.graph import Graph, Root
-from faultpath.code.watch import Watch, Watched
 from faultpath.errors import UserError
 from faultpath.files.opening import opened
 from faultpath.frozen import Frozen
@@ -64,6 +62,9 @@ def named(names: Sequence[str]) -> str:
     return ", ".join(names[:_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
+_Stamp = tuple[int, int, int]
+
+
 @dataclass(frozen=True)
 class Code:
     """The state of some code, and where its files are."""
@@ -74,16 +75,44 @@ class Code:
     main: Path | None = None
     """The file of the first module that it was followed from."""
 
-    def unread(self) -> Watch:
+    def unread(self) -> "Watch":
         """Watch what this process may still read: data files, and modules not imported yet."""
         loaded = {getattr(module, "__file__", None) for module in tuple(sys.modules.values())}
-        late = {
-            name: Watched(path, self.state.files[name])
-            for name, path in self.sources.items()
-            if str(path) not in loaded
-        }
-        data = {name: Watched(path, self.state.data[name]) for name, path in self.data.items()}
-        return Watch(late | data)
+        late = {name: path for name, path in self.sources.items() if str(path) not in loaded}
+        return Watch({**late, **self.data}, {**self.state.files, **self.state.data})
+
+
+class Watch:
+    """Files that a process may still read, such as weights and modules imported late.
+
+    A glance costs one `stat` a file; contents are compared only where that shows another time,
+    size or file.
+    """
+
+    def __init__(self, files: Mapping[str, Path], digests: Mapping[str, str]) -> None:
+        self._files, self._digests = files, digests
+        self._stamps = {name: _stamp(path) for name, path in files.items()}
+
+    def changed(self) -> tuple[str, ...]:
+        """Return the names of the files whose contents are not what they were."""
+        found: list[str] = []
+        for name, path in self._files.items():
+            stamp = _stamp(path)
+            if stamp is not None and stamp == self._stamps[name]:
+                continue
+            if stamp is None or _digest(path) != self._digests[name]:
+                found.append(name)
+            else:
+                self._stamps[name] = stamp
+        return tuple(found)
+
+
+def _stamp(path: Path) -> _Stamp | None:
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
 
 
 def read_code(
@@ -94,54 +123,42 @@ def read_code(
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
     graph, roots = Graph(), tuple(roots)
-    with _no_collection():
+    collects = gc.isenabled()
+    gc.disable()  # it would look through all of torch for the sake of syntax trees
+    try:
         for root in roots:
             graph.add(root)
-    sources = dict(sorted(graph.files.items()))
-    files = _data(data, base or Path())
-    state = CodeState(
-        files={name: digest for name, (_, digest) in sources.items()},
-        data={name: digest for name, (_, digest) in files.items()},
-        packages=dict(sorted(graph.packages.items())),
-        python=platform.python_version(),
-        given=given,
-    )
-    return Code(state, _paths(sources), _paths(files), roots[0].path if roots else None)
-
-
-@contextmanager
-def _no_collection() -> Generator[None]:
-    """Keep the garbage collector from looking through all of torch for the sake of syntax trees."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
     finally:
-        if enabled:
+        if collects:
             gc.enable()
-
-
-def _paths(files: Mapping[str, tuple[Path, str]]) -> dict[str, Path]:
-    return {name: path for name, (path, _) in files.items()}
-
-
-def _data(paths: Iterable[Path], base: Path) -> dict[str, tuple[Path, str]]:
-    found: dict[str, tuple[Path, str]] = {}
-    for path in paths:
+    sources = dict(sorted(graph.files.items()))
+    files: dict[str, tuple[Path, str]] = {}
+    base = base or Path()
+    for path in data:
         place = base / path
         try:
-            files = (
-                sorted(p for p in place.rglob("*") if p.is_file()) if place.is_dir() else [place]
-            )
-            for file in files:
+            held = [p for p in place.rglob("*") if p.is_file()] if place.is_dir() else [place]
+            for file in held:
                 name = file.relative_to(base) if file.is_relative_to(base) else file
-                found[name.as_posix()] = file, _digest(file)
+                files[name.as_posix()] = file, _digest(file)
         except OSError as error:
             raise UserError(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
                 "files: put it there, or take it out of data_files"
             ) from error
-    return dict(sorted(found.items()))
+    state = CodeState(
+        files={name: digest for name, (_, digest) in sources.items()},
+        data={name: digest for name, (_, digest) in sorted(files.items())},
+        packages=dict(sorted(graph.packages.items())),
+        python=platform.python_version(),
+        given=given,
+    )
+    return Code(
+        state,
+        {name: path for name, (path, _) in sources.items()},
+        {name: path for name, (path, _) in sorted(files.items())},
+        roots[0].path if roots else None,
+    )
 
 
 def _digest(path: Path) -> str:

@@ -14,9 +14,9 @@ from faultpath.door.ranges import each_size
 from faultpath.door.systems import LOCAL, Chosen, choose, hands
 from faultpath.errors import UserError
 from faultpath.faults import parse_fault
-from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.record import Generalise, StopRule, StopWhen
+from faultpath.setup_limit import setup_limit
 from faultpath.statistics import IN_FORCE, RULES, RuleName
 from faultpath.trials import System, library_of
 from faultpath.trials.state import system_code
@@ -49,7 +49,6 @@ def audit(
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
     time_limit_s: float | None = None,
-    memory_limit_gib: float | None = None,
     progress: bool | Display = True,
     metric: str = "",
     thresholds: Sequence[float] = (),
@@ -87,7 +86,6 @@ def audit(
             that the same call resumes, and finds what is finished.
         workers: Worker processes, 0 for this process alone; default one per core where that helps.
         time_limit_s: Seconds that a block of scenes may take in a worker.
-        memory_limit_gib: GiB that a worker may take; a trial that asks for more fails.
         progress: Whether to show progress and notices, in a notebook's cell or on the standard
             error; otherwise notices go to the log `faultpath`.
         metric: Of the system's own, told beside success.
@@ -111,7 +109,7 @@ def audit(
         raise UserError(f"fault '{fault}' has several sizes: audit each with faultpath.audits.")
     drawn = checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
-    limit = patience(str(system), time_limit_s) if called else nullcontext()
+    limit = setup_limit(str(system), time_limit_s) if called else nullcontext()
     with limit:
         chosen = choose(system, options or {}, workers, (baseline, repair), executor)
         built = chosen.system
@@ -139,9 +137,11 @@ def audit(
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.carrying_out import carry_out
-    from faultpath.door.recording import provenance_of, record_signals
+    from faultpath.door.job import Job
     from faultpath.door.run import Run
-    from faultpath.door.saved import read_run
+    from faultpath.store import read_table
+    from faultpath.store.folder import OUTCOMES
+    from faultpath.store.sealed import read_regular
 
     named = [asked.study.name, fault, Path(library).stem]
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
@@ -150,13 +150,11 @@ def audit(
     place, other = run_folder(folder, chosen, named, scenes, drawn)
     for sentence in filter(None, (other, chosen.notice)):
         told.say(sentence)
-    between, before = between_runs(share, folder, executor), provenance_of(place)
-    limits = time_limit_s, memory_limit_gib
+    between = between_runs(share, folder, executor)
     with hands(built, chosen.workers, chosen.executor) as workforce:
-        carry_out(built, asked, place, workforce, told, *limits, between)
-        if signals:
-            record_signals(built, asked, place, workforce, told, before, *limits)
-    run = Run(place, *read_run(place))
+        job = Job(place, workforce, told, time_limit_s, between)
+        held = carry_out(built, asked, job, signals)
+    run = Run(place, held, read_table(read_regular(place / OUTCOMES)))
     run.report()
     return run
 

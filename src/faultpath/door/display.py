@@ -8,25 +8,14 @@ from dataclasses import dataclass
 from importlib.util import find_spec
 
 from rich.console import Console, ConsoleOptions, RenderableType
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
 from rich.segment import Segment
 
 from faultpath.text import printable
+from faultpath.work import Progress
 
-
-@dataclass(frozen=True)
-class Now:
-    """How much is done of how much, the same in words, seconds left, and a remark."""
-
-    done: float
-    total: float | None
-    count: str
-    seconds: float | None = None
-    remark: str = ""
-
-
-Show = Callable[[Now], None]
-
+Show = Callable[[Progress], None]
 
 _LINE_S = 10.0
 """Seconds between two lines, where no bar can move."""
@@ -118,10 +107,10 @@ def _bar(console: Console, what: str) -> Generator[Show]:
         TextColumn("{task.fields[left]}"),
         TextColumn("{task.fields[remark]}"),
     )
-    bar = Progress(*columns, console=console)
+    bar = Bar(*columns, console=console)
     task = bar.add_task(what, total=None, count="", left="", remark="")
 
-    def show(now: Now) -> None:
+    def show(now: Progress) -> None:
         bar.start()  # with the first news: what is refused shows no bar
         bar.update(
             task,
@@ -148,7 +137,7 @@ class _Lines:
         self._began = self._last = time.monotonic()
         self._ended = False
 
-    def show(self, now: Now) -> None:
+    def show(self, now: Progress) -> None:
         moment = time.monotonic()
         ends = now.total is not None and now.done >= now.total
         if self._ended or not (ends or moment - self._last >= _LINE_S):

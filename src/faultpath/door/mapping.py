@@ -15,8 +15,8 @@ from faultpath.door.audit import (
 )
 from faultpath.door.display import Display, display
 from faultpath.door.systems import LOCAL, choose, hands
-from faultpath.patience import patience
 from faultpath.plane.study import plan_map
+from faultpath.setup_limit import setup_limit
 from faultpath.trials import System, library_of
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ def reversal_map(
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
     called = isinstance(progress, Display) and progress.is_command
-    with patience(str(system), time_limit_s) if called else nullcontext():
+    with setup_limit(str(system), time_limit_s) if called else nullcontext():
         chosen = choose(system, options or {}, workers, (baseline, repair), executor)
         built = chosen.system
         scenes_from = library_of(built, library)
@@ -113,13 +113,13 @@ def reversal_map(
         told.say(sentence)
 
     # What flies and draws takes a while to load, and no mistake so far waits for it.
+    from faultpath.door.job import Job
     from faultpath.door.map_flying import fly_map
-    from faultpath.door.run import read_map
+    from faultpath.door.run import MapRun
 
     with hands(built, chosen.workers, chosen.executor) as workforce:
         between = between_runs(share, folder, executor)
-        fly_map(plan, place, workforce, told, time_limit_s, between)
-    run = read_map(place)
+        run = MapRun(place, *fly_map(plan, Job(place, workforce, told, time_limit_s, between)))
     run.report()
     return run
 

@@ -8,19 +8,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit, checked_count, checked_seeds, checked_texts
-from faultpath.door.display import Display, Now, display
+from faultpath.door.display import Display, display
 from faultpath.door.systems import choose, hands
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
-from faultpath.patience import patience
 from faultpath.planning import plan_audit
 from faultpath.proposal.plan import Plan, Proposal
 from faultpath.proposal.sources import parsed
 from faultpath.proposal.study import StudyFile, check_arms
 from faultpath.proposal.words import sentences
+from faultpath.setup_limit import setup_limit
 from faultpath.store import write_text
 from faultpath.store.atomic import check_writable
 from faultpath.trials import System, library_of
+from faultpath.work import Progress
 
 if TYPE_CHECKING:
     from faultpath.door.run import Run
@@ -113,7 +114,7 @@ def plan(
     given |= {"module": (*_several(module), *_several(modules))}
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
     called = isinstance(progress, Display) and progress.is_command
-    with patience(str(system), None) if called else nullcontext():
+    with setup_limit(str(system), None) if called else nullcontext():
         chosen = choose(system, options or {}, workers, (baseline, repair))
         scenes_from = library_of(chosen.system, library)
     if chosen.own:
@@ -137,7 +138,7 @@ def plan(
     with told.progress("Planning") as show:
 
         def note(done: int, total: int) -> None:
-            show(Now(done, total, f"{done} of {total} flights"))
+            show(Progress(done, total, f"{done} of {total} flights"))
 
         return Planned(asked.make(hands(chosen.system, chosen.workers).count, note))
 

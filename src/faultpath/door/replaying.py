@@ -1,6 +1,6 @@
 """Flying trials of a finished run again: whether they come out as they did, and what was heard."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -8,24 +8,24 @@ from pathlib import Path
 from faultpath.door.saved import read_run
 from faultpath.door.systems import choose
 from faultpath.errors import UserError
+from faultpath.execution.again import difference
 from faultpath.execution.attempt import Died, Done, Wrong
-from faultpath.execution.differences import difference
-from faultpath.execution.flying import Flying
-from faultpath.execution.limits import TimeLimit, memory_limit
-from faultpath.execution.worker import Brief
+from faultpath.execution.provenance import amend
+from faultpath.execution.runner import Dispatch, block_limit_s
+from faultpath.execution.worker import Job
 from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
+from faultpath.record import DecisionRecord
 from faultpath.report.html import write_report
-from faultpath.report.inputs import ReportInput
+from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
 from faultpath.review.hearing import Listening, Overheard, listen, listen_here
-from faultpath.store import TrialAddress, write_text
+from faultpath.store import TrialAddress
 from faultpath.store.atomic import write_file
-from faultpath.store.sealed import seal
 from faultpath.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.text import unknown
-from faultpath.trials import Arm, Outcome, Study, System, SystemSpec, library_of
+from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.state import system_code
 from faultpath.work import Executor, local
 
@@ -57,13 +57,15 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(held))
+    return tuple(scene for scene, _ in shown_first(held.record, held.outcomes, held.traces))
 
 
-def shown_first(held: ReportInput) -> tuple[tuple[str, int], ...]:
+def shown_first(
+    record: DecisionRecord, outcomes: OutcomeTable, traces: Traces
+) -> tuple[tuple[str, int], ...]:
     """Return the scenes that the report begins with, and the seed of each."""
-    pairs = read_pairs(held.outcomes, held.record)
-    few = picked(held.record, held.traces, pairs)
+    pairs = read_pairs(outcomes, record)
+    few = picked(record, traces, pairs)
     return (
         tuple((each.any_pair.scene, each.any_pair.seed) for each in few)
         or tuple(by_scene(pairs))[:1]
@@ -105,9 +107,10 @@ def replay(
         library=library,
         seeds=asked.seeds,
     ).study
+    before = as_flown(held.outcomes, held.traces)
     wanted = [
         at
-        for at in flown(held)
+        for at in before
         if at.scene in scenes and at.path in (paths or {row.path for row in study.rows})
     ]
 
@@ -116,35 +119,35 @@ def replay(
         tell(f"Flew {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as hands:
-        return fly_again(held, study, system, hands, wanted, note)
+        return fly_again(before, study, asked.library_hash, system, hands, wanted, note)
 
 
-def flown(held: ReportInput) -> dict[TrialAddress, Outcome]:
+def as_flown(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end, with their tracks."""
     return {
         (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
-            row.outcome, trace=held.traces.positions.get(at)
+            row.outcome, trace=traces.positions.get(at)
         )
-        for row in held.outcomes.rows
+        for row in outcomes.rows
         if not row.outcome.failed
     }
 
 
 def fly_again(
-    held: ReportInput,
+    before: Mapping[TrialAddress, Outcome],
     study: Study,
+    library_hash: str,
     system: System,
-    hands: Executor,
-    wanted: Iterable[TrialAddress],
+    executor: Executor,
+    asked: Iterable[TrialAddress],
     note: Callable[[Arm, int, int], None],
     time_limit_s: float | None = None,
-    memory_limit_gib: float | None = None,
 ) -> list[Replayed]:
-    """Fly some trials of a study again and listen; an arm that several paths share flies once.
+    """Run some trials of a study again and listen; an arm that several paths share runs once.
 
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
     """
-    before, wanted = flown(held), set(wanted)
+    wanted = set(asked)
     tasks: dict[str, Listening] = {}
     addresses: dict[tuple[str, str], list[TrialAddress]] = {}
     for row in study.rows:
@@ -168,13 +171,14 @@ def fly_again(
         found.extend(_compared(task, reply, before, addresses))
         note(task.arm, done, len(tasks))
 
-    limit = memory_limit(memory_limit_gib, system.memory_limit_gib)
-    brief = Brief(study.system, study.library, code, held.record.question.library_hash, limit)
-    there, here = partial(listen, brief), partial(listen_here, system)
-    call = here if hands.in_process else there
-    seconds = TimeLimit(system.time_limit_s if time_limit_s is None else time_limit_s)
-    flying = Flying[Listening](hands, lambda task: partial(call, task), seconds, study.system.name)
-    flying.run(lambda _: waiting.pop(0) if waiting else None, settle, lambda: None)
+    job = Job(study.system, study.library, code, library_hash)
+    there, here = partial(listen, job), partial(listen_here, system)
+    call = here if executor.in_process else there
+    seconds = block_limit_s(system, time_limit_s)
+    dispatch = Dispatch[Listening](
+        executor, lambda task: partial(call, task), seconds, study.system.name
+    )
+    dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
     order = {at: place for place, at in enumerate(before)}
     return sorted(found, key=lambda each: order[each.address])
 
@@ -182,7 +186,7 @@ def fly_again(
 def _compared(
     task: Listening,
     reply: Overheard | Died | Wrong,
-    before: dict[TrialAddress, Outcome],
+    before: Mapping[TrialAddress, Outcome],
     addresses: dict[tuple[str, str], list[TrialAddress]],
 ) -> Iterable[Replayed]:
     heard = reply if isinstance(reply, Overheard) else Overheard(error=_said(reply))
@@ -216,6 +220,4 @@ def write_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) ->
     """Write the signals beside the run's outcomes, with those of before."""
     signals = {**held.signals, **{each.address: each.signals for each in found if each.signals}}
     write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
-    files = {**held.provenance.files, **seal(folder, [SIGNALS])}
-    sealed = held.provenance.model_copy(update={"files": files})
-    write_text(folder / "provenance.json", sealed.model_dump_json(indent=2) + "\n", folder)
+    amend(folder, held.provenance, [SIGNALS])

@@ -1,14 +1,12 @@
 """Carrying a reproduction out: fly, measure, conclude, and write its files."""
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 
-from faultpath.door.display import Display, Now
+from faultpath.door.job import Job
 from faultpath.door.reproduced import ReproductionRun
 from faultpath.errors import Stopped
 from faultpath.evidence import EvidenceTable
-from faultpath.execution import Interrupted, RunResult, Stopwatch, run_provenance
 from faultpath.record import Reproduction, RunProvenance
 from faultpath.report.inputs import Traces
 from faultpath.report.reproduction.inputs import ReproductionInput
@@ -16,74 +14,50 @@ from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import traces_of, write_text
 from faultpath.store.folder import DELIVERIES
-from faultpath.store.sealed import seal
 from faultpath.studies import reversal
 from faultpath.studies.central import of_page
 from faultpath.studies.claims import LIMITS, TOPICS
-from faultpath.studies.flights import Flown, Leg, Pace, fly
+from faultpath.studies.flights import Flown, fly
 from faultpath.studies.pages import table_4
 from faultpath.studies.run import RESULTS, Plan, conclude, measure_all, save
 from faultpath.studies.shipped import beside
 from faultpath.tables import latex, markdown
-from faultpath.work import Executor
+from faultpath.work import Progress
 
 
-def carry_out(
-    plan: Plan, folder: Path, hands: Executor, told: Display, time_limit_s: float | None = None
-) -> ReproductionRun:
-    """Fly, measure, conclude and write the files of a plan.
+def carry_out(plan: Plan, job: Job) -> ReproductionRun:
+    """Run, measure, conclude and write the files of a plan.
 
-    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run. `time_limit_s` is that
-    of `run_study`.
+    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.
     """
-    stopwatch = Stopwatch()
+    display, folder, executor = job.display, job.folder, job.executor
     legs = plan.legs()
     if note := plan.substitution():
-        told.say(note)
-    try:
-        flown = _fly(told, legs, folder, hands, time_limit_s)
-        evidence = _measure(
-            told, plan, folder, (os.cpu_count() or 1) if hands.name else hands.count
-        )
-    except (Interrupted, KeyboardInterrupt):
-        raise Stopped(
-            f"interrupted; what is finished is kept in {folder}, and the same {told.called} "
-            "resumes."
-        ) from None
+        display.say(note)
+    with display.progress("Running") as show:
+        flown = fly(legs, folder, job.run, show)
+    evidence = EvidenceTable({})
+    if plan.measurements():
+        workers = (os.cpu_count() or 1) if executor.name else executor.count
+        try:
+            with display.progress("Measuring") as show:
+
+                def measuring(done: float, total: float) -> None:
+                    show(Progress(done, total, f"{done:.0f} of {total:.0f} flights"))
+
+                evidence = measure_all(plan, folder, workers, measuring)
+        except KeyboardInterrupt:
+            raise Stopped(
+                f"interrupted; what is finished is kept in {folder}, and the same "
+                f"{display.called} resumes."
+            ) from None
     results = plan.results(flown.outcomes, evidence)
     place = folder / plan.place
     found = conclude(plan, flown, results)
     result = save(place, flown, results, evidence, found)
-    _tell_failures(told, result)
-    backend = plan.system.backend
-    files = seal(place, (*RESULTS, DELIVERIES))
-    provenance = run_provenance(result, stopwatch, told.command, hands, backend, files)
-    write_text(place / "provenance.json", provenance.model_dump_json(indent=2) + "\n", place)
+    provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
     _write_pages(place, plan, found, provenance, flown)
     return ReproductionRun(place, found, provenance)
-
-
-def _fly(
-    told: Display, legs: Sequence[Leg], folder: Path, hands: Executor, time_limit_s: float | None
-) -> Flown:
-    with told.progress("Flying") as show:
-
-        def flying(now: Pace) -> None:
-            count = f"{now.trials_done:.0f} of {now.trials_total:.0f} trials"
-            show(Now(now.trials_done, now.trials_total, count, now.seconds_left, now.leg))
-
-        return fly(legs, folder, hands, flying, told.say, time_limit_s)
-
-
-def _measure(told: Display, plan: Plan, folder: Path, workers: int) -> EvidenceTable:
-    if not plan.measurements():
-        return EvidenceTable({})
-    with told.progress("Measuring") as show:
-
-        def measuring(done: float, total: float) -> None:
-            show(Now(done, total, f"{done:.0f} of {total:.0f} flights"))
-
-        return measure_all(plan, folder, workers, measuring)
 
 
 def _write_pages(
@@ -123,10 +97,3 @@ def _write_pages(
 
 def _gallery(found: Reproduction) -> list[str]:
     return [shown.scene for shown in found.gallery]
-
-
-def _tell_failures(told: Display, result: RunResult) -> None:
-    if result.failures:
-        told.say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")
-    for failure in result.failures:
-        told.say(f"  {failure.scene}: {failure.error} ({failure.details})")

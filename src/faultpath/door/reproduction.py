@@ -55,9 +55,10 @@ def reproduce(
     told = display(progress, "reproduce", given | {"pages": named})
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
+    from faultpath.door.job import Job
     from faultpath.door.reproducing import carry_out
 
     if other:
         told.say(other)
     with hands(asked.system, workers, executor) as workforce:
-        return carry_out(asked, place, workforce, told, time_limit_s)
+        return carry_out(asked, Job(place, workforce, told, time_limit_s))

@@ -46,14 +46,15 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.door.display import Display, Now, display
+    from faultpath.door.display import Display, display
     from faultpath.door.systems import choose
-    from faultpath.patience import patience
     from faultpath.review.check import Asked, check_system
+    from faultpath.setup_limit import setup_limit
+    from faultpath.work import Progress
 
     given = dict(locals())
     called = isinstance(progress, Display) and progress.is_command
-    with patience(str(system), time_limit_s) if called else nullcontext():
+    with setup_limit(str(system), time_limit_s) if called else nullcontext():
         chosen = choose(system, options or {}, workers, variants)
     helpful = 2 if chosen.system.parallel else 1
     count = helpful if chosen.workers is None else chosen.workers
@@ -63,7 +64,9 @@ def check(
     with told.progress("Checking") as show:
 
         def note(done: int, known: int | None) -> None:
-            show(Now(done, known, f"{done} of {known} flights" if known else f"{done} flights"))
+            show(
+                Progress(done, known, f"{done} of {known} flights" if known else f"{done} flights")
+            )
 
         asked = Asked(tuple(variants), library, scenes, seed, count, time_limit_s)
         return check_system(chosen.system, chosen.spec, asked, note)

@@ -2,7 +2,5 @@
 
 # pyright: reportUnusedImport=false
 from faultpath.execution.attempt import WrongOutcomes
-from faultpath.execution.provenance import Stopwatch, run_provenance
-from faultpath.execution.result import Failure, Interrupted, RunResult
-from faultpath.execution.runner import run_study
-from faultpath.execution.standing import Progress
+from faultpath.execution.provenance import Stopwatch, amend, run_provenance
+from faultpath.execution.runner import Failure, RunResult, run_study

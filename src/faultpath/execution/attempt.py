@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.blame import described, located
 from faultpath.errors import SystemMistake, UserError
@@ -99,29 +98,23 @@ def attempt(
     except UserError as error:
         return Wrong(located(error))
     except SystemExit as error:
-        return Raised(_exited(error), traceback.format_exc())
+        said = f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
+        return Raised(said, traceback.format_exc())
     except Exception as error:
-        return Raised(_said(error), traceback.format_exc())
+        said = described(error)
+        if isinstance(error, ValueError) and "read-only" in said:
+            said += " (what a tap delivers cannot be written to: copy it first)"
+        return Raised(said, traceback.format_exc())
     return Done(outcomes, counts, time.perf_counter() - started)
-
-
-def _exited(error: SystemExit) -> str:
-    """Say that a system ended its process; that is an error, whatever the status."""
-    return f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
-
-
-def _said(error: BaseException) -> str:
-    text = described(error)
-    if isinstance(error, ValueError) and "read-only" in text:
-        text += " (what a tap delivers cannot be written to: copy it first)"
-    return text
 
 
 def _run(
     system: System, arm: Arm, scenes: Sequence[str], taps: Taps
 ) -> tuple[tuple[Outcome, ...], tuple[TapCount, ...]]:
     outcomes = _outcomes(system, scenes, system.run(arm.variant, scenes, taps, arm.seed))
-    taps.verify(_last_steps(outcomes, system.control_dt_s))
+    dt_s = system.control_dt_s
+    steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
+    taps.verify(np.array(steps, dtype=np.int64) - 1)
     receipts = taps.receipts()
     noted = tuple(
         replace(
@@ -135,27 +128,18 @@ def _run(
 
 
 def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[Outcome, ...]:
-    if not isinstance(returned, Iterable):
+    outcomes = list(cast("Iterable[object]", returned)) if isinstance(returned, Iterable) else []
+    odd = [type(each).__name__ for each in outcomes if not isinstance(each, Outcome)]
+    if odd or not isinstance(returned, Iterable):
+        kind = f"{odd[0]} in place of an Outcome" if odd else type(returned).__name__
         raise WrongOutcomes(
-            f"run() of system {system.name!r} returned a {type(returned).__name__}: it returns a "
-            "list with one Outcome for each scene, in order"
+            f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
+            "Outcome for each scene, in order"
         )
-    outcomes: list[Outcome] = []
-    for each in cast("Iterable[object]", returned):
-        if not isinstance(each, Outcome):
-            raise WrongOutcomes(
-                f"run() of system {system.name!r} returned a {type(each).__name__} in place of an "
-                "Outcome: it returns a list with one Outcome for each scene, in order"
-            )
-        outcomes.append(each)
-    if [outcome.scene for outcome in outcomes] != list(scenes):
+    found = cast("list[Outcome]", outcomes)
+    if [outcome.scene for outcome in found] != list(scenes):
         raise WrongOutcomes(
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
-            f"{[outcome.scene for outcome in outcomes]}: run() returns one for each, in order"
+            f"{[outcome.scene for outcome in found]}: run() returns one for each, in order"
         )
-    return tuple(checked(outcome, system.metrics) for outcome in outcomes)
-
-
-def _last_steps(outcomes: Sequence[Outcome], dt_s: float) -> NDArray[np.int64]:
-    steps = [0 if o.failed else math.ceil(o.time_s / dt_s - 1e-6) for o in outcomes]
-    return np.array(steps, dtype=np.int64) - 1
+    return tuple(checked(outcome, system.metrics) for outcome in found)

@@ -3,18 +3,21 @@
 import platform
 import subprocess
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from faultpath.code import Code
-from faultpath.execution.machine import processor
 from faultpath.execution.runner import RunResult
 from faultpath.record.provenance import RunProvenance
+from faultpath.store import write_text
+from faultpath.store.sealed import seal
+from faultpath.store.shared import processor
 from faultpath.version import __version__
 from faultpath.work import Executor
 
+PROVENANCE = "provenance.json"
 _PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 
 
@@ -31,29 +34,37 @@ class Stopwatch:
 
 
 def run_provenance(
+    folder: Path,
+    names: Iterable[str],
     result: RunResult,
     stopwatch: Stopwatch,
     command: Sequence[str],
-    hands: Executor,
+    executor: Executor,
     backend: str = "",
-    files: Mapping[str, str] | None = None,
 ) -> RunProvenance:
-    """Describe the run that has just finished on `hands`; `files` are digests of what it
-    wrote, by name."""
+    """Describe the run that has just finished on `executor`, and write that into its folder.
+
+    `names` are the files there that its pages are made from; their digests stand beside it.
+    """
     commit, dirty = checkout(Path(__file__).parents[1])
     system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
-    return RunProvenance(
+    imported = {
+        name.replace("_", "-"): found
+        for code in result.code
+        for name, found in code.state.packages.items()
+    }
+    provenance = RunProvenance(
         faultpath_version=__version__,
         commit=commit,
         dirty=dirty,
         command=tuple(command),
         python=platform.python_version(),
-        packages=packages() | _imported(result.code),
+        packages=packages() | imported,
         platform=platform.platform(),
         processor=processor(),
         backend=backend,
-        workers=hands.count,
-        executor=hands.name,
+        workers=executor.count,
+        executor=executor.name,
         started=stopwatch.started.isoformat(timespec="seconds"),
         finished=datetime.now(UTC).isoformat(timespec="seconds"),
         wall_s=round(stopwatch.seconds(), 3),
@@ -67,8 +78,16 @@ def run_provenance(
         library_hash=result.library_hash,
         outcomes_sha256=result.outcomes_sha256,
         flown_again=result.flown_again,
-        files=dict(files or {}),
     )
+    return amend(folder, provenance, names)
+
+
+def amend(folder: Path, provenance: RunProvenance, names: Iterable[str]) -> RunProvenance:
+    """Write the provenance of a run with the digests of more files as they are in its folder."""
+    files = {**provenance.files, **seal(folder, names)}
+    sealed = provenance.model_copy(update={"files": files})
+    write_text(folder / PROVENANCE, sealed.model_dump_json(indent=2) + "\n", folder)
+    return sealed
 
 
 def checkout(package: Path) -> tuple[str | None, bool | None]:
@@ -111,14 +130,6 @@ def packages() -> dict[str, str]:
         except PackageNotFoundError:
             continue
     return found
-
-
-def _imported(codes: Sequence[Code]) -> dict[str, str]:
-    return {
-        name.replace("_", "-"): found
-        for code in codes
-        for name, found in code.state.packages.items()
-    }
 
 
 def _git(folder: Path, *arguments: str) -> str | None:

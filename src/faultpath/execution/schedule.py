@@ -3,10 +3,9 @@
 import hashlib
 import json
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from itertools import groupby
+from typing import Literal
 
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
@@ -24,16 +23,6 @@ class Unit:
     scenes: tuple[str, ...]
 
 
-def blocks(scenes: Sequence[SceneRef], block_size: int) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Group scenes, given by index, into the blocks of their library.
-
-    A block is a place in the library, not a count of selected scenes, so a selection and the
-    whole library share the blocks that both hold in full.
-    """
-    for block, members in groupby(scenes, key=lambda scene: scene.index // block_size):
-        yield block, tuple(scene.id for scene in members)
-
-
 def plan(
     arms: Sequence[Arm],
     scenes: Sequence[SceneRef],
@@ -44,20 +33,19 @@ def plan(
 ) -> tuple[Unit, ...]:
     """Return every unit: block by block, in each the arms in order.
 
-    With a `look`, blocks are so many scenes in the order given.
+    A block is a place in the library, not a count of selected scenes, so a selection and the whole
+    library share the blocks that both hold in full. With a `look`, blocks are so many scenes in
+    the order given.
     """
-    parts = looks(scenes, look) if look else blocks(scenes, block_size)
+    parts: dict[int, list[str]] = {}
+    for place, scene in enumerate(scenes):
+        block = place // look if look else scene.index // block_size
+        parts.setdefault(block, []).append(scene.id)
     return tuple(
-        Unit(_key(arm, ids, library, fingerprint), arm, block, ids)
-        for block, ids in parts
+        Unit(_key(arm, ids, library, fingerprint), arm, block, tuple(ids))
+        for block, ids in parts.items()
         for arm in arms
     )
-
-
-def looks(scenes: Sequence[SceneRef], look: int) -> Iterator[tuple[int, tuple[str, ...]]]:
-    """Group scenes by their place in the order in which they are flown."""
-    for block, start in enumerate(range(0, len(scenes), look)):
-        yield block, tuple(scene.id for scene in scenes[start : start + look])
 
 
 def _key(arm: Arm, scenes: Sequence[str], library: Library, fingerprint: str) -> str:
@@ -71,19 +59,6 @@ def _key(arm: Arm, scenes: Sequence[str], library: Library, fingerprint: str) ->
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
 
 
-class Recheck(StrEnum):
-    """Why scenes are flown that have been flown before."""
-
-    SAMPLE = "sample"
-    """A few scenes of a unit, without the others."""
-    GUARDED = "guarded"
-    """One scene by itself, with `Taps(guard=True)`."""
-    ALONE = "alone"
-    """The scene that was flown guarded, without the guard."""
-    REPEAT = "repeat"
-    """The whole unit."""
-
-
 @dataclass(frozen=True)
 class Task:
     """Some or all scenes of a unit, for one worker."""
@@ -92,8 +67,9 @@ class Task:
     scenes: tuple[str, ...]
     retried: bool = False
     """A worker process died over it before."""
-    recheck: Recheck | None = None
-    """Its result is compared and not stored."""
+    recheck: Literal["sample", "guarded"] | None = None
+    """Why it runs again: a few scenes without the others, or one alone with `Taps(guard=True)`.
+    Its result is compared and not stored."""
 
 
 class Schedule:
@@ -112,19 +88,19 @@ class Schedule:
             self._blocks.setdefault(unit.block, deque()).append(Task(unit, unit.scenes))
         self._home: dict[int, int] = {}
 
-    def __len__(self) -> int:
-        return sum(map(len, self._blocks.values()))
-
-    def __bool__(self) -> bool:
-        return bool(self._blocks)
-
     def take(self, worker: int) -> Task | None:
         """Return the next task for a worker, or `None` when nothing waits."""
         if not self._blocks:
             return None
         home = min(self._blocks) if self._in_order else self._home.get(worker)
         if home not in self._blocks:
-            home = self._home[worker] = self._choose()
+            taken = set(self._home.values())
+            free = [block for block in self._blocks if block not in taken]
+            home = max(
+                free or self._blocks,
+                key=lambda block: sum(len(task.scenes) for task in self._blocks[block]),
+            )
+            self._home[worker] = home
         waiting = self._blocks[home]
         task = waiting.popleft()
         if not waiting:
@@ -135,11 +111,3 @@ class Schedule:
         """Put tasks back, before everything else of their block."""
         for task in reversed(tuple(tasks)):
             self._blocks.setdefault(task.unit.block, deque()).appendleft(task)
-
-    def _choose(self) -> int:
-        taken = set(self._home.values())
-        free = [block for block in self._blocks if block not in taken]
-        return max(free or self._blocks, key=self._work_left)
-
-    def _work_left(self, block: int) -> int:
-        return sum(len(task.scenes) for task in self._blocks[block])

@@ -7,9 +7,8 @@ from typing import Literal
 
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Died, Wrong
-from faultpath.execution.flying import Flying
-from faultpath.execution.limits import TimeLimit, memory_limit
-from faultpath.execution.worker import Brief
+from faultpath.execution.runner import Dispatch, block_limit_s
+from faultpath.execution.worker import Job
 from faultpath.faults import Fault, Offset, Replace, Scale
 from faultpath.faults import Sequence as InTurn
 from faultpath.results import Result
@@ -78,8 +77,8 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
     scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
     variants = chosen_variants(system, asked.variants)
     seen = Seen(system, variants, scenes, asked.seed, asked.workers > 0)
-    limit = TimeLimit(system.time_limit_s if asked.time_limit_s is None else asked.time_limit_s)
-    crew = _Crew(system, spec, library, limit, note)
+    limit_s = block_limit_s(system, asked.time_limit_s)
+    crew = _Crew(system, spec, library, limit_s, note)
     with local(asked.workers) as held:
         arms = [Arm(variant=variant.name, seed=asked.seed) for variant in variants]
         crew.fly(held, [Flight("first", arm, scenes) for arm in arms], seen)
@@ -111,15 +110,12 @@ class _Crew:
     """Runs flights on an executor, and notes what was seen."""
 
     def __init__(
-        self, system: System, spec: SystemSpec, library: Library, limit: TimeLimit, note: Note
+        self, system: System, spec: SystemSpec, library: Library, limit_s: float, note: Note
     ) -> None:
-        self._system, self._name, self._limit, self._note = system, spec.name, limit, note
+        self._system, self._name, self._limit_s, self._note = system, spec.name, limit_s, note
         state = system_code(system, spec).state
-        memory_gib = memory_limit(None, system.memory_limit_gib)
-        self._brief = Brief(spec, library.name, state, library.content_hash, memory_gib)
+        self._job = Job(spec, library.name, state, library.content_hash)
         self._done, self._known = 0, 0
-        self.undeclared = set[str]()
-        """Files that were read and not named."""
 
     def fly(self, held: Executor, flights: Sequence[Flight], seen: Seen) -> None:
         self._known += len(flights)
@@ -131,10 +127,11 @@ class _Crew:
             self._done += 1
             self._note(self._done, None if flight.why == "first" else self._known)
 
-        call = partial(fly_here, self._system) if held.in_process else partial(fly, self._brief)
-        flying = Flying[Flight](held, lambda flight: partial(call, flight), self._limit, self._name)
-        flying.run(lambda _: waiting.pop(0) if waiting else None, settle, lambda: None)
-        self.undeclared |= flying.undeclared
+        call = partial(fly_here, self._system) if held.in_process else partial(fly, self._job)
+        dispatch = Dispatch[Flight](
+            held, lambda flight: partial(call, flight), self._limit_s, self._name
+        )
+        dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
 
 
 def _again(seen: Seen) -> Iterator[Flight]:

@@ -13,7 +13,7 @@ from faultpath.arrays import to_numpy
 from faultpath.blame import described
 from faultpath.errors import UserError
 from faultpath.execution.attempt import Died, Done, Raised, Wrong, attempt
-from faultpath.execution.worker import Brief, building
+from faultpath.execution.worker import Job, building
 from faultpath.taps import (
     IllegalRead,
     MalformedReading,
@@ -164,9 +164,9 @@ class Flown:
         }
 
 
-def fly(brief: Brief, flight: Flight) -> Flown:
+def fly(job: Job, flight: Flight) -> Flown:
     """Run in a worker process."""
-    with building(brief) as built:
+    with building(job) as built:
         return fly_here(built.system, flight)
 
 

@@ -19,7 +19,7 @@ from faultpath.arrays import is_array, to_numpy
 from faultpath.blame import described
 from faultpath.errors import SystemMistake
 from faultpath.execution.attempt import Done, Raised, Wrong, attempt
-from faultpath.execution.worker import Brief, building
+from faultpath.execution.worker import Job, building
 from faultpath.interface import Interface, Provenance
 from faultpath.loop import Loop
 from faultpath.store.signals import IN_FORCE, TOGETHER, Signal
@@ -112,9 +112,9 @@ class Overheard:
     """What kept it from its end."""
 
 
-def listen(brief: Brief, task: Listening) -> Overheard:
+def listen(job: Job, task: Listening) -> Overheard:
     """Fly in a worker process, which keeps what it has built for the next task."""
-    with building(brief) as built:
+    with building(job) as built:
         return listen_here(built.system, task)
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from faultpath.execution.attempt import Done
-from faultpath.execution.differences import difference
+from faultpath.execution.again import difference
 from faultpath.results import Result
 from faultpath.review.flights import MISTAKES, TRIALS, Flight, Flown
 from faultpath.trials import Outcome, System, Variant

@@ -28,9 +28,9 @@ class SharedTrials:
     every installed package, the machine.
     """
 
-    def __init__(self, place: Path, spec: SystemSpec, backend: str, processor: str) -> None:
+    def __init__(self, place: Path, spec: SystemSpec, backend: str) -> None:
         self.place = place
-        self._held = RunFolder(place / _context(spec, backend, processor))
+        self._held = RunFolder(place / _context(spec, backend))
 
     def lend(self, run: RunFolder, keys: Iterable[str]) -> int:
         """Copy the shards that `run` has not got into it, and return how many.
@@ -73,12 +73,22 @@ class SharedTrials:
         return True
 
 
-def _context(spec: SystemSpec, backend: str, processor: str) -> str:
+def processor() -> str:
+    """Return the model of the processor, as well as the platform tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(models, "") or platform.processor() or platform.machine()
+
+
+def _context(spec: SystemSpec, backend: str) -> str:
     said = (
         spec.model_dump_json(),
         backend,
         platform.platform(),
-        processor,
+        processor(),
         *(f"{name}={os.environ.get(name)}" for name in _THREADS),
         *sorted({f"{each.name}=={each.version}" for each in distributions()}),
     )

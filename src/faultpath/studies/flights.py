@@ -2,21 +2,21 @@
 
 import hashlib
 import re
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from faultpath.execution import Progress, RunResult, run_study
+from faultpath.execution import RunResult
 from faultpath.faults import parse_fault
 from faultpath.studies.cells import SYSTEM, Cell, Profile, Setting
 from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
-from faultpath.work import Executor
+from faultpath.work import Progress
 
 FLIGHTS = "flights"
 """Folder, inside that of a run, with one folder a setting."""
+Run = Callable[..., RunResult]
 
 
 @dataclass(frozen=True)
@@ -61,16 +61,6 @@ class Flown:
         return hashlib.sha256(every.encode()).hexdigest()[:16]
 
 
-@dataclass(frozen=True)
-class Pace:
-    """How far all legs together are."""
-
-    leg: str
-    trials_done: float
-    trials_total: int
-    seconds_left: float | None
-
-
 def plan_legs(
     cells: Iterable[Cell],
     profile: Profile,
@@ -104,67 +94,22 @@ def plan_legs(
     return tuple(legs)
 
 
-def fly(
-    legs: Sequence[Leg],
-    folder: Path,
-    hands: Executor,
-    progress: Callable[[Pace], None],
-    notice: Callable[[str], None],
-    time_limit_s: float | None = None,
-) -> Flown:
-    """Fly the legs one after the other, keeping what the folder of a run already holds.
+def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], None]) -> Flown:
+    """Run the legs one after the other, keeping what the folder of a run already holds.
 
-    `time_limit_s` is that of `run_study`, for every leg. Raises as `run_study` does.
+    `run` is what runs a study of a system into a folder. Raises as `run_study` does.
     """
-    clock = _Clock(sum(leg.trials for leg in legs), progress)
+    before, total = 0, sum(leg.trials for leg in legs)
     results: list[RunResult] = []
     for leg in legs:
-        clock.begin(leg.title)
-        results.append(
-            run_study(
-                leg.study,
-                folder / FLIGHTS / leg.folder,
-                progress=clock.show,
-                notice=notice,
-                system=leg.system,
-                shared=True,
-                executor=hands,
-                time_limit_s=time_limit_s,
-                recheck=False,
-            )
-        )
-        clock.end(leg.trials)
+
+        def progress(now: Progress, before: int = before, leg: Leg = leg) -> None:
+            show(now.within(total, before, leg.title))
+
+        place = folder / FLIGHTS / leg.folder
+        results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))
+        before += leg.trials
     return Flown(tuple(legs), tuple(results), _written(folder, legs))
-
-
-class _Clock:
-    """Adds the progress of the legs up; the pace is that of the trials flown by this process."""
-
-    def __init__(self, total: int, progress: Callable[[Pace], None]) -> None:
-        self._total, self._tell = total, progress
-        self._before, self._flown = 0, 0.0
-        self._leg = ""
-        self._kept: float | None = None
-        self._began, self._spent = time.monotonic(), 0.0
-
-    def begin(self, leg: str) -> None:
-        self._leg, self._kept, self._began = leg, None, time.monotonic()
-
-    def show(self, now: Progress) -> None:
-        if self._kept is None:  # the first report comes before anything is flown
-            self._kept = now.trials_estimated
-        flown = self._flown + now.trials_estimated - self._kept
-        done = self._before + now.trials_estimated
-        spent = self._spent + time.monotonic() - self._began
-        left = (self._total - done) * spent / flown if flown > 0 else None
-        self._tell(Pace(self._leg, done, self._total, left))
-
-    def end(self, trials: int) -> None:
-        flown = trials - (self._kept or 0)
-        self._before += trials
-        if flown > 0:
-            self._flown += flown
-            self._spent += time.monotonic() - self._began
 
 
 def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str] | None:

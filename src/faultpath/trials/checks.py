@@ -139,7 +139,6 @@ _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "parallel": (lambda found: isinstance(found, int), "give True or False"),
     "trained": (lambda found: isinstance(found, int), "give True or False"),
     "time_limit_s": (lambda found: found is None or _positive(found), "give seconds, or None"),
-    "memory_limit_gib": (lambda found: found is None or _positive(found), "give GiB, or None"),
     "interface": (
         lambda found: isinstance(found, Interface),
         "give what `read_interface` returns",

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.blame import described, note_system
 from faultpath.blame import place as where
-from faultpath.code import Root, shadowed
-from faultpath.code.places import Kind, kind_of
+from faultpath.code import Kind, Root, kind_of
 from faultpath.errors import SystemMistake, UserError
 from faultpath.text import extra
 from faultpath.trials.arm import SystemSpec
@@ -55,8 +54,7 @@ def load_system(spec: SystemSpec) -> System:
     The name is that of an entry point in the group `faultpath.systems`, `module:attribute`, or
     `path/to/file.py:attribute`, the attribute being `create` where a file is named alone. The
     attribute is called with the options, read as `trials.options` says, and returns a `System`.
-    `UserError` for a name, attribute or option that does not exist, a missing package, or a module
-    of the system's own of which this process would run another one of that name.
+    `UserError` for a name, attribute or option that does not exist, or a missing package.
 
     The caller's process stays as it was, but for two things that the system needs as long as it
     flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
@@ -186,7 +184,6 @@ def _split(name: str) -> tuple[str, str]:
 def _load_module(name: str, system: str) -> ModuleType:
     if not _installed(system):
         _look_here()
-        _check_own(Root(name), Path.cwd())
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -208,7 +205,6 @@ def _load_file(place: str) -> ModuleType:
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
     _compile(place, loader)
-    _check_own(Root(name, path), path.parent)
     sys.modules[name] = module  # dataclasses look their module up by name
     loader.exec_module(module)
     return module
@@ -245,16 +241,6 @@ def _file(place: str) -> Path:
 
 def _module_name(path: Path) -> str:
     return f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}"
-
-
-def _check_own(root: Root, folder: Path) -> None:
-    """Refuse a system that would run another system's module in place of its own."""
-    if other := shadowed(root, folder):
-        raise UserError(
-            f"{root.file or root.module} imports {other.module!r}, which is {other.found} in this "
-            f"process and not its own {other.own}: rename one of the two, or load them in "
-            "processes of their own"
-        )
 
 
 @contextmanager

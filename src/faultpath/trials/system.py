@@ -29,9 +29,7 @@ class System(ABC):
     """Whether several worker processes are faster than one; not where a GPU does the work."""
     time_limit_s: float | None = None
     """Seconds that a worker may take over one block, or one scene of a block that failed, unless
-    the user says otherwise; `None`: many times as long as the slowest so far."""
-    memory_limit_gib: float | None = None
-    """GiB that a worker process may take, unless the user says otherwise; `None`: no limit."""
+    the user says otherwise; `None`: an hour."""
     trained: bool = False
     """Whether variants hold trained models: results then speak of these models, as trained."""
     metrics: Mapping[str, Metric] = MappingProxyType({})

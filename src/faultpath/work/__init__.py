@@ -8,6 +8,7 @@ from faultpath.work.executor import (
     Failed,
     Here,
     Lost,
+    Progress,
     Returned,
     WorkerLost,
     elsewhere,

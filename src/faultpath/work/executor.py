@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
 from contextvars import ContextVar
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self, TypeVar
 
@@ -52,6 +52,27 @@ class WorkerLost(UserError):
 def ignore(message: object) -> None:
     """Take no notice of what a call tells."""
     del message
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far work has come."""
+
+    done: float
+    """With the likely share of what runs now."""
+    total: float | None
+    count: str
+    """The same in words."""
+    seconds: float | None = None
+    """Left; `None` until something can be known."""
+    remark: str = ""
+
+    def within(self, total: float, before: float = 0.0, remark: str = "") -> Self:
+        """Return it as a part of something larger, of which `before` was done before it."""
+        done, left = before + self.done, None
+        if self.seconds is not None and self.total is not None and self.total > self.done:
+            left = self.seconds / (self.total - self.done) * max(0.0, total - done)
+        return replace(self, done=done, total=total, seconds=left, remark=remark)
 
 
 class Executor(ABC):

@@ -14,7 +14,7 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.errors import Notice
-from faultpath.prints import Lines, show_warning
+from faultpath.prints import show_warning
 from faultpath.work.executor import Failed, Returned, Told, ended, tell
 
 
@@ -28,7 +28,7 @@ def main(channel: int, lifeline: int) -> None:
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     faulthandler.enable()
     warnings.showwarning = show
-    sys.stdout = sys.stderr = Lines(sys.stderr)
+    sys.stdout = sys.stderr
     threading.Thread(target=_end_with, args=(lifeline,), daemon=True).start()
     with Connection(channel) as parent, suppress(EOFError, ConnectionError):
         while True:

@@ -1,18 +1,18 @@
-"""Building a system in a command's own process: how long it may take, what it prints, who hears."""
+"""How long a system may take to be built, in a command's own process and in its workers."""
 
 import math
 import signal
+import sys
 import threading
 from collections.abc import Callable, Generator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from types import FrameType
 from typing import NoReturn
 
 from faultpath.errors import UserError
-from faultpath.prints import prints_of
 
 LONGEST_S = 3600.0
-"""Unless the user says how long anything may take."""
+"""For anything, unless the user or the system says otherwise."""
 LEAST_S = 300.0
 """Whatever the user says of a block: imports wait for a busy machine."""
 _MOST_S = 1e8
@@ -22,20 +22,16 @@ class _TooLate(BaseException):
     """No `Exception`: the code that it interrupts may catch those."""
 
 
-def _ignore(doing: str) -> None:
-    del doing
+_observers: list[Callable[[str], None]] = []
 
 
-_hear: list[Callable[[str], None]] = [_ignore]
+def observe(observer: Callable[[str], None]) -> None:
+    """Keep somebody informed of what this command is doing, should its process end there."""
+    _observers[:] = [observer]
 
 
-def hear(hears: Callable[[str], None]) -> None:
-    """Have somebody hear at what this command is, should its process end there."""
-    _hear[:] = [hears]
-
-
-def building_s(asked_s: float | None) -> float:
-    """Return the seconds that building may take where a block may take `asked_s`."""
+def setup_s(asked_s: float | None) -> float:
+    """Return the seconds that set-up may take where a block may take `asked_s`."""
     return LONGEST_S if asked_s is None else min(max(LEAST_S, asked_s), _MOST_S)
 
 
@@ -46,35 +42,37 @@ def check_limit(asked_s: float | None) -> None:
 
 
 @contextmanager
-def patience(what: str, asked_s: float | None) -> Generator[None]:
+def setup_limit(what: str, asked_s: float | None) -> Generator[None]:
     """Interrupt what takes too long to be built, `what` by name; `UserError` says so.
 
     For commands: it takes the process's alarm clock, and puts it back. Python code is interrupted,
     a library that never returns to it is not; Ctrl-C has the same bounds. Off the main thread it
-    does nothing, since signals arrive there alone. What is printed meanwhile comes in lines with
-    the name of the file.
+    does nothing, since signals arrive there alone. What is printed meanwhile goes to standard
+    error: standard output belongs to the command.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     check_limit(asked_s)
-    seconds = building_s(asked_s)
+    seconds = setup_s(asked_s)
     before = signal.signal(signal.SIGALRM, _ring)
     signal.setitimer(signal.ITIMER_REAL, seconds)
     place = what.rpartition(":")[0] or what
-    _hear[0](f"loading {place}")
+    for observer in _observers:
+        observer(f"loading {place}")
     try:
-        with prints_of(place):
+        with redirect_stdout(sys.stderr):
             yield
     except _TooLate:
-        raise too_late(what, seconds, "") from None
+        raise too_late(what, seconds) from None
     finally:
-        _hear[0](f"running {place}")
+        for observer in _observers:
+            observer(f"running {place}")
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
 
 
-def too_late(what: str, seconds: float, where: str) -> UserError:
+def too_late(what: str, seconds: float, where: str = "") -> UserError:
     """Return what to say of a system that was not built in time."""
     return UserError(
         f"system {what!r} was not built{where} within {seconds:g} s: look for what its factory or "
