@@ -239,7 +239,7 @@ def test_traceback_goes_before_and_after_the_verb(before):
 
 @pytest.mark.parametrize("place", ["factory", "file"])
 def test_a_system_that_is_never_built_is_not_waited_for(place, tmp_path, monkeypatch):
-    monkeypatch.setattr(patience, "LEAST_S", 0.5)
+    monkeypatch.setattr(setup_limit, "LEAST_S", 0.5)
     nap = "    try:\n        time.sleep(60)\n    except Exception:\n        pass"
     waits = f"import time\nwhile True:\n{nap}"
     lines = waits if place == "file" else "def create():\n    " + waits.replace("\n", "\n    ")

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 
 from faultpath.code import CodeState, Root, read_code
-from faultpath.code.places import release
 
 Files = Callable[..., Path]
 
@@ -151,9 +150,27 @@ def test_an_installed_system_is_entered_and_what_it_uses_is_not(tmp_path, monkey
     assert "zz_own.py" in read_code([Root("zz_mine")]).state.files
 
 
-def test_no_distribution_is_looked_for_that_has_a_module_of_python(monkeypatch):
-    def asked(*_: object) -> None:
-        raise AssertionError("reading what every package holds takes seconds")
-
-    monkeypatch.setattr("faultpath.code.places.distributions", asked)
-    assert release.__wrapped__("json") is None
+@pytest.mark.parametrize(
+    ("source", "found"),
+    [
+        ("import zz_a.zz_b as c, zz_d", {"zz_a/zz_b.py", "zz_d.py"}),
+        ("x = 1; from zz_a import zz_b as c", {"zz_a/zz_b.py"}),
+        ("def f():\n    class A:\n        import zz_d", {"zz_d.py"}),
+        ("try:\n    import zz_absent\nexcept ImportError:\n    import zz_d", {"zz_d.py"}),
+        ("if x:\n    pass\nelse:\n    import zz_d", {"zz_d.py"}),
+        ("match x:\n    case 1:\n        import zz_d", {"zz_d.py"}),
+        ("if TYPE_CHECKING:\n    import zz_d\nelse:\n    import zz_a.zz_b", {"zz_a/zz_b.py"}),
+        ("importlib.import_module('zz_a.zz_b')", {"zz_a/zz_b.py"}),
+        ("f = lambda: __import__('zz_d')", {"zz_d.py"}),
+        ('"""import zz_d"""  # import zz_d', set()),
+        ("import", set()),
+        ("runpy.run_path(place)", {"zz_a/zz_b.py", "zz_d.py"}),
+    ],
+)
+def test_every_import_is_found_wherever_it_stands(source, found, files):
+    root = files(zz_start=source, zz_d="", zz_a__in____init__="", zz_a__in__zz_b="")
+    seen = {
+        path.relative_to(root.resolve()).as_posix()
+        for path in read_code([Root("zz_main", root / "zz_start.py")]).sources.values()
+    }
+    assert seen - {"zz_start.py", "zz_a/__init__.py"} == found

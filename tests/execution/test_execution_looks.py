@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 from toy_study import SCENES, study
 
-from faultpath.errors import UserError
-from faultpath.execution import Interrupted, Progress, RunResult, run_study
+from faultpath.errors import Stopped, UserError
+from faultpath.execution import RunResult, run_study
 from faultpath.trials.arm import Study
 from faultpath.trials.table import OutcomeTable
+from faultpath.work import Progress
 
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 
@@ -68,10 +69,10 @@ def test_an_interrupted_run_stops_where_a_whole_one_does(stopped, tmp_path, bloc
     _, folder = stopped
 
     def cut(progress: Progress) -> None:
-        if progress.blocks_done >= blocks:
+        if progress.done >= 2 * blocks:
             raise KeyboardInterrupt
 
-    with pytest.raises(Interrupted):
+    with pytest.raises(Stopped):
         run_study(sequential(), tmp_path, workers=2, progress=cut, stop=after(6))
     run_study(sequential(), tmp_path, workers=2, stop=after(6))
     assert same(folder, tmp_path)

@@ -38,7 +38,7 @@ def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
 def test_provenance_tells_the_run(tmp_path):
     stopwatch = Stopwatch()
     result = run_study(study(), tmp_path, workers=0)
-    told = run_provenance(result, stopwatch, ["faultpath", "audit"], Here())
+    told = run_provenance(tmp_path, [], result, stopwatch, ["faultpath", "audit"], Here())
     assert (told.blocks_computed, told.blocks_kept) == (UNITS, 0)
     assert told.outcomes_sha256 == result.outcomes_sha256
     assert told.command == ("faultpath", "audit")
@@ -54,7 +54,7 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
 
     def told(name: str):
         result = run_study(mine.study(), tmp_path / name, workers=1)
-        return run_provenance(result, Stopwatch(), ["faultpath"], local(1))
+        return run_provenance(tmp_path / name, [], result, Stopwatch(), ["faultpath"], local(1))
 
     assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
     _git(tmp_path / "mine", "init", "-q")

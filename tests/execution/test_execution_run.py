@@ -8,11 +8,12 @@ import pytest
 from toy_study import FAULT, SCENES, UNITS, rows, study
 
 from faultpath.errors import UserError
-from faultpath.execution import Progress, RunResult, run_study
+from faultpath.execution import RunResult, run_study
 from faultpath.store import read_outcomes, read_traces
 from faultpath.taps import NotDelivered, UndeclaredReader
 from faultpath.trials.arm import Arm, Row, Study
 from faultpath.trials.table import TrialRow
+from faultpath.work import Progress
 
 
 @pytest.fixture(scope="session")
@@ -114,12 +115,11 @@ def test_an_arm_that_two_rows_share_runs_once(tmp_path):
 def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
     seen: list[Progress] = []
     run_study(study(), tmp_path, workers=2, progress=seen.append)
-    done = [progress.trials_done for progress in seen]
-    assert done == sorted(done)
-    assert done[0] == 0
-    assert seen[-1].trials_done == seen[-1].trials_total == 10 * len(study().arms())
-    assert seen[-1].blocks_done == seen[-1].blocks_total == UNITS
-    assert all(p.trials_done <= p.trials_estimated <= p.trials_total for p in seen)
+    rows = [int(progress.count.split()[0]) for progress in seen]
+    assert rows == sorted(rows)
+    assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
+    assert seen[-1].done == seen[-1].total == 10 * len(study().arms())
+    assert all(0 <= progress.done <= progress.total for progress in seen)
 
 
 def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:

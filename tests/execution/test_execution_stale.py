@@ -80,7 +80,7 @@ def test_an_edit_while_a_run_is_under_way_ends_it(place, mine, tmp_path):
 
 def test_without_workers_data_that_change_under_way_end_the_run(mine, tmp_path):
     def edit(progress) -> None:
-        if progress.blocks_done == 2:
+        if progress.done == 8:
             mine.data.write_text("1.0")
 
     with pytest.raises(UserError, match=r"push\.txt changed while the run was under way"):
@@ -92,18 +92,3 @@ def test_data_that_are_not_there_are_named(mine, tmp_path):
     mine.data.unlink()
     with pytest.raises(UserError, match=r"push\.txt.*data_files"):
         run_study(mine.study(), tmp_path / "run", workers=0)
-
-
-def test_a_file_that_is_read_and_not_named_is_told(mine, tmp_path):
-    told: list[str] = []
-    run_study(mine.study(), tmp_path / "named", workers=1, notice=told.append)
-    assert told == []
-    mine.file.write_text(mine.file.read_text().replace('data_files = ("push.txt",)', ""))
-    found = run_study(mine.study(), tmp_path / "unnamed", workers=1, notice=told.append)
-    (sentence,) = told
-    assert found.findings == (sentence,), "the record keeps it"
-    again = run_study(mine.study(), tmp_path / "unnamed", workers=1)
-    assert again.findings == (sentence,), "where nothing was left to fly, too"
-    assert sentence.startswith(
-        f"The system reads {mine.data.resolve()}, not named in its data_files"
-    )

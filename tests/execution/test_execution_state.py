@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.execution.attempt import Done, attempt
 from faultpath.faults import parse_fault
 from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.state import source_state, system_code
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from faultpath.execution.rechecks import Rechecks
 
 from faultpath.errors import UserError
-from faultpath.execution.rechecks import Rechecks
 from faultpath.files.opening import contents
 from faultpath.files.plain import Misread, read_json, read_yaml, yaml_text
 from faultpath.flightlog import read_columns, read_flight

@@ -10,7 +10,6 @@ from declared_toy import Declared
 import faultpath
 from faultpath.door.planned import Planned
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Done
 from faultpath.faults import Coupled, Fault
 from faultpath.faults.values import Scale
 from faultpath.interface import read_interface
@@ -18,6 +17,7 @@ from faultpath.proposal.order import makers, placed, ranked, recursion, repaired
 from faultpath.proposal.sources import Candidate, candidates
 from faultpath.proposal.words import sentences
 from faultpath.trials import Library, SceneRef, System, Variant
+from faultpath.trials.attempt import Done
 
 HERE = Path(__file__).resolve().parent
 DECLARED = f"{HERE / 'declared_toy.py'}:create"

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from faultpath.execution.attempt import Done, attempt
 from faultpath.execution.again import difference
 from faultpath.faults import parse_fault
 from faultpath.quadrotor.evidence.signals import quadrotor_signals
@@ -11,6 +10,7 @@ from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.review.hearing import fly_heard, signals
 from faultpath.store.signals import TOGETHER
 from faultpath.trials import Arm, SystemSpec, load_system
+from faultpath.trials.attempt import Done, attempt
 
 SCENE = ("selection/002",)
 

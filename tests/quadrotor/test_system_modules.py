@@ -7,7 +7,6 @@ import pytest
 import torch
 from flights import HELD_OUT, STEPS, fault, fly, quadrotor
 
-from faultpath.execution.attempt import taps_of
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Graph, consumers
 from faultpath.quadrotor.estimators.exact import ExactEstimator
@@ -18,6 +17,7 @@ from faultpath.review.flights import Trace
 from faultpath.taps import Observer, Query
 from faultpath.taps.tap import Tap
 from faultpath.trials import Arm
+from faultpath.trials.attempt import taps_of
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 FLOWN = [

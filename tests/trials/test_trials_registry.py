@@ -222,7 +222,7 @@ print([place for place in sys.path if place not in path], sys.path[: len(path)] 
 """
 
 FLY = """
-from faultpath.execution.attempt import Done, attempt
+from faultpath.trials.attempt import Done, attempt
 from faultpath.trials import Arm
 (name,), library = list(system.variants)[:1], system.library(sys.argv[2])
 assert isinstance(attempt(system, Arm(variant=name), [library.scenes[0].id]), Done)

@@ -6,7 +6,7 @@ import sys
 import sysconfig
 from collections.abc import Iterator
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, auto
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import ModuleSpec
@@ -17,27 +17,19 @@ from weakref import WeakKeyDictionary
 
 _OURS = "faultpath"
 _BY_NAME = frozenset({"import_module", "__import__"})
-_BY_PATH = frozenset(
-    {
-        "spec_from_file_location",
-        "run_path",
-        "run_module",
-        "SourceFileLoader",
-        "exec_module",
-        "walk_packages",
-        "iter_modules",
-    }
+_BY_PATH = frozenset({"spec_from_file_location", "SourceFileLoader", "exec_module"}) | frozenset(
+    {"run_path", "run_module", "walk_packages", "iter_modules"}
 )
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
 
 
 class Kind(Enum):
-    """Whose a file is."""
+    """Whose a file is: part of Python, of an installed package, or the user's own."""
 
-    STANDARD = "part of Python"
-    INSTALLED = "part of an installed package"
-    LOCAL = "the user's own"
+    STANDARD = auto()
+    INSTALLED = auto()
+    LOCAL = auto()
 
 
 @dataclass(frozen=True)
@@ -284,8 +276,10 @@ def _taken_apart(source: bytes, digest: str) -> Contents:
         elif isinstance(node, ast.ImportFrom):
             names = tuple(alias.name for alias in node.names if alias.name != "*")
             found.append((node.module or "", node.level, names))
+        test = getattr(node, "test", None)
+        typed = "TYPE_CHECKING" in (getattr(test, "attr", ""), getattr(test, "id", ""))
         for inner in ("body", "orelse", "finalbody", "handlers", "cases"):
-            children = getattr(node, inner, ())
+            children = () if typed and inner == "body" else getattr(node, inner, ())
             waiting += children if isinstance(children, list) else ()
     computed = False
     if any(word.encode() in source for word in _BY_NAME | _BY_PATH):

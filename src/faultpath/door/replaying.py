@@ -9,7 +9,6 @@ from faultpath.door.saved import read_run
 from faultpath.door.systems import choose
 from faultpath.errors import UserError
 from faultpath.execution.again import difference
-from faultpath.execution.attempt import Died, Done, Wrong
 from faultpath.execution.provenance import amend
 from faultpath.execution.runner import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
@@ -26,6 +25,7 @@ from faultpath.store.atomic import write_file
 from faultpath.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.text import unknown
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
+from faultpath.trials.attempt import Died, Done, Wrong
 from faultpath.trials.state import system_code
 from faultpath.work import Executor, local
 

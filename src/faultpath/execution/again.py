@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-from faultpath.execution.attempt import Died, Done, Reply, Wrong
 from faultpath.execution.schedule import Task, Unit
 from faultpath.files.opening import LARGEST_TEXT, contents
 from faultpath.files.plain import Misread, model_of
@@ -19,6 +18,7 @@ from faultpath.frozen import Frozen
 from faultpath.record.provenance import FlownAgain
 from faultpath.store.folder import RunFolder
 from faultpath.taps import WrittenTo
+from faultpath.trials.attempt import Died, Done, Reply, Wrong
 from faultpath.trials.outcome import Outcome
 
 Outcomes = Mapping[tuple[str, str], Outcome]

@@ -13,7 +13,6 @@ from typing import Any, Generic, Protocol, TypeVar
 from faultpath.code import Code
 from faultpath.errors import Stopped, UserError
 from faultpath.execution.again import Rechecks
-from faultpath.execution.attempt import Died, Reply, Wrong
 from faultpath.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.execution.state import Looks, RunState, Stop
 from faultpath.execution.worker import Job, Started, run_here, run_task
@@ -24,6 +23,7 @@ from faultpath.store.manifest import Manifest
 from faultpath.store.shared import SharedTrials
 from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
+from faultpath.trials.attempt import Died, Reply, Wrong
 from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.registry import load_system

@@ -5,12 +5,12 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.execution.schedule import Task, Unit
 from faultpath.store.folder import RunFolder
 from faultpath.store.tables import Shard
 from faultpath.taps import TapCount, added
 from faultpath.trials.arm import Study
+from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.trials.declared import Library
 from faultpath.trials.outcome import Outcome, failed_outcome
 from faultpath.trials.table import OutcomeTable, assemble

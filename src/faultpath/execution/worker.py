@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from faultpath.blame import explained
 from faultpath.code import CodeState, Watch, named
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Reply, Wrong, attempt
 from faultpath.trials.arm import Arm, SystemSpec
+from faultpath.trials.attempt import Reply, Wrong, attempt
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
 from faultpath.trials.system import System

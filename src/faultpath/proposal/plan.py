@@ -4,7 +4,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Raised, Wrong, attempt
 from faultpath.planning import Audit, plan_audit, variant_of
 from faultpath.proposal.order import makers, ranked, recursion, repaired_modules
 from faultpath.proposal.probing import command_responses
@@ -12,6 +11,7 @@ from faultpath.proposal.sources import Candidate, candidates, parsed
 from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
 from faultpath.results import Result
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
+from faultpath.trials.attempt import Raised, Wrong, attempt
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""

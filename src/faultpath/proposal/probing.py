@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from faultpath.arrays import Array, is_array, to_numpy
 from faultpath.blame import described
 from faultpath.errors import Notice
-from faultpath.execution.attempt import taps_of
 from faultpath.faults import AnyFault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress
 from faultpath.taps import Reading, Taps
 from faultpath.trials import Arm, LoopSystem
+from faultpath.trials.attempt import taps_of
 
 Floats: TypeAlias = NDArray[np.float64]
 Key: TypeAlias = tuple[str, str]

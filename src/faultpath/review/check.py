@@ -6,7 +6,6 @@ from functools import partial
 from typing import Literal
 
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Died, Wrong
 from faultpath.execution.runner import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
 from faultpath.faults import Fault, Offset, Replace, Scale
@@ -17,6 +16,7 @@ from faultpath.review.flights import Flight, Flown, Read, fly, fly_here, unflown
 from faultpath.review.judging import Check, Seen
 from faultpath.text import unknown
 from faultpath.trials import Arm, Library, System, SystemSpec, Variant, library_of
+from faultpath.trials.attempt import Died, Wrong
 from faultpath.trials.state import system_code
 from faultpath.work import Executor, local
 
@@ -91,7 +91,7 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
         library=library.name,
         scenes=scenes,
         seed=asked.seed,
-        checks=judging.checks(seen, sorted(crew.undeclared)),
+        checks=judging.checks(seen),
     )
 
 

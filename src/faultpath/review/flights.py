@@ -12,7 +12,6 @@ from typing_extensions import override
 from faultpath.arrays import to_numpy
 from faultpath.blame import described
 from faultpath.errors import UserError
-from faultpath.execution.attempt import Died, Done, Raised, Wrong, attempt
 from faultpath.execution.worker import Job, building
 from faultpath.taps import (
     IllegalRead,
@@ -28,6 +27,7 @@ from faultpath.taps import (
 )
 from faultpath.taps.tap import Tap
 from faultpath.trials import Arm, Outcome, System
+from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
 
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),

@@ -18,7 +18,6 @@ from typing_extensions import override
 from faultpath.arrays import is_array, to_numpy
 from faultpath.blame import described
 from faultpath.errors import SystemMistake
-from faultpath.execution.attempt import Done, Raised, Wrong, attempt
 from faultpath.execution.worker import Job, building
 from faultpath.interface import Interface, Provenance
 from faultpath.loop import Loop
@@ -26,6 +25,7 @@ from faultpath.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.taps import Observer, Query, Reading
 from faultpath.taps.tap import Tap
 from faultpath.trials import Arm, LoopSystem, Outcome, System
+from faultpath.trials.attempt import Done, Raised, Wrong, attempt
 from faultpath.trials.registry import named
 from faultpath.trials.terms import Recorded
 

@@ -7,11 +7,11 @@ from typing import Literal
 
 import numpy as np
 
-from faultpath.execution.attempt import Done
 from faultpath.execution.again import difference
 from faultpath.results import Result
 from faultpath.review.flights import MISTAKES, TRIALS, Flight, Flown
 from faultpath.trials import Outcome, System, Variant
+from faultpath.trials.attempt import Done
 from faultpath.trials.deliveries import unproven, unread
 from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
 
@@ -77,8 +77,8 @@ class Seen:
         return [f"Variant '{variant}': {error}" for error, variant in found.items()]
 
 
-def checks(seen: Seen, undeclared: Sequence[str]) -> tuple[Check, ...]:
-    """Judge all that was seen; `undeclared` are files that were read and not named."""
+def checks(seen: Seen) -> tuple[Check, ...]:
+    """Judge all that was seen."""
     flew = any(True for _ in seen.firsts())
     asked: dict[str, Callable[[Seen], Check]] = {
         "determinism": _determinism,
@@ -88,7 +88,7 @@ def checks(seen: Seen, undeclared: Sequence[str]) -> tuple[Check, ...]:
         "fault delivery": _delivery,
         "shape and unit": _readings,
     }
-    found = [_trials(seen, undeclared)]
+    found = [_trials(seen)]
     for name, judge in asked.items():
         errors = tuple(f"{said}." for said in seen.errors(name)) if name in MISTAKES else ()
         made = judge(seen) if flew else Check(name=name, says=_NOTHING, judged=False)
@@ -96,16 +96,11 @@ def checks(seen: Seen, undeclared: Sequence[str]) -> tuple[Check, ...]:
     return tuple(found)
 
 
-def _trials(seen: Seen, undeclared: Sequence[str]) -> Check:
-    """Every trial ends in an outcome, and what decides it is named."""
+def _trials(seen: Seen) -> Check:
+    """Every trial ends in an outcome."""
     failures = [
         f"{said}; let every trial end in an outcome, see it with `faultpath audit --workers 0`."
         for said in seen.errors(TRIALS)
-    ]
-    failures += [
-        f"{path} is read and not named: a change there would not be noticed; name it in the "
-        "property data_files."
-        for path in undeclared
     ]
     count = sum(len(flown.outcomes) for _, flown in seen.firsts())
     return Check(name=TRIALS, says=f"{count} under correct inputs", failures=tuple(failures))

@@ -12,7 +12,7 @@ from faultpath.trials.checks import fingerprint_of, paths_of
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 
-_FLIES = Root("faultpath.execution.attempt")
+_FLIES = Root("faultpath.trials.attempt")
 """What runs a trial, whichever system it is."""
 
 

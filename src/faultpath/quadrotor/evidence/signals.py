@@ -7,7 +7,6 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.execution.attempt import Done
 from faultpath.quadrotor.device import arithmetic
 from faultpath.quadrotor.lanes import Chunk
 from faultpath.quadrotor.platform import PLATFORM
@@ -15,6 +14,7 @@ from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.hearing import Heard, Values, added, laid_out, steps_of
 from faultpath.store.signals import Signal
+from faultpath.trials.attempt import Done
 
 _CANDIDATES = 8
 """Equal ones, for the compiled rollout, which works along them."""
