@@ -6,8 +6,8 @@ import pytest
 
 import faultpath
 from faultpath.door.listing import runs
-from faultpath.door.ranges import each_size
 from faultpath.errors import UserError
+from faultpath.faults import each_size
 
 TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
 ASKED = {
@@ -38,7 +38,7 @@ ASKED = {
         ("c=+1..-1/2", ("c=1", "c=-1")),
         (
             "g:scale=.8..1.1/4@p,onset=3",
-            tuple(f"g:scale={s}@p,onset=3" for s in (0.8, 0.9, 1, 1.1)),
+            tuple(f"g:scale={s},onset=3@p" for s in (0.8, 0.9, 1, 1.1)),
         ),
         ("g:scale=0.8..0.9/2,1.5", ("g:scale=0.8", "g:scale=0.9", "g:scale=1.5")),
     ],

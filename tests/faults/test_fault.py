@@ -3,9 +3,7 @@
 import re
 from typing import Any
 
-import numpy as np
 import pytest
-import torch
 from fault_toys import INTERFACE, calibration
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,29 +14,22 @@ from faultpath.faults import (
     ALL,
     AnyFault,
     Bias,
-    Blur,
     Coupled,
     Delay,
     Drift,
     Dropout,
     Erase,
-    Exposure,
     Fault,
     Freeze,
     Hold,
     Intermittence,
-    Jitter,
     Noise,
-    Occlusion,
     Offset,
     Quantise,
     Replace,
-    SaltAndPepper,
     Scale,
     Sequence,
     Shuffle,
-    Skew,
-    StuckRows,
     UniformScale,
 )
 
@@ -55,13 +46,6 @@ simple = st.one_of(
     st.builds(Drift, rate_per_s=constants, walk_per_sqrt_s=st.floats(0, 10)),
     st.builds(Bias, std=st.floats(0, 10), time_constant_s=st.none() | st.floats(0.1, 10)),
     st.builds(Delay, steps=counts),
-    st.builds(Jitter, steps=counts),
-    st.builds(Skew, rate=st.floats(0, 1)),
-    st.builds(Occlusion, share=st.floats(0, 1)),
-    st.builds(SaltAndPepper, probability=st.floats(0, 1)),
-    st.builds(Blur, radius=counts),
-    st.builds(Exposure, factor=st.floats(0, 9)),
-    st.builds(StuckRows, share=st.floats(0, 1)),
     st.builds(Hold, every=counts),
     st.builds(Freeze),
     st.builds(
@@ -78,14 +62,13 @@ interventions = st.recursive(
     max_leaves=3,
 )
 times = st.floats(0.1, 9)
-scene_steps = st.dictionaries(st.sampled_from(["a", "b", "c"]), counts, min_size=1)
 faults = st.builds(
     Fault,
     channel=st.just("mass"),
     intervention=interventions,
     consumers=st.sampled_from([(ALL,), ("predictor",), ("predictor.trim", "observer")]),
-    onset_step=counts | scene_steps,
-    duration_steps=counts | scene_steps,
+    onset_step=counts,
+    duration_steps=counts,
     recovery_steps=st.integers(0, 9),
     intermittence=st.none() | st.builds(Intermittence, mean_on_s=times, mean_off_s=times),
     cause=st.none() | st.just("storm"),
@@ -102,13 +85,6 @@ def test_json_round_trip_is_exact(fault: Fault | Coupled) -> None:
     again = TypeAdapter(AnyFault).validate_json(fault.model_dump_json())
     assert again == fault
     assert hash(again) == hash(fault)
-
-
-def test_a_fault_of_scenes_hashes_whatever_their_order() -> None:
-    one = Fault(channel="mass", intervention=Freeze(), onset_step={"a": 1, "b": 2})
-    two = Fault(channel="mass", intervention=Freeze(), onset_step={"b": 2, "a": 1})
-    assert one == two
-    assert hash(one) == hash(two)
 
 
 SCALE = Fault(channel="mass", intervention=Scale(factor=1.1))
@@ -219,44 +195,17 @@ def test_refuses_what_makes_no_sense(fields: dict[str, Any], message: str) -> No
         Fault.model_validate({"channel": "mass", "intervention": Freeze()} | fields)
 
 
-def weights(fault: Fault, scenes: tuple[str, ...], steps: int) -> list[list[float]]:
-    window = fault.window(scenes)
-    return [np.broadcast_to(window.weight(s), (len(scenes),)).tolist() for s in range(steps)]
+def test_a_window_begins_ends_and_recovers() -> None:
+    def weights(fault: Fault, steps: int) -> list[float]:
+        return [fault.window.weight(step) for step in range(steps)]
 
-
-def test_window_of_all_scenes() -> None:
     fault = Fault(channel="mass", intervention=Freeze(), onset_step=2)
-    assert weights(fault, ("a",), 5) == [[0], [0], [1], [1], [1]]
+    assert weights(fault, 5) == [0, 0, 1, 1, 1]
     fault = fault.model_copy(update={"duration_steps": 2})
-    assert weights(fault, ("a",), 6) == [[0], [0], [1], [1], [0], [0]]
+    assert weights(fault, 6) == [0, 0, 1, 1, 0, 0]
     fault = fault.model_copy(update={"recovery_steps": 3})
-    assert weights(fault, ("a",), 8) == [[0], [0], [1], [1], [0.75], [0.5], [0.25], [0]]
-    assert [fault.window(("a",)).over(step) for step in (6, 7)] == [False, True]
-
-
-def test_window_of_each_scene() -> None:
-    fault = Fault(
-        channel="mass",
-        intervention=Freeze(),
-        onset_step={"a": 0, "b": 1, "c": 9},
-        duration_steps=2,
-        recovery_steps=1,
-    )
-    expected = [[0, 1], [1, 1], [1, 0.5], [0.5, 0], [0, 0]]
-    assert weights(fault, ("b", "a"), 5) == expected
-    here = fault.window(("b", "a")).beside(torch.zeros(2))
-    assert [here.weight(s).tolist() for s in range(5)] == expected
-    lasting = fault.model_copy(update={"duration_steps": {"a": 3, "b": 1}, "recovery_steps": 0})
-    assert weights(lasting, ("b", "a"), 4) == [[0, 1], [1, 1], [0, 1], [0, 0]]
-    forever = fault.model_copy(update={"duration_steps": None, "recovery_steps": 0})
-    assert weights(forever, ("b", "a"), 3) == [[0, 1], [1, 1], [1, 1]]
-
-
-def test_every_scene_needs_its_onset() -> None:
-    fault = Fault(channel="mass", intervention=Freeze(), onset_step={"a": 0})
-    sentence = "fault on channel 'mass': onset_step gives no step for scene 'b'; name every scene"
-    with pytest.raises(UserError, match=sentence):
-        fault.window(("a", "b"))
+    assert weights(fault, 8) == [0, 0, 1, 1, 0.75, 0.5, 0.25, 0]
+    assert [fault.window.over(step) for step in (6, 7)] == [False, True]
 
 
 @pytest.mark.parametrize(
@@ -277,13 +226,6 @@ def test_every_scene_needs_its_onset() -> None:
             ),
             "wind delayed by 5 steps at every consumer from step 20 for 40 steps, "
             "recovering over 5",
-        ),
-        (
-            Fault(
-                channel="wind", intervention=Freeze(), onset_step={"a": 1}, duration_steps={"a": 1}
-            ),
-            "wind frozen at every consumer from a step of each scene's own for a time of each "
-            "scene's own",
         ),
         (
             calibration(0.1).striking("observer"),

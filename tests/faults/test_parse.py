@@ -15,24 +15,14 @@ from faultpath.faults import (
     Freeze,
     Hold,
     Intermittence,
-    Jitter,
     Noise,
     Offset,
     Quantise,
     Replace,
     Scale,
-    Skew,
     UniformScale,
     parse_fault,
 )
-from faultpath.text import unknown
-
-KINDS = (
-    "bias, blur, delay, drift, dropout, erase, exposure, freeze, hold, jitter, noise, occlusion, "
-    "offset, quantise, replace, salt_and_pepper, scale, shuffle, skew, stuck_rows, uniform_scale"
-)
-TARGETS = "calibration, mass, thrust, wind"
-WINDOW = "correlation, for, for_s, off, off_s, on, on_s, onset, onset_s, recover, recover_s"
 
 
 def parse(text: str) -> Fault | Coupled:
@@ -54,8 +44,6 @@ def parse(text: str) -> Fault | Coupled:
         ("mass:bias=0.1,relative", Bias(std=0.1, relative=True)),
         ("wind:bias=0.1/0/0,time_constant_s=2", Bias(std=(0.1, 0.0, 0.0), time_constant_s=2.0)),
         ("wind:delay=5", Delay(steps=5)),
-        ("wind:jitter=3", Jitter(steps=3)),
-        ("wind:skew=0.1", Skew(rate=0.1)),
         ("wind:hold=4", Hold(every=4)),
         ("wind:freeze", Freeze()),
         ("wind:erase", Erase()),
@@ -128,100 +116,53 @@ def test_time_and_consumers_of_a_preset() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"),
+    ("text", "said"),
     [
-        ("", "the text is empty; write CHANNEL:KIND=VALUE or PRESET=SIZE"),
-        ("mass:freeze,,", "something is missing between commas; write CHANNEL:KIND=VALUE"),
-        (
-            "calibraton=1",
-            "unknown preset 'calibraton'; did you mean 'calibration'? known: calibration; a fault "
-            "of one channel is CHANNEL:KIND=VALUE",
-        ),
-        ("calibration", "'calibration' needs a size, as in calibration=+0.1"),
+        ("", "the text is empty"),
+        ("mass:freeze,,", "something is missing between commas"),
+        ("calibraton=1", "unknown preset 'calibraton'; did you mean 'calibration'?"),
+        ("calibration", "'calibration' needs a size"),
         ("calibration=x", "'calibration' needs a number, not 'x'"),
         ("calibration=inf", "'calibration' needs a finite number, not 'inf'"),
         ("calibration=-1", "calibration=-1 leaves no positive mass or thrust"),
-        (
-            "calibration=0.1,relative",
-            f"unknown option 'relative'; did you mean 'correlation'? known: {WINDOW}",
-        ),
-        (
-            "wind=3",
-            "says nothing about what happens to 'wind'; write wind:KIND=VALUE, kinds: " + KINDS,
-        ),
-        ("wid:freeze", f"unknown channel 'wid'; did you mean 'wind'? known: {TARGETS}"),
-        ("wind:dely=5", unknown("kind", "dely", KINDS.split(", "))),
-        ("wind:sequence", unknown("kind", "sequence", KINDS.split(", "))),
-        ("wind:delay", "'delay' needs a value (steps), as in wind:delay=VALUE"),
+        ("calibration=0.1,relative", "unknown option 'relative'; did you mean 'correlation'?"),
+        ("wind=3", "says nothing about what happens to 'wind'"),
+        ("wid:freeze", "unknown channel 'wid'; did you mean 'wind'?"),
+        ("wind:dely=5", "unknown kind 'dely'; did you mean 'delay'?"),
+        ("wind:sequence", "unknown kind 'sequence'"),
+        ("wind:delay", "'delay' needs a value (steps)"),
         ("wind:delay=x", "'delay' needs a number, not 'x'"),
-        (
-            "wind:delay=5.5",
-            "'delay': steps is 5.5, and must be a whole number; correct the value",
-        ),
-        (
-            "wind:delay=-1",
-            "'delay': steps is -1.0, and must be a number of at least 0; correct the value",
-        ),
-        ("wind:noise=-1", "'noise': noise std must not be negative; correct the value"),
-        ("wind:freeze=3", "'freeze' takes no value; write wind:freeze"),
-        (
-            "mass:scale=1,factors=2",
-            f"unknown option 'factors'; did you mean 'for_s'? known: {WINDOW}",
-        ),
-        (
-            "mass:scale=1,on_s=1",
-            "an intermittent fault needs both mean times; give on_s= and off_s=",
-        ),
-        ("mass:scale=1,on=1,on_s=1", "'on' is given in steps and in seconds; drop one"),
+        ("wind:delay=1_0", "'delay' needs a number, not '1_0'"),
+        ("wind:delay=5.5", "steps is 5.5, and must be a whole number"),
+        ("wind:delay=-1", "steps is -1, and must be a number of at least 0"),
+        ("wind:delay=1,2", "several sizes"),
+        ("wind:noise=-1", "noise std must not be negative"),
+        ("wind:freeze=3", "'freeze' takes no value"),
+        ("mass:scale=1,factors=2", "unknown option 'factors'"),
+        ("mass:scale=1,on_s=1", "an intermittent fault needs both mean times"),
+        ("mass:scale=1,on=1,on_s=1", "'on' is given in steps and in seconds"),
         ("mass:scale=1,on=0,off=1", "'on' needs a mean time above 0"),
-        (
-            "mass:bias=1,correlation=0.5",
-            "'correlation' needs several channels, and this fault has one; name a group",
-        ),
-        (
-            "calibration:scale=2,correlation=1",
-            "'correlation' needs errors that are drawn, such as bias or noise",
-        ),
+        ("mass:bias=1,correlation=0.5", "'correlation' needs several channels"),
+        ("calibration:scale=2,correlation=1", "'correlation' needs errors that are drawn"),
         ("calibration:bias=1,correlation=2", "'correlation' needs a number from 0 to 1, not 2"),
-        ("mass:scale=1,onset=1,onset=2", "option 'onset' appears twice; drop one"),
-        ("mass:scale=1,onset=1,onset_s=1", "'onset' is given in steps and in seconds; drop one"),
+        ("mass:scale=1,onset=1,onset=2", "option 'onset' appears twice"),
+        ("mass:scale=1,onset=1,onset_s=1", "'onset' is given in steps and in seconds"),
         ("mass:scale=1,onset=x", "'onset' needs control steps, not 'x'"),
         ("mass:scale=1,onset=2.5", "onset=2.5 is not a whole number of steps, at least 0"),
         ("mass:scale=1,for=0", "for=0 is not a whole number of steps, at least 1"),
-        (
-            "mass:scale=1,for_s=0.07",
-            "for_s=0.07 is not a whole number of steps of 0.05 s each, at least 1",
-        ),
-        ("mass:scale=1,onset=1e300", "onset=1e300 is not a whole number of steps, at least 0"),
-        ("mass:scale=1,recover=3", "'recover' needs an end to recover from; add for=STEPS"),
-        ("mass:freeze@", "'@' needs a module or consumer after it, as in @planner"),
-        ("mass:freeze@a+", "'@' needs a module or consumer after it, as in @planner"),
-        (
-            "mass:freeze@a,onset=1@b",
-            "'@' appears twice; join consumers with '+', as in @planner+predictor",
-        ),
-        (
-            "mass:freeze@a@b",
-            "'@' appears twice; join consumers with '+', as in @planner+predictor",
-        ),
-        (
-            "wind:freeze@observer",
-            "channel 'wind': 'observer' does not read it; its readers: predictor, "
-            "predictor.wind_map",
-        ),
-        (
-            "wind:freeze@predict",
-            "channel 'wind': unknown consumer 'predict'; did you mean 'predictor'? known: "
-            "predictor, predictor.wind_map",
-        ),
-        (
-            "mass:offset=1/2",
-            "channel 'mass': offset does not fit: by has shape [2] and the reading of one scene "
-            "has []",
-        ),
+        ("mass:scale=1,for_s=0.07", "for_s=0.07 is not a whole number of steps of 0.05 s each"),
+        ("mass:scale=1,onset=1e300", "onset=1e300 is not a whole number of steps"),
+        ("mass:scale=1,recover=3", "'recover' needs an end to recover from"),
+        ("mass:freeze@", "'@' needs a module or consumer after it"),
+        ("mass:freeze@a+", "'@' needs a module or consumer after it"),
+        ("mass:freeze@a,onset=1@b", "'@' appears twice"),
+        ("wind:freeze@observer", "'observer' does not read it; its readers: predictor"),
+        ("wind:freeze@predict", "unknown consumer 'predict'; did you mean 'predictor'?"),
+        ("mass:offset=1/2", "by has shape [2] and the reading of one scene has []"),
     ],
 )
-def test_a_mistake_is_one_sentence(text: str, sentence: str) -> None:
+def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, said: str) -> None:
     with pytest.raises(UserError) as caught:
         parse(text)
-    assert str(caught.value) == f"fault '{text}': {sentence}"
+    assert str(caught.value).startswith(f"fault '{text}': ")
+    assert said in str(caught.value)

@@ -67,15 +67,6 @@ SAID = {
         "Mass is lost at each step with probability 30 %, and then replaced by 1.5 kg, which "
         "carries no information."
     ),
-    "wind:jitter=2": "Wind is delivered 0 to 2 steps (0.1 s) late, drawn at each step.",
-    "wind:skew=0.01": "Wind is read by a clock that loses 0.01 s in a second.",
-    "depth:occlusion=0.2": "Depth is covered over 20 % of the image, where it shows 0 m.",
-    "depth:salt_and_pepper=0.05,high=9": "Depth is set to 0 m or 9 m at 5 % of its pixels.",
-    "depth:blur=1": "Depth is averaged over 3 by 3 pixels.",
-    "depth:exposure=2,high=9": "Depth is supplied times 2, cut to 0 m at least and 9 m at most.",
-    "depth:stuck_rows=0.1": (
-        "Depth is frozen in 10 % of its rows at what they show when the fault begins."
-    ),
     "mass:replace=2": "Mass is replaced by 2 kg.",
     "wind:shuffle=1": "Wind is shuffled along axis 1.",
     "wind:freeze,onset=20,for_s=2,recover=5": (

@@ -16,14 +16,12 @@ from faultpath.faults import (
     Freeze,
     Hold,
     Intervention,
-    Jitter,
     Noise,
     Offset,
     Quantise,
     Replace,
     Scale,
     Shuffle,
-    Skew,
     UniformScale,
 )
 from faultpath.faults import Sequence as InTurn
@@ -70,8 +68,6 @@ INTERVENTIONS: tuple[Intervention, ...] = (
     Bias(std=(0.3, 0.1, 0.2)),
     Bias(std=0.3, relative=True, time_constant_s=0.2),
     Delay(steps=3),
-    Jitter(steps=3),
-    Skew(rate=0.4),
     Hold(every=4),
     Freeze(),
     Dropout(probability=0.4),

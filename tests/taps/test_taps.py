@@ -138,10 +138,6 @@ def test_steps_do_not_run_backwards() -> None:
             "fault 'mass scaled by 2 at observer' strikes nobody in this variant, which has no "
             "observer.model; leave the fault out or name other consumers",
         ),
-        (
-            {"faults": [SCALE.model_copy(update={"onset_step": {"a": 1}})]},
-            "onset_step gives no step for scene 'b'",
-        ),
     ],
 )
 def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -> None:
@@ -160,17 +156,6 @@ def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -
         (
             SCALE.model_copy(
                 update={"intervention": Freeze(), "duration_steps": 1, "recovery_steps": 1}
-            ),
-            "fault on channel 'mass': freeze cannot recover step by step in int64; leave recovery",
-        ),
-        (
-            SCALE.model_copy(
-                update={
-                    "intervention": Freeze(),
-                    "onset_step": {"a": 0, "b": 0},
-                    "duration_steps": 1,
-                    "recovery_steps": 1,
-                }
             ),
             "fault on channel 'mass': freeze cannot recover step by step in int64; leave recovery",
         ),

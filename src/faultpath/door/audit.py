@@ -10,10 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, get_args
 
 from faultpath.door.display import Display, display
-from faultpath.door.ranges import each_size
 from faultpath.door.systems import LOCAL, Chosen, choose, hands
 from faultpath.errors import UserError
-from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
 from faultpath.record import Generalise, StopRule, StopWhen
 from faultpath.setup_limit import setup_limit
@@ -105,8 +103,6 @@ def audit(
     """
     given = dict(locals())
     checked_texts(baseline=baseline, repair=repair, fault=fault, library=library)
-    if len(each_size(fault)) > 1:
-        raise UserError(f"fault '{fault}' has several sizes: audit each with faultpath.audits.")
     drawn = checked_seeds(seeds)
     called = isinstance(progress, Display) and progress.is_command
     limit = setup_limit(str(system), time_limit_s) if called else nullcontext()
@@ -119,7 +115,7 @@ def audit(
         chosen.spec,
         baseline=baseline,
         repair=repair,
-        fault=parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s),
+        fault=built.fault(fault),
         fault_text=fault,
         library=scenes_from,
         scenes=checked_count("scenes", scenes),

@@ -12,7 +12,6 @@ from faultpath.execution.again import difference
 from faultpath.execution.provenance import amend
 from faultpath.execution.runner import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
-from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
 from faultpath.record import DecisionRecord
 from faultpath.report.html import write_report
@@ -96,7 +95,7 @@ def replay(
         raise UserError(
             f"library '{asked.library}' has other scenes than the run flew: bring its file back."
         )
-    fault = parse_fault(asked.fault, system.interface, system.fault_presets, system.control_dt_s)
+    fault = system.fault(asked.fault)
     study = plan_audit(
         system,
         chosen.spec,

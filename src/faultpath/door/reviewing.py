@@ -117,12 +117,11 @@ def traced(
     fault: str | None,
 ) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
-    from faultpath.faults import parse_fault
     from faultpath.review.tracing import trace_system
 
     built = chosen.system
     struck = None
     if fault is not None:
-        struck = parse_fault(fault, built.interface, built.fault_presets, built.control_dt_s)
+        struck = built.fault(fault)
     name = variant or next(iter(built.variants))
     return trace_system(built, chosen.spec, name, library, scene, steps, seed, struck)

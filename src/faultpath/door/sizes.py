@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit
-from faultpath.door.ranges import each_size
+from faultpath.faults import each_size
 from faultpath.trials import System
 
 if TYPE_CHECKING:

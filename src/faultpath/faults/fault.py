@@ -1,17 +1,15 @@
 """A fault: a channel, the consumers that it strikes, what is done to them, and when."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
+from dataclasses import dataclass
 from typing import Annotated, Literal, Self, TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from faultpath.errors import UserError
 from faultpath.faults.draws import Draws
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
-from faultpath.faults.window import Window
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface, module_of, modules
 from faultpath.text import listed, unknown
@@ -20,12 +18,30 @@ ALL = "*"
 """Every consumer of the channel: the fault is shared."""
 
 
-def _sorted(steps: Mapping[str, int]) -> Mapping[str, int]:
-    return dict(sorted(steps.items()))
+@dataclass(frozen=True)
+class Window:
+    """From `onset` up to `end`, then `recovery` steps of linear return to the clean reading."""
 
+    onset: int
+    end: int | None
+    """`None` never comes."""
+    recovery: int
 
-Onset: TypeAlias = Annotated[int, Field(ge=0)]
-Duration: TypeAlias = Annotated[int, Field(ge=1)]
+    def over(self, step: int) -> bool:
+        """Return whether nothing is in force any more."""
+        return self.end is not None and step >= self.end + self.recovery
+
+    def weight(self, step: int) -> float:
+        """Return the share of the fault in the value: 1 in the window, 0 outside, between after it.
+
+        In recovery step k = 1 … n it is 1 - k / (n + 1), so the reading is clean again in step
+        n + 1.
+        """
+        if step < self.onset:
+            return 0.0
+        if self.end is None:
+            return 1.0
+        return min(max((self.recovery - (step - self.end)) / (self.recovery + 1), 0.0), 1.0)
 
 
 class Fault(Frozen):
@@ -40,11 +56,9 @@ class Fault(Frozen):
     intervention: AnyIntervention
     consumers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
     """Consumers (`module.place`), whole modules, or `*` for everyone who reads the channel."""
-    onset_step: Onset | Annotated[Mapping[str, Onset], AfterValidator(_sorted)] = 0
-    """First step in force; a mapping gives each scene id its own."""
-    duration_steps: Duration | Annotated[Mapping[str, Duration], AfterValidator(_sorted)] | None = (
-        None
-    )
+    onset_step: int = Field(default=0, ge=0)
+    """First step in force."""
+    duration_steps: int | None = Field(default=None, ge=1)
     """Steps in force; `None`: until the end."""
     recovery_steps: int = Field(default=0, ge=0)
     """Steps of linear return to the clean reading after `duration_steps`."""
@@ -70,10 +84,6 @@ class Fault(Frozen):
         if self.loading != 1.0 and not self.intervention.is_random():
             raise ValueError(f"{self.intervention.kind} takes no loading; leave it out")
         return self
-
-    def __hash__(self) -> int:
-        """Hash as JSON, since a mapping of scenes has no hash."""
-        return hash(self.model_dump_json())
 
     @property
     def drawn_from(self) -> str:
@@ -133,30 +143,11 @@ class Fault(Frozen):
         update = {"consumers": struck, "intervention": intervention, "cause": self.drawn_from}
         return (self.model_copy(update=update),) if struck else ()
 
-    def window(self, scenes: tuple[str, ...]) -> Window:
-        """Return when the fault is in force in `scenes`; `UserError` for one without an onset."""
-        onset, duration = self.onset_step, self.duration_steps
-        if isinstance(onset, int) and (duration is None or isinstance(duration, int)):
-            end = None if duration is None else onset + duration
-            return Window(onset, end, self.recovery_steps)
-        begins = self._aligned("onset_step", onset, scenes)
-        if duration is None:
-            return Window(begins, None, self.recovery_steps)
-        lasts = self._aligned("duration_steps", duration, scenes)
-        return Window(begins, begins + lasts, self.recovery_steps)
-
-    def _aligned(
-        self, what: str, steps: int | Mapping[str, int], scenes: tuple[str, ...]
-    ) -> NDArray[np.int64]:
-        if isinstance(steps, int):
-            return np.full(len(scenes), steps, dtype=np.int64)
-        missing = [scene for scene in scenes if scene not in steps]
-        if missing:
-            raise UserError(
-                f"fault on channel '{self.channel}': {what} gives no step for scene "
-                f"'{missing[0]}'; name every scene that runs"
-            )
-        return np.array([steps[scene] for scene in scenes], dtype=np.int64)
+    @property
+    def window(self) -> Window:
+        """When the fault is in force."""
+        end = None if self.duration_steps is None else self.onset_step + self.duration_steps
+        return Window(self.onset_step, end, self.recovery_steps)
 
     def same_numbers(self, other: "Fault") -> bool:
         """Return whether both have random numbers beside their cause's, and the same ones."""
@@ -167,16 +158,9 @@ class Fault(Frozen):
         return f"{self.channel} {self.intervention.words()} at {_at(self.consumers)}{self._when()}"
 
     def _when(self) -> str:
-        onset, duration = self.onset_step, self.duration_steps
-        words = ""
-        if not isinstance(onset, int):
-            words = " from a step of each scene's own"
-        elif onset:
-            words = f" from step {onset}"
-        if isinstance(duration, int):
-            words += f" for {duration} steps"
-        elif duration is not None:
-            words += " for a time of each scene's own"
+        words = f" from step {self.onset_step}" if self.onset_step else ""
+        if self.duration_steps is not None:
+            words += f" for {self.duration_steps} steps"
         if self.recovery_steps:
             words += f", recovering over {self.recovery_steps}"
         return words + (f", {self.intermittence.words()}" if self.intermittence else "")

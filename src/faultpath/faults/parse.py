@@ -12,8 +12,8 @@
 A correlation group may stand for its channels: `calibration:scale=1.1`.
 """
 
+import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from math import sqrt
 from typing import Any, TypeAlias
 
@@ -23,6 +23,7 @@ from faultpath.errors import UserError
 from faultpath.faults.fault import Coupled, Fault
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
+from faultpath.faults.text import FaultText
 from faultpath.interface import Interface, groups
 from faultpath.misfits import misfit_of
 from faultpath.text import listed, unknown
@@ -54,17 +55,6 @@ _ANY_FAULT = (_CORRELATION, *(f"{name}{s}" for name in (*_WINDOW, *_PHASES) for 
 """Options that every fault takes."""
 
 
-@dataclass(frozen=True)
-class _Text:
-    """Fault text taken apart, not yet understood."""
-
-    name: str
-    kind: str | None
-    value: str | None
-    options: Mapping[str, str]
-    consumers: tuple[str, ...]
-
-
 def parse_fault(
     text: str, interface: Interface, presets: Mapping[str, FaultPreset], dt_s: float
 ) -> Fault | Coupled:
@@ -73,15 +63,18 @@ def parse_fault(
     `dt_s` is the length of a control step, for options in seconds. Raises `UserError`, one sentence
     that quotes the text and names the known values.
     """
+    parts = FaultText.read(text)
     try:
-        parts = _take_apart(text)
+        if len(parts.sizes) > 1:
+            raise UserError("it has several sizes: audit each with faultpath.audits")
         when, rest = _timing(parts.options, dt_s)
         when |= _coming_and_going(rest, dt_s)
         correlation = _correlation(rest)
+        size = parts.sizes[0] if parts.sizes else None
         if parts.kind is None:
-            fault = _preset(parts, rest, interface, presets)
+            fault = _preset(parts.name, size, rest, interface, presets)
         else:
-            fault = _intervention(parts.name, parts.kind, parts.value, rest, interface)
+            fault = _intervention(parts.name, parts.kind, size, rest, interface)
         fault = _correlated(_at_time(fault, when), correlation)
         if parts.consumers:
             fault = fault.striking(*parts.consumers)
@@ -89,39 +82,6 @@ def parse_fault(
     except UserError as error:
         raise UserError(f"fault '{text}': {error}") from None
     return fault
-
-
-def _take_apart(text: str) -> _Text:
-    if not text.strip():
-        raise UserError("the text is empty; write CHANNEL:KIND=VALUE or PRESET=SIZE")
-    items: list[str] = []
-    consumers: list[str] = []
-    for item in text.split(","):
-        head, at, names = (part.strip() for part in item.partition("@"))
-        if at and (consumers or "@" in names):
-            raise UserError("'@' appears twice; join consumers with '+', as in @planner+predictor")
-        if at:
-            consumers = [name.strip() for name in names.split("+")]
-            if not all(consumers):
-                raise UserError("'@' needs a module or consumer after it, as in @planner")
-        if not head:
-            raise UserError("something is missing between commas; write CHANNEL:KIND=VALUE")
-        items.append(head)
-    what, has_value, value = items[0].partition("=")
-    name, has_kind, kind = what.partition(":")
-    options: dict[str, str] = {}
-    for item in items[1:]:
-        key, _, given = item.partition("=")
-        if key in options:
-            raise UserError(f"option '{key}' appears twice; drop one")
-        options[key] = given
-    return _Text(
-        name=name,
-        kind=kind if has_kind else None,
-        value=value if has_value else None,
-        options=options,
-        consumers=tuple(dict.fromkeys(consumers)),
-    )
 
 
 def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
@@ -193,7 +153,7 @@ def _steps(key: str, given: str, least: int, dt_s: float | None) -> int:
 
 def _number(key: str, given: str, what: str = "a number") -> float:
     try:
-        value = float(given)
+        value = float(given.replace("_", "?"))  # Python reads 1_0 as ten
     except ValueError:
         raise UserError(f"'{key}' needs {what}, not '{given}'") from None
     if value - value != 0.0:  # infinite or NaN
@@ -202,24 +162,25 @@ def _number(key: str, given: str, what: str = "a number") -> float:
 
 
 def _preset(
-    parts: _Text,
+    name: str,
+    size: str | None,
     options: Mapping[str, str],
     interface: Interface,
     presets: Mapping[str, FaultPreset],
 ) -> Coupled:
-    if parts.name not in presets:
-        if parts.name in _targets(interface):
+    if name not in presets:
+        if name in _targets(interface):
             raise UserError(
-                f"says nothing about what happens to '{parts.name}'; write "
-                f"{parts.name}:KIND=VALUE, kinds: {listed(KINDS)}"
+                f"says nothing about what happens to '{name}'; write {name}:KIND=VALUE, kinds: "
+                f"{listed(KINDS)}"
             )
-        said = unknown("preset", parts.name, presets)
+        said = unknown("preset", name, presets)
         raise UserError(f"{said}; a fault of one channel is CHANNEL:KIND=VALUE")
-    if parts.value is None:
-        raise UserError(f"'{parts.name}' needs a size, as in {parts.name}=+0.1")
+    if size is None:
+        raise UserError(f"'{name}' needs a size, as in {name}=+0.1")
     if options:
         raise UserError(unknown("option", next(iter(options)), _ANY_FAULT))
-    return presets[parts.name](_number(parts.name, parts.value))
+    return presets[name](_number(name, size))
 
 
 def _targets(interface: Interface) -> dict[str, tuple[str, ...]]:
@@ -272,7 +233,8 @@ def _value(key: str, text: str) -> Any:
         return {"kind": text}
     if "/" in text:
         return tuple(_number(key, part) for part in text.split("/"))
-    return _number(key, text)
+    # What is echoed in a refusal is what was written, -1 and not -1.0.
+    return int(text) if re.fullmatch(r"[+-]?\d{1,15}", text) else _number(key, text)
 
 
 def _at_time(fault: Fault | Coupled, when: Mapping[str, Any]) -> Fault | Coupled:

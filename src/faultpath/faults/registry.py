@@ -6,9 +6,7 @@ from pydantic import Discriminator, Field
 
 from faultpath.arrays import Array, pick
 from faultpath.faults.base import Intervention, Memory, Moment
-from faultpath.faults.clocks import Jitter, Skew
 from faultpath.faults.drift import Bias, Drift
-from faultpath.faults.images import Blur, Exposure, Occlusion, SaltAndPepper, StuckRows
 from faultpath.faults.noise import Noise
 from faultpath.faults.probes import Replace, Shuffle
 from faultpath.faults.timing import Delay, Dropout, Freeze, Hold
@@ -69,13 +67,6 @@ Listed: TypeAlias = (
     | Hold
     | Freeze
     | Dropout
-    | Jitter
-    | Skew
-    | Occlusion
-    | SaltAndPepper
-    | Blur
-    | Exposure
-    | StuckRows
     | Replace
     | Shuffle
     | Sequence

@@ -1,12 +1,12 @@
 """What a map asks: two modules of one source, how large errors may be, and how they are spread."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pydantic import Field
 
 from faultpath.errors import UserError
-from faultpath.faults import AnyFault, parse_fault
+from faultpath.faults import AnyFault, FaultText
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface, module_of
 from faultpath.record.wording import MINUS
@@ -66,20 +66,11 @@ class SizedFault:
 
     def at(self, size: float) -> AnyFault:
         """Return the fault of a size at every reader; `UserError` where it takes no such size."""
-        head, comma, options = self.text.partition(",")
-        name, colon, kind = head.partition(":")
-        if not colon and name in self.system.fault_presets:
-            sized = f"{name}={size:.12g}"
-        elif kind == "offset":
-            sized = f"{head}={size:.12g}"
-        else:
-            sized = f"{name}:scale={1.0 + size:.12g}"
-        return parse_fault(
-            sized + comma + options,
-            self.system.interface,
-            self.system.fault_presets,
-            self.system.control_dt_s,
-        )
+        asked = FaultText.read(self.text)
+        if asked.kind is None and asked.name not in self.system.fault_presets:
+            asked = replace(asked, kind="scale")
+        value = 1.0 + size if asked.kind == "scale" else size
+        return self.system.fault(str(asked.at(f"{value:.12g}")))
 
 
 def sized_fault(system: System, text: str) -> SizedFault:
@@ -87,17 +78,17 @@ def sized_fault(system: System, text: str) -> SizedFault:
 
     `UserError` for a fault that states a size or consumers, or whose size has no two signs.
     """
-    head = text.partition(",")[0]
-    name, colon, kind = (part.strip() for part in head.partition(":"))
-    if "=" in head:
+    asked = FaultText.read(text)
+    name, kind = asked.name, asked.kind
+    if asked.sizes:
         raise UserError(
-            f"fault '{text}': the map sets the size itself; leave '={head.partition('=')[2]}' out "
-            "and give the largest one with --up-to."
+            f"fault '{text}': the map sets the size itself; leave '={asked.sizes[0]}' out and give "
+            "the largest one with --up-to."
         )
-    if "@" in text:
+    if asked.consumers:
         raise UserError(f"fault '{text}': name the modules with --against, without '@'.")
-    preset = not colon and name in system.fault_presets
-    if not preset and kind not in ("", *_BOTH_SIGNS):
+    preset = kind is None and name in system.fault_presets
+    if not preset and kind not in (None, *_BOTH_SIGNS):
         raise UserError(
             f"fault '{text}': a map needs errors of both signs; use {name}:scale (relative, the "
             f"default) or {name}:offset, not '{kind}'."

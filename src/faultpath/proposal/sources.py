@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from pydantic import Field
 
 from faultpath.errors import UserError
-from faultpath.faults import AnyFault, parse_fault
-from faultpath.faults.sizes import each_size
+from faultpath.faults import AnyFault, FaultText
 from faultpath.frozen import Frozen
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
@@ -43,7 +42,7 @@ class Candidate(Frozen, allow_inf_nan=False):
 
 def parsed(system: System, text: str) -> AnyFault:
     """Return a fault from its text; `UserError` for a wrong one."""
-    return parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
+    return system.fault(text)
 
 
 def candidates(
@@ -113,7 +112,8 @@ def _candidate(
 
 
 def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
-    if len(each_size(text)) > 1 or "@" in text:
+    asked = FaultText.read(text)
+    if len(asked.sizes) > 1 or asked.consumers:
         raise UserError(
             f"fault '{text}': a plan takes one size, and strikes every module by itself: leave "
             "further sizes and '@' out."
@@ -126,7 +126,7 @@ def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
     if not consumers:
         raise UserError(f"fault '{text}' strikes nobody in either variant: neither reads it there.")
     return Candidate(
-        name=text.replace(":", "=").replace(",", "=").partition("=")[0].strip(),
+        name=asked.name,
         sources=tuple(sources),
         channels=channels,
         consumers=consumers,

@@ -102,16 +102,11 @@ def _together(faults: Sequence[Fault]) -> str:
 def _when(fault: Fault, dt_s: float) -> str:
     """Say when the fault is in force; nothing where it is so throughout."""
     at = _Reading("1", (), dt_s)
-    onset, duration = fault.onset_step, fault.duration_steps
     parts: list[str] = []
-    if not isinstance(onset, int):
-        parts.append("from a step of each scene's own")
-    elif onset:
-        parts.append(f"from step {onset} ({onset * dt_s:g} s)")
-    if isinstance(duration, int):
-        parts.append(f"for {at.steps(duration)}")
-    elif duration is not None:
-        parts.append("for a time of each scene's own")
+    if fault.onset_step:
+        parts.append(f"from step {fault.onset_step} ({fault.onset_step * dt_s:g} s)")
+    if fault.duration_steps is not None:
+        parts.append(f"for {at.steps(fault.duration_steps)}")
     if fault.recovery_steps:
         parts.append(f"then back to the reading over {at.steps(fault.recovery_steps)}")
     if fault.intermittence:
@@ -196,23 +191,6 @@ _WORDS: Mapping[str, Callable[[Any, _Reading], str]] = {
     "hold": lambda what, of: f"refreshed only every {of.steps(what.every)}",
     "freeze": lambda what, of: "frozen at what it shows when the fault begins",
     "dropout": _lost,
-    "jitter": lambda what, of: f"delivered 0 to {of.steps(what.steps)} late, drawn at each step",
-    "skew": lambda what, of: f"read by a clock that loses {what.rate:g} s in a second",
-    "occlusion": lambda what, of: (
-        f"covered over {_percent(what.share)} of the image, where it shows {of.amount(what.shows)}"
-    ),
-    "salt_and_pepper": lambda what, of: (
-        f"set to {of.amount(what.low)} or {of.amount(what.high)} at {_percent(what.probability)} "
-        "of its pixels"
-    ),
-    "blur": lambda what, of: f"averaged over {2 * what.radius + 1} by {2 * what.radius + 1} pixels",
-    "exposure": lambda what, of: (
-        f"supplied times {what.factor:g}, cut to {of.amount(what.low)} at least and "
-        f"{of.amount(what.high)} at most"
-    ),
-    "stuck_rows": lambda what, of: (
-        f"frozen in {_percent(what.share)} of its rows at what they show when the fault begins"
-    ),
     "replace": lambda what, of: f"replaced by {of.amount(what.value)}",
     "shuffle": lambda what, of: f"shuffled along axis {what.axis}",
     "sequence": lambda what, of: ", then ".join(_said(part, of) for part in what.parts),

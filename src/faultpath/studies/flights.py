@@ -8,7 +8,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.execution import RunResult
-from faultpath.faults import parse_fault
 from faultpath.studies.cells import SYSTEM, Cell, Profile, Setting
 from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
@@ -130,9 +129,7 @@ def _row(system: System, cell: Cell, seed: int) -> Row:
     faults = tuple(
         fault
         for text in cell.faults
-        for fault in parse_fault(
-            text, system.interface, system.fault_presets, system.control_dt_s
-        ).resolved(system.interface, consumers)
+        for fault in system.fault(text).resolved(system.interface, consumers)
     )
     arm = Arm(variant=cell.variant, faults=faults, seed=seed)
     return Row(variant=cell.variant, path=cell.path, seed=seed, arm=arm)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from faultpath.arrays import Array, namespace, pick, place, rows
 from faultpath.errors import UserError
-from faultpath.faults import Draws, Fault, Moment, Phases, Window
+from faultpath.faults import Draws, Fault, Moment, Phases
 from faultpath.faults.base import Memory
 from faultpath.taps.tally import Tally
 
@@ -18,13 +18,12 @@ _PHASES = -1
 class Strike:
     """A resolved fault as it acts on the deliveries of one tap."""
 
-    __slots__ = ("_draws", "_dt_s", "_memories", "_near", "_phases", "_window", "fault", "in_force")
+    __slots__ = ("_draws", "_dt_s", "_memories", "_phases", "_window", "fault", "in_force")
 
-    def __init__(self, fault: Fault, window: Window, draws: Draws, dt_s: float) -> None:
+    def __init__(self, fault: Fault, draws: Draws, dt_s: float) -> None:
         self.fault = fault
         self.in_force = Tally()
-        self._window = window
-        self._near: Window | None = None
+        self._window = fault.window
         self._draws = draws
         self._dt_s = dt_s
         self._phases: Phases | None = None
@@ -43,9 +42,8 @@ class Strike:
         if self._window.over(step):
             self._memories.clear()
             return reading, False
-        if self._near is None:
-            self._near = self._window.beside(reading)
-        elapsed, weight = step - self._near.onset, self._near.weight(step)
+        elapsed: Any = step - self._window.onset
+        weight: Any = self._window.weight(step)
         if self._phases is not None:
             elapsed = place(self._phases.elapsed(step), reading)
             weight = weight * namespace(elapsed).astype(elapsed >= 0, namespace(elapsed).float64)
@@ -85,4 +83,4 @@ class Strike:
 
     def onsets(self, n_scenes: int) -> NDArray[np.int64]:
         """Return the first step in force, `[B]`."""
-        return np.broadcast_to(np.asarray(self._window.onset, dtype=np.int64), (n_scenes,))
+        return np.full(n_scenes, self._window.onset, dtype=np.int64)

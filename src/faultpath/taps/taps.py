@@ -101,14 +101,13 @@ class Taps:
                     f"{listed(names)}; leave the fault out or name other consumers"
                 )
             for fault in everywhere:
-                window = fault.window(self._scenes)
                 made = fault.draws(self._scenes, seed)
                 drawn = draws.setdefault(
                     (made.cause, made.loading, made.own and made.own.cause), made
                 )
                 for consumer in fault.consumers:
                     if tap := self._taps.get((fault.channel, consumer)):
-                        tap.add(Strike(fault, window, drawn, dt_s))
+                        tap.add(Strike(fault, drawn, dt_s))
 
     @property
     def bindings(self) -> Mapping[str, str]:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from os import PathLike
 from types import MappingProxyType
 
-from faultpath.faults import FaultPreset
+from faultpath.faults import AnyFault, FaultPreset, parse_fault
 from faultpath.interface import Interface
 from faultpath.taps import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
@@ -57,6 +57,10 @@ class System(ABC):
     def fault_presets(self) -> Mapping[str, FaultPreset]:
         """Named faults of the command line, such as `calibration`."""
         return {}
+
+    def fault(self, text: str) -> AnyFault:
+        """Return the fault that a text states; `UserError` for one that there is not."""
+        return parse_fault(text, self.interface, self.fault_presets, self.control_dt_s)
 
     @abstractmethod
     def library(self, name: str) -> Library:

@@ -9,7 +9,7 @@ from functools import partial
 from torch import Tensor
 
 from faultpath.errors import UserError
-from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold, parse_fault
+from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
 from faultpath.quadrotor.predictors import Predictor
 from faultpath.quadrotor.reconstruction import Reconstruction
 from faultpath.quadrotor.system import Quadrotor
@@ -76,7 +76,7 @@ class Subject:
         by_window: list[AnyFault] = []
         by_recording: list[AnyFault] = []
         for text in texts:
-            fault = parse_fault(text, system.interface, system.fault_presets, system.control_dt_s)
+            fault = system.fault(text)
             parts = fault.faults if isinstance(fault, Coupled) else (fault,)
             channels = {part.channel for part in parts}
             if any(
