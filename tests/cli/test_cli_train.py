@@ -8,8 +8,8 @@ from cli_runs import ROOT, faultpath
 
 from faultpath.cli.main import INTERRUPTED
 from faultpath.quadrotor import checkpoint
-from faultpath.quadrotor.card import read_card
 from faultpath.quadrotor.training import catalogue, job_pools
+from faultpath.repairs.card import read_card
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
 from fitting_toys import Toy, entry
@@ -37,7 +37,7 @@ def test_everything_is_fitted_and_ends_in_a_table() -> None:
     rows = [line.split() for line in ended.out.splitlines()]
     (head,) = (row for row in rows if row[:2] == ["model", "seed"])
     assert head[2:] == ["parameters", "loss", "validation", "time"]
-    card = read_card(Path("runs/train/one+dcc-1.safetensors"))
+    card = read_card(Path("runs/train/one+dcc-1.safetensors"), checkpoint.ModelCard)
     (row,) = (row for row in rows if row[:2] == ["one+dcc", "1"])
     assert row[2:4] == ["32", f"{card.training_loss[-1]:.4g}"]
     assert row[4:6] == ["error", f"{card.final['error']:.4g}"]
@@ -52,14 +52,12 @@ def test_names_seeds_and_folders_are_heeded(tmp_path: Path) -> None:
     assert not (tmp_path / "runs").exists()
 
 
-def test_the_same_again_fits_nothing_until_forced(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_same_again_fits_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     card = Path("runs/train/one-0.json")
     assert _train("one").status == 0
     before = card.read_bytes()
     assert _train("one").status == 0
     assert card.read_bytes() == before
-    assert _train("one", "--force").status == 0
-    assert card.read_bytes() != before
     monkeypatch.setattr(Toy, "count", 149)
     ended = _train("one")
     assert "one-0 is fitted again: samples" in ended.out
@@ -144,7 +142,6 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(monkeypatch: pytest.MonkeyPat
         assert ended.status == INTERRUPTED
         assert "interrupted with 1 of 3 models finished" in ended.err
         assert "kept in runs/train; run the same command again to resume" in ended.err
-        assert "without --force" in _train("both", "--force").err
     assert _train("both").status == 0
 
 
@@ -168,14 +165,6 @@ def test_a_mistake_is_one_sentence(arguments, says, tmp_path: Path) -> None:
 
 def test_a_number_of_workers_below_zero_is_refused() -> None:
     assert "-2" in faultpath("train", "quadrotor", "one", "--workers", -2).refused()
-
-
-def test_tensorboard_that_is_missing_is_said_before_the_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setitem(sys.modules, "torch.utils.tensorboard", None)
-    assert "'.[tensorboard]'" in _train("one", "--tensorboard", "board").refused()
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_list_names_every_model() -> None:

@@ -41,9 +41,9 @@ def _library(path: Path) -> object:
 
 
 def _card(path: Path) -> object:
-    from faultpath.quadrotor.card import read_card
+    from faultpath.quadrotor.checkpoint import ModelCard
 
-    return read_card(path)
+    return read_card(path, ModelCard)
 
 
 def _shard(path: Path) -> object:

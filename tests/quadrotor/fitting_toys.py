@@ -12,7 +12,8 @@ from torch.nn import functional
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.training.catalogue import Entry
-from faultpath.quadrotor.training.task import Schedule, Task
+from faultpath.quadrotor.training.fitting import ModelTask
+from faultpath.repairs.card import Schedule
 from faultpath.streams import generator
 
 
@@ -34,7 +35,7 @@ class Net(nn.Module):
         return self.last @ torch.tanh(self.first @ (x * self.scale[:, None]))
 
 
-class Toy(Task):
+class Toy(ModelTask):
     """Regression of a sum; `magnitude` scales the corruption that each epoch draws."""
 
     def __init__(self, seed: int = 0, magnitude: float | None = None, **schedule: Any) -> None:
@@ -95,7 +96,7 @@ class Toy(Task):
         }
 
 
-def make(name: str, seed: int, data: Path) -> Task:
+def make(name: str, seed: int, data: Path) -> ModelTask:
     """Make a task for the catalogue; the file `data/gate` slows it down while it exists."""
     if name == "mistake":
         raise UserError("the toy has no data: make some.")

@@ -28,7 +28,6 @@ def short():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(flight, "EPISODE_STEPS", 10)
         patch.setattr(flight, "EPISODE_S", 0.5)
-        patch.setattr(collection, "EPISODE_STEPS", 10)
         patch.setattr(collection, "BATCH", 3)
         yield
 
@@ -54,7 +53,7 @@ def test_a_pool_has_a_row_for_each_control_instant_in_single_precision(pools):
         assert table.column_names == ["episode", "step", *COMPONENTS]
         assert {str(table.schema.field(name).type) for name in COMPONENTS} == {"float"}
         assert len(pool.steps) == SMALL[name]
-        assert table.num_rows == (pool.steps + 1).sum() == pool.provenance.rows
+        assert table.num_rows == (pool.steps + 1).sum()
         expected = np.concatenate([np.arange(steps + 1) for steps in pool.steps])
         assert np.array_equal(table.column("step").to_numpy(), expected)
         assert (np.diff(table.column("episode").to_numpy()[expected == 0]) == 1).all()
@@ -102,8 +101,8 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
         collect(tmp_path, workers=0, episodes=SMALL, progress=interrupt)
     seen = []
     paths = collect(tmp_path, workers=0, episodes=SMALL, progress=lambda *told: seen.append(told))
-    assert seen[0] == (3, 12)
-    assert seen[-1] == (12, 12)
+    assert seen[0] == (3, 5)
+    assert seen[-1] == (7, 7)
     assert contents(paths) == contents(pools)
     assert not any(path.is_dir() for path in tmp_path.iterdir())
 
@@ -111,7 +110,6 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
 def test_a_killed_collection_of_two_workers_ends_as_one_of_this_process(tmp_path, monkeypatch):
     monkeypatch.setattr(flight, "EPISODE_S", 6.0)
     monkeypatch.setattr(flight, "EPISODE_STEPS", 120)  # other processes fly whole episodes
-    monkeypatch.setattr(collection, "EPISODE_STEPS", 120)
     monkeypatch.setattr(collection, "BATCH", 1)
     killed, whole = tmp_path / "killed", tmp_path / "whole"
     script = (
@@ -134,7 +132,7 @@ def test_a_pool_that_is_there_is_kept(pools, tmp_path):
     seen = []
     collect(tmp_path, ("nominal",), 0, SMALL, progress=lambda *told: seen.append(told))
     assert first.stat().st_mtime_ns == stamp
-    assert seen == [(0, 0)]
+    assert seen == []
 
 
 def test_a_pool_of_another_seed_is_another_pool_and_is_not_overwritten(pools, tmp_path):
@@ -152,14 +150,8 @@ def test_provenance_says_how_the_pool_was_made(pools):
         assert told["pool"] == name
         assert told["seed"] == 0
         assert told["episodes"] == SMALL[name]
-        assert told["flight"]["controller"]["speed_mps"]
-        assert told["flight"]["perturbation"]["correlation"]
-        assert told["vehicle"]["mass"] == 0.5
-        assert bool(told["wind"]) == (name == "wind")
         assert told["code_sha256"] == code_sha256()
         assert {"numpy", "torch", "pyarrow"} <= told["packages"].keys()
-        assert told["vehicle_seconds"] <= SMALL[name] * 6.0
-        assert told["ended_early"] == (read_pool(path).steps < 10).sum()
         assert read_provenance(path) == read_pool(path).provenance
 
 

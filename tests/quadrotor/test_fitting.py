@@ -9,12 +9,16 @@ import torch
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
-from faultpath.quadrotor.card import read_card
-from faultpath.quadrotor.training import fitting
-from faultpath.quadrotor.training.fitting import Diverged, fit, forget
-from faultpath.quadrotor.training.journal import journal_path
-from faultpath.quadrotor.training.task import Schedule
+from faultpath.quadrotor.checkpoint import ModelCard
+from faultpath.quadrotor.training.fitting import fit, journal_path
+from faultpath.repairs.card import Schedule
+from faultpath.repairs.card import read_card as read
+from faultpath.repairs.loop import Diverged, Moment, minibatches
 from faultpath.store.atomic import write
+
+
+def read_card(path: Path) -> ModelCard:
+    return read(path, ModelCard)
 
 
 def _silent(text: str) -> None:
@@ -38,7 +42,7 @@ def test_fitting_helps_and_its_card_says_so(tmp_path: Path) -> None:
     assert card.final["error"] < 0.5 * card.validation[0]["error"]
     assert card.first_loss > card.training_loss[1]
     assert (card.parameters, card.samples) == (32, 150)
-    assert card.schedule["epochs"] == 20
+    assert card.schedule.epochs == 20
     assert card.data_sha256 == {"toy": "3fa9"}
     assert card.config == {"magnitude": 0.0}
     assert card.description == "a toy"
@@ -72,14 +76,13 @@ def test_a_stop_at_any_write_loses_no_bits(
         folder = tmp_path / str(survived)
         writes = itertools.count()
 
-        def stopping(path, data, original=write, limit=survived, writes=writes):
+        def stopping(path, data, inside, original=write, limit=survived, writes=writes):
             if next(writes) == limit:
                 raise KeyboardInterrupt
             original(path, data)
 
         with monkeypatch.context() as patch:
-            patch.setattr("faultpath.quadrotor.training.journal.write", stopping)
-            patch.setattr("faultpath.quadrotor.checkpoint.write", stopping)
+            patch.setattr("faultpath.store.atomic.write", stopping)
             try:
                 _fit(Toy(), folder)
             except KeyboardInterrupt:
@@ -112,12 +115,12 @@ def test_the_global_generator_has_no_say(reference: bytes, tmp_path: Path) -> No
 
 def test_the_order_is_a_new_permutation_each_epoch() -> None:
     task = Toy()
-    first, again, second = (torch.cat(fitting._minibatches(task, e)) for e in (0, 0, 1))
+    first, again, second = (torch.cat(minibatches(task, e)) for e in (0, 0, 1))
     assert torch.equal(first, again)
     assert not torch.equal(first, second)
     for order in (first, second):
         assert torch.equal(order.sort().values, torch.arange(task.count))
-    assert [len(batch) for batch in fitting._minibatches(task, 0)] == [32, 32, 32, 32, 22]
+    assert [len(batch) for batch in minibatches(task, 0)] == [32, 32, 32, 32, 22]
 
 
 def test_a_finished_model_is_left_alone(tmp_path: Path) -> None:
@@ -194,7 +197,7 @@ def test_a_loss_that_is_no_number_stops_with_the_last_good_state(tmp_path: Path)
 
 def test_weights_that_are_no_numbers_are_not_kept(tmp_path: Path) -> None:
     with pytest.raises(Diverged, match="epoch 1 of 4"):
-        _fit(Toy(learning_rate=float("inf")), tmp_path)
+        _fit(Toy(learning_rate=1e36), tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -204,18 +207,10 @@ def test_the_norm_of_the_gradient_is_clipped(reference: bytes, tmp_path: Path) -
 
 
 def test_progress_rises_to_one(tmp_path: Path) -> None:
-    moments: list[fitting.Moment] = []
+    moments: list[Moment] = []
     fit(Toy(epochs=2), tmp_path, moments.append, notice=_silent)
     assert [moment.fraction for moment in moments] == pytest.approx([k / 10 for k in range(1, 11)])
     assert [moment.epoch for moment in moments] == [0] * 5 + [1] * 5
-
-
-def test_forgetting_removes_model_and_journal_and_nothing_else(tmp_path: Path) -> None:
-    for seed in (0, 1):
-        fit(Toy(seed), tmp_path, notice=_silent)
-    journal_path(tmp_path / "toy-0.safetensors").touch()
-    forget("toy", 0, tmp_path)
-    assert sorted(item.name for item in tmp_path.iterdir()) == ["toy-1.json", "toy-1.safetensors"]
 
 
 def test_the_digest_covers_no_time(tmp_path: Path) -> None:

@@ -10,24 +10,23 @@ import pytest
 from fitting_toys import Toy, entry
 
 from faultpath.errors import Stopped, UserError
-from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
-from faultpath.quadrotor.training.collection import EPISODES
-from faultpath.quadrotor.training.fitting import Moment, fit
+from faultpath.quadrotor.training.collection import EPISODES, recipe
+from faultpath.quadrotor.training.fitting import fit, journal_path
 from faultpath.quadrotor.training.job_pools import missing_pools
-from faultpath.quadrotor.training.jobs import Overview, Places, Report, run_jobs
-from faultpath.quadrotor.training.journal import journal_path
+from faultpath.quadrotor.training.jobs import Failure, Overview, run_jobs
 from faultpath.quadrotor.training.provenance import Provenance
-from faultpath.quadrotor.vehicle import VehicleRanges
+from faultpath.repairs.loop import Moment
 from faultpath.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent
 
 
-def _run(tmp_path: Path, wanted: list[Job], workers: int = 0, **more) -> Report:
-    places = Places(tmp_path / "data", tmp_path / "out")
-    return run_jobs(wanted, places, workers, lambda _: None, lambda _: None, **more)
+def _run(tmp_path: Path, wanted: list[Job], workers: int = 0, told=lambda _: None, **more):
+    return run_jobs(
+        wanted, tmp_path / "data", tmp_path / "out", workers, told, lambda _: None, **more
+    )
 
 
 def test_without_names_everything_comes_in_order_of_dependence() -> None:
@@ -85,39 +84,19 @@ def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("pool", ["nominal", "trajectory"])
-def test_a_pool_of_other_code_is_not_fitted_on(
-    pool: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> None:
     model = {"nominal": "wm-a", "trajectory": "gru-trajectory"}[pool]
     wanted = [job for job in choose([model]) if job.seed == 0]
-    code = {"nominal": job_pools, "trajectory": trajectories}[pool].code_sha256()
-    provenance = Provenance(
-        pool=pool,
-        episodes=1,
-        seed=0,
-        flight=PLATFORM.collection,
-        vehicle=PLATFORM.ranges,
-        wind={},
-        code_sha256=code,
-        faultpath_version="0",
-        packages={},
-        rows=1,
-        vehicle_seconds=1.0,
-        ended_early=0,
-        rows_sha256="",
-        episodes_sha256="",
+    asked = recipe(pool) if pool == "nominal" else trajectories.recipe()
+    found = Provenance(
+        **dict(asked), faultpath_version="0", packages={}, rows_sha256="", episodes_sha256=""
     )
     path = tmp_path / f"{pool}.json"
-    path.write_bytes(provenance.encode())
+    path.write_bytes(found.encode())
     job_pools.check_pools(wanted, tmp_path)
-    path.write_bytes(provenance.model_copy(update={"code_sha256": "other"}).encode())
+    path.write_bytes(found.model_copy(update={"code_sha256": "other"}).encode())
     with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
-        run_jobs(wanted, Places(tmp_path, tmp_path / "out"), 0, print, print)
-    heavier = {"vehicle": VehicleRanges(mass=0.9)}
-    path.write_bytes(provenance.model_copy(update=heavier).encode())
-    if pool == "nominal":  # of flights in closed loop the code tells, by the platform's hash
-        with pytest.raises(UserError, match="was collected for another platform than this"):
-            job_pools.check_pools(wanted, tmp_path)
+        run_jobs(wanted, tmp_path, tmp_path / "out", 0, print, print)
 
 
 def test_each_missing_pool_is_made_by_its_own_collector(
@@ -152,12 +131,11 @@ def test_each_missing_pool_is_made_by_its_own_collector(
 @pytest.mark.slow
 def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> None:
     good, bug, dies = (Job(entry(name), 0) for name in ("good", "bug", "dies"))
-    alone, beside = _run(tmp_path / "0", [good]), _run(tmp_path / "2", [bug, dies, good], 2)
-    for ours, theirs in zip(alone.cards, beside.cards, strict=True):
-        same = {"duration_s"}
-        assert ours.model_dump(exclude=same) == theirs.model_dump(exclude=same)
-    assert [failure.job.stem for failure in beside.failures] == ["bug-0", "dies-0"]
-    broken, killed = beside.failures
+    (alone,) = _run(tmp_path / "0", [good])
+    broken, killed, beside = _run(tmp_path / "2", [bug, dies, good], 2)
+    same = {"duration_s"}
+    assert alone.model_dump(exclude=same) == beside.model_dump(exclude=same)
+    assert [failure.job.stem for failure in (broken, killed)] == ["bug-0", "dies-0"]
     assert broken.error == "ZeroDivisionError: the toy is broken"
     assert broken.details is not None
     assert "Traceback" in broken.details.read_text()
@@ -170,8 +148,7 @@ def _order(tmp_path: Path, wanted: list[Job]) -> list[str]:
     def note(now: Overview) -> None:
         seen.extend(stem for stem in now.running if stem not in seen)
 
-    places = Places(tmp_path / "data", tmp_path / "out")
-    run_jobs(wanted, places, 0, note, lambda _: None)
+    _run(tmp_path, wanted, told=note)
     return seen
 
 
@@ -182,23 +159,16 @@ def test_the_longest_goes_first(tmp_path: Path) -> None:
 
 
 def test_a_model_that_fails_stops_no_other(tmp_path: Path) -> None:
-    report = _run(tmp_path, [Job(entry(name), 0) for name in ("bug", "mistake", "good")])
-    assert [card.stem for card in report.cards] == ["good-0"]
-    bug, mistake = report.failures
+    bug, mistake, good = _run(
+        tmp_path, [Job(entry(name), 0) for name in ("bug", "mistake", "good")]
+    )
+    assert good.stem == "good-0"
+    assert isinstance(bug, Failure)
     assert mistake.error == "the toy has no data: make some."
     assert mistake.details is None
     assert bug.error == "ZeroDivisionError: the toy is broken"
     assert bug.details is not None
     assert "Traceback" in bug.details.read_text()
-
-
-def test_force_fits_again(tmp_path: Path) -> None:
-    wanted = [Job(entry("one"), 0)]
-    first = _run(tmp_path, wanted).cards[0]
-    assert _run(tmp_path, wanted).cards[0] == first
-    again = _run(tmp_path, wanted, force=True).cards[0]
-    assert again != first
-    assert again.weights_sha256 == first.weights_sha256
 
 
 def test_finished_models_are_shipped_when_asked(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,9 +214,8 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(
             raise KeyboardInterrupt
 
     monkeypatch.setattr(processes_of_work._Process, "__init__", note)
-    places = Places(tmp_path / "data", tmp_path / "out")
     with pytest.raises(Stopped, match="with 0 of 1 models finished"):
-        run_jobs([Job(entry("slow"), 0)], places, 1, stop, lambda _: None)
+        _run(tmp_path, [Job(entry("slow"), 0)], 1, stop)
     assert [process.returncode for process in processes] == [-signal.SIGKILL]
     _finishes_to_the_same_bits(tmp_path)
 
@@ -257,10 +226,9 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from fitting_toys import entry
 from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.jobs import Places, run_jobs
+from faultpath.quadrotor.training.jobs import run_jobs
 place = Path(sys.argv[2])
-places = Places(place / "data", place / "out")
-run_jobs([Job(entry("slow"), 0)], places, 1, lambda _: None, print)
+run_jobs([Job(entry("slow"), 0)], place / "data", place / "out", 1, lambda _: None, print)
 """
 
 
@@ -295,8 +263,7 @@ def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.Monke
 def test_the_whole_counts_models_by_their_cost_and_names_those_at_work(tmp_path: Path) -> None:
     seen: list[Overview] = []
     wanted = [Job(entry(name, cost=cost), 0) for name, cost in (("long", 3.0), ("short", 1.0))]
-    places = Places(tmp_path / "data", tmp_path / "out")
-    run_jobs(wanted, places, 0, seen.append, lambda _: None)
+    _run(tmp_path, wanted, told=seen.append)
     assert [now.fraction for now in seen] == sorted(now.fraction for now in seen)
     (between,) = {now.fraction for now in seen if now.done == 1 and not now.running}
     assert between == pytest.approx(3 / 4)

@@ -2,10 +2,10 @@
 
 import pytest
 import torch
+from faultpath.quadrotor.card import read_card
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import models
-from faultpath.quadrotor.card import read_card
 from faultpath.quadrotor.checkpoint import shipped_folder
 from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.platform import PLATFORM, Platform

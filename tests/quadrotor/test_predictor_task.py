@@ -10,8 +10,8 @@ from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.fitting import fit
 from faultpath.quadrotor.training.predictor_task import RECIPES, PredictorTask
 from faultpath.quadrotor.training.replay import correct, predict
-from faultpath.quadrotor.training.task import Schedule
 from faultpath.quadrotor.training.windows import windows_of
+from faultpath.repairs.card import Schedule
 
 EPISODES = {"nominal": 70, "wind": 70}
 

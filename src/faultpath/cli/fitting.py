@@ -26,9 +26,9 @@ from faultpath.tables import MISSING, Line, Table, line
 from faultpath.tables.terminal import drawn
 
 if TYPE_CHECKING:
-    from faultpath.quadrotor.card import ModelCard
+    from faultpath.quadrotor.checkpoint import ModelCard
     from faultpath.quadrotor.training.catalogue import Job
-    from faultpath.quadrotor.training.jobs import Overview, Report
+    from faultpath.quadrotor.training.jobs import Failure, Overview
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,7 @@ class TrainRequest:
     data: Path
     out: Path
     workers: int
-    tensorboard: Path | None
     ship: bool
-    force: bool
 
 
 def list_models() -> None:
@@ -62,25 +60,30 @@ def train(request: TrainRequest) -> int:
     and data that cannot be collected.
     """
     from faultpath.quadrotor.training.catalogue import choose, stages
-    from faultpath.quadrotor.training.fitting import tensorboard_writer
     from faultpath.quadrotor.training.job_pools import check_pilots
+    from faultpath.quadrotor.training.jobs import Failure
     from faultpath.store import make_folder
 
     console = SafeConsole()
     failed = 0
     chosen = choose(request.names, request.seeds)
-    if request.tensorboard is not None:
-        tensorboard_writer()
     if not request.ship:
         check_pilots(chosen)
-    for place in (request.out, request.tensorboard, request.data):
-        if place is not None:
-            make_folder(place)  # before the flights: what cannot be kept need not be collected
+    for place in (request.out, request.data):
+        make_folder(place)  # before the flights: what cannot be kept need not be collected
     for jobs in stages(chosen):
         _collect(console, jobs, request)
-        report = _fit(console, jobs, request)
-        _tell(console, report, request.out)
-        failed += len(report.failures)
+        found = _fit(console, jobs, request)
+        failures = [each for each in found if isinstance(each, Failure)]
+        for failure in failures:
+            said = f"{failure.job.stem} was not fitted: {failure.error}"
+            said += f" ({failure.details})" if failure.details else ""
+            console.print(Text(said, style="bold red"), soft_wrap=True)
+        cards = [each for each in found if not isinstance(each, Failure)]
+        if cards:
+            console.print(drawn(result_table(cards), one_line=True))
+            console.print(f"Checkpoints: {request.out}", markup=False, soft_wrap=True)
+        failed += len(failures)
     return failed
 
 
@@ -101,16 +104,6 @@ def _line(card: ModelCard) -> Line:
         MISSING if value is None else f"{metric} {value:.4g}",
         _duration(card.duration_s),
     )
-
-
-def _tell(console: SafeConsole, report: Report, out: Path) -> None:
-    for failure in report.failures:
-        line = f"{failure.job.stem} was not fitted: {failure.error}"
-        line += f" ({failure.details})" if failure.details else ""
-        console.print(Text(line, style="bold red"), soft_wrap=True)
-    if report.cards:
-        console.print(drawn(result_table(report.cards), one_line=True))
-        console.print(f"Checkpoints: {out}", markup=False, soft_wrap=True)
 
 
 def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> None:
@@ -140,8 +133,10 @@ def _collect(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -
             ) from None
 
 
-def _fit(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> Report:
-    from faultpath.quadrotor.training.jobs import Places, run_jobs
+def _fit(
+    console: SafeConsole, jobs: Sequence[Job], request: TrainRequest
+) -> tuple[ModelCard | Failure, ...]:
+    from faultpath.quadrotor.training.jobs import run_jobs
 
     with _progress(console) as bar:
         whole = bar.add_task("Fitting", total=1.0, news="")
@@ -161,12 +156,12 @@ def _fit(console: SafeConsole, jobs: Sequence[Job], request: TrainRequest) -> Re
 
         return run_jobs(
             jobs,
-            Places(request.data, request.out, request.tensorboard),
+            request.data,
+            request.out,
             request.workers,
             show,
             lambda text: bar.console.print(text, markup=False, soft_wrap=True),
             shipped=request.ship,
-            force=request.force,
         )
 
 

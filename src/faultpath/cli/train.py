@@ -41,14 +41,8 @@ def command(
         int | None,
         typer.Option(help="Worker processes, 0 for this process alone; default one per core."),
     ] = None,
-    tensorboard: Annotated[
-        Path | None, typer.Option(parser=path, help="Folder for the curves of TensorBoard.")
-    ] = None,
     ship: Annotated[
         bool, typer.Option("--ship", help="Copy finished checkpoints into the package.")
-    ] = False,
-    force: Annotated[
-        bool, typer.Option("--force", help="Fit from the start what is fitted already.")
     ] = False,
     list_: Annotated[bool, typer.Option("--list", help="List the models and end.")] = False,
 ) -> int:
@@ -63,9 +57,7 @@ def command(
             data=data,
             out=out,
             workers=workers,
-            tensorboard=tensorboard,
             ship=ship or None,
-            force=force or None,
         )
         list_models()
         return 0
@@ -75,8 +67,6 @@ def command(
         data=data or Path("data"),
         out=out or Path("runs/train"),
         workers=(os.cpu_count() or 1) if workers is None else workers,
-        tensorboard=tensorboard,
         ship=ship,
-        force=force,
     )
     return FAILED_MODELS if train(request) else 0

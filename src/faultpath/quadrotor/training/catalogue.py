@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.card import stem
 
 if TYPE_CHECKING:
-    from faultpath.quadrotor.training.task import Task
+    from faultpath.quadrotor.training.fitting import ModelTask
 
-Factory = Callable[[str, int, Path], "Task"]
+Factory = Callable[[str, int, Path], "ModelTask"]
 """Makes a task from its name, its seed and the folder of the data; a function of a module, so that
 worker processes find it."""
 
@@ -51,26 +50,26 @@ class Job:
     @property
     def stem(self) -> str:
         """Name of its files without their ending."""
-        return stem(self.entry.name, self.seed)
+        return f"{self.entry.name}-{self.seed}"
 
-    def task(self, data: Path) -> Task:
+    def task(self, data: Path) -> ModelTask:
         """Return what is to be fitted, with data from a folder."""
         return self.entry.factory(self.entry.name, self.seed, data)
 
 
-def _predictor(name: str, seed: int, data: Path) -> Task:
+def _predictor(name: str, seed: int, data: Path) -> ModelTask:
     from faultpath.quadrotor.training.predictor_task import PredictorTask
 
     return PredictorTask(name, seed, data)
 
 
-def _reconstruction(name: str, seed: int, data: Path) -> Task:
+def _reconstruction(name: str, seed: int, data: Path) -> ModelTask:
     from faultpath.quadrotor.training.reconstruction_task import ReconstructionTask
 
     return ReconstructionTask(name, seed, data)
 
 
-def _clearance(name: str, seed: int, data: Path) -> Task:
+def _clearance(name: str, seed: int, data: Path) -> ModelTask:
     from faultpath.quadrotor.training.clearance_task import ClearanceTask
 
     del name

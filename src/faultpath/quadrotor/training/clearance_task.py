@@ -17,7 +17,8 @@ from faultpath.quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
-from faultpath.quadrotor.training.task import Schedule, Task
+from faultpath.quadrotor.training.fitting import ModelTask
+from faultpath.repairs.card import Schedule
 from faultpath.streams import generator
 
 VALIDATION_FROM = 90
@@ -30,7 +31,7 @@ KINK_M = 0.05
 _CHUNK = 128
 
 
-class ClearanceTask(Task):
+class ClearanceTask(ModelTask):
     """One clearance model: absolute error of the truncated distance, censored at its bounds.
 
     Where the label is at a bound, an estimate beyond it is right as well, because it is clipped

@@ -4,16 +4,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
-from faultpath.errors import UserError
 from faultpath.quadrotor.checkpoint import checkpoint_path
 from faultpath.quadrotor.training import clearance_data, trajectories
 from faultpath.quadrotor.training.catalogue import CLEARANCE_POOL, Job
-from faultpath.quadrotor.training.collection import collect, different, recipe
-from faultpath.quadrotor.training.provenance import (
-    code_sha256,
-    provenance_path,
-    read_provenance,
-)
+from faultpath.quadrotor.training.collection import collect, is_there, recipe
+from faultpath.quadrotor.training.provenance import provenance_path
 
 
 def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
@@ -23,26 +18,12 @@ def missing_pools(jobs: Sequence[Job], data: Path) -> tuple[str, ...]:
 
 
 def check_pools(jobs: Sequence[Job], data: Path) -> None:
-    """Raise `UserError` where a pool that some jobs need was collected by other code than this, or
-    for another platform."""
+    """Raise `UserError` where a pool that some jobs need was made by other code, or otherwise."""
     for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
-        path = data / f"{pool}.parquet"
-        if pool == CLEARANCE_POOL or (found := read_provenance(path)) is None:
-            continue  # the depth images are checked where they are read
-        flown = pool == trajectories.POOL
-        code = trajectories.code_sha256() if flown else code_sha256()
-        if found.code_sha256 != code:
-            raise UserError(
-                f"the pool at {path} was collected by other code than this, with faultpath "
-                f"{found.faultpath_version}: delete {path.with_suffix('.json')} to collect it "
-                "again, or give another folder of data"
-            )
-        asked = None if flown else recipe(pool)
-        if asked and {"flight", "vehicle", "wind"} & set(different(found, asked)):
-            raise UserError(
-                f"the pool at {path} was collected for another platform than this: give "
-                "another folder of data"
-            )
+        there = provenance_path(data / pool).is_file()
+        if there and pool != CLEARANCE_POOL:  # the depth images are checked where they are read
+            asked = trajectories.recipe() if pool == trajectories.POOL else recipe(pool)
+            is_there(data / f"{pool}.parquet", asked)
 
 
 def check_pilots(jobs: Sequence[Job]) -> None:

@@ -13,26 +13,18 @@ from pathlib import Path
 
 from faultpath.errors import Stopped, UserError
 from faultpath.quadrotor import native
-from faultpath.quadrotor.card import ModelCard, read_card
-from faultpath.quadrotor.checkpoint import ship
+from faultpath.quadrotor.checkpoint import ModelCard, ship
 from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.fitting import Moment, fit, forget
+from faultpath.quadrotor.training.fitting import fit
 from faultpath.quadrotor.training.job_pools import check_pools
+from faultpath.repairs.card import read_card
+from faultpath.repairs.loop import Moment
 from faultpath.store import make_folder
 from faultpath.store.atomic import sweep
 from faultpath.store.lock import locked
-from faultpath.work import End, Lost, Returned, local, run_each, tell
+from faultpath.work import Lost, Returned, local, run_each, tell
 
 _TELL_EVERY_S = 0.2
-
-
-@dataclass(frozen=True)
-class Places:
-    """Folders that a fit reads and writes."""
-
-    data: Path
-    out: Path
-    tensorboard: Path | None = None
 
 
 @dataclass(frozen=True)
@@ -42,14 +34,6 @@ class Failure:
     job: Job
     error: str
     details: Path | None = None
-
-
-@dataclass(frozen=True)
-class Report:
-    """What came of the jobs, in their order."""
-
-    cards: tuple[ModelCard, ...]
-    failures: tuple[Failure, ...]
 
 
 @dataclass(frozen=True)
@@ -66,25 +50,25 @@ class Overview:
 
 def run_jobs(
     jobs: Sequence[Job],
-    places: Places,
+    data: Path,
+    out: Path,
     workers: int,
     progress: Callable[[Overview], None],
     notice: Callable[[str], None],
     shipped: bool = False,
-    force: bool = False,
-) -> Report:
-    """Fit models, the longest first, from wherever an earlier call left them.
+) -> tuple[ModelCard | Failure, ...]:
+    """Fit models, the longest first, from wherever an earlier call left them, into a folder.
 
-    `workers` is the number of processes; 0 fits in this one. `progress` is called a few times
-    a second, `notice` with sentences for the user. `shipped` copies each finished model into the
-    package; `force` removes what the folder holds of the models first.
+    Returns what came of the jobs, in their order. `workers` is the number of processes; 0 fits in
+    this one. `progress` is called a few times a second, `notice` with sentences for the user.
+    `shipped` copies each finished model into the package.
 
     A model that fails does not stop the others. Raises `Stopped` on Ctrl-C and `UserError` when
     nothing can be fitted at all.
     """
     executor = local(workers)
-    check_pools(jobs, places.data)
-    make_folder(places.out)
+    check_pools(jobs, data)
+    make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
     running: dict[str, Moment | None] = {}
     results: dict[str, ModelCard | Failure] = {}
@@ -104,49 +88,40 @@ def run_jobs(
         show()
 
     try:
-        with locked(places.out, notice):
-            sweep(places.out)
-            for job in jobs if force else ():
-                forget(job.entry.name, job.seed, places.out)
-            with executor:
-                calls = [partial(fit_job, job, places) for job in order]
-                for place, end in run_each(executor, calls, told):
-                    job = order[place]
-                    running.pop(job.stem, None)
-                    results[job.stem] = _result(job, end, places.out)
-                    if shipped and isinstance(end, Returned):
+        with locked(out, notice), executor:
+            sweep(out)
+            for place, end in run_each(
+                executor, [partial(fit_job, j, data, out) for j in order], told
+            ):
+                job = order[place]
+                running.pop(job.stem, None)
+                details = out / f"{job.stem}.error.txt"
+                if isinstance(end, Returned):
+                    details.unlink(missing_ok=True)
+                    results[job.stem] = read_card(end.value, ModelCard)
+                    if shipped:
                         ship(end.value)
-                    show()
+                elif isinstance(end, Lost):
+                    results[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
+                elif isinstance(end.error, UserError):
+                    results[job.stem] = Failure(job, str(end.error))
+                else:
+                    traced = "".join(traceback.format_exception(end.error))
+                    details.write_text(traced, encoding="utf-8")
+                    error = f"{type(end.error).__name__}: {end.error}"
+                    results[job.stem] = Failure(job, error, details)
+                show()
     except KeyboardInterrupt:
-        again = "without --force " if force else ""
         done = sum(isinstance(found, ModelCard) for found in results.values())
         raise Stopped(
             f"interrupted with {done} of {len(jobs)} models finished; they and the finished "
-            f"epochs of the others are kept in {places.out}; run the same command {again}again to "
-            "resume."
+            f"epochs of the others are kept in {out}; run the same command again to resume."
         ) from None
-    found = [results[job.stem] for job in jobs]
-    return Report(
-        tuple(each for each in found if isinstance(each, ModelCard)),
-        tuple(each for each in found if isinstance(each, Failure)),
-    )
-
-
-def _result(job: Job, end: End, folder: Path) -> ModelCard | Failure:
-    details = folder / f"{job.stem}.error.txt"
-    if isinstance(end, Returned):
-        details.unlink(missing_ok=True)
-        return read_card(end.value)
-    if isinstance(end, Lost):
-        return Failure(job, f"{end.how}; its epochs are kept")
-    if isinstance(end.error, UserError):
-        return Failure(job, str(end.error))
-    details.write_text("".join(traceback.format_exception(end.error)), encoding="utf-8")
-    return Failure(job, f"{type(end.error).__name__}: {end.error}", details)
+    return tuple(results[job.stem] for job in jobs)
 
 
 @native.using(native.PORTABLE)
-def fit_job(job: Job, places: Places) -> Path:
+def fit_job(job: Job, data: Path, out: Path) -> Path:
     """Fit a model and return its file; a few times a second it tells how far it is."""
     tell(None)  # it has begun: its data may take a while
     told = 0.0
@@ -157,4 +132,4 @@ def fit_job(job: Job, places: Places) -> Path:
             told = time.monotonic()
             tell(moment)
 
-    return fit(job.task(places.data), places.out, advance, places.tensorboard, tell)
+    return fit(job.task(data), out, advance, tell)

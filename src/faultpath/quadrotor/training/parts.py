@@ -6,6 +6,9 @@ from pathlib import Path
 
 from faultpath.work import local, run_all
 
+Progress = Callable[[float, float], None]
+"""Called with what is done and what all comes to; its first call counts what was there."""
+
 
 @dataclass(frozen=True)
 class Part:
@@ -21,12 +24,11 @@ class Part:
 def make_missing(
     stages: Sequence[Sequence[Part]],
     workers: int,
-    progress: Callable[[float, float], None] | None,
+    progress: Progress | None,
 ) -> None:
     """Make what is missing, one stage after the other, with so many processes (0: this one).
 
-    `progress` is called with what is done and what all parts come to; its first call counts what
-    was there. Raises the error of the first part that fails.
+    Raises the error of the first part that fails.
     """
     tell = progress or (lambda done, total: None)
     missing = [[part for part in stage if not part.path.exists()] for stage in stages]

@@ -24,13 +24,15 @@ from faultpath.quadrotor.predictors import (
 from faultpath.quadrotor.predictors.network import features
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
+from faultpath.quadrotor.training.fitting import ModelTask
 from faultpath.quadrotor.training.provenance import rows_sha256
 from faultpath.quadrotor.training.replay import DeliveredInputs, correct, predict
-from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
+from faultpath.repairs.card import Schedule
 from faultpath.streams import generator
 
 DCC = "+dcc"
+BATCH_SIZE = 256  # paper, Section IV-A
 CLIP_NORM = 1.0
 """Largest gradient norm: a rollout of 20 steps of a young network can explode (derived)."""
 PARTS = ("position", "velocity", "rotation", "rate")
@@ -54,7 +56,7 @@ RECIPES: Mapping[str, Recipe] = {
 }
 
 
-class PredictorTask(Task):
+class PredictorTask(ModelTask):
     """One predictor: the error of its own 20-step rollout, in units of how far states move.
 
     Each prediction is the input to the next step; recorded states are targets only. With `+dcc` in
@@ -75,7 +77,9 @@ class PredictorTask(Task):
         if self._base not in RECIPES:
             raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
         self._recipe = RECIPES[self._base]
-        self.schedule = Schedule(epochs=self._recipe.epochs, clip_norm=CLIP_NORM)
+        self.schedule = Schedule(
+            epochs=self._recipe.epochs, batch_size=BATCH_SIZE, clip_norm=CLIP_NORM
+        )
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)

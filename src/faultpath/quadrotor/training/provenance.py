@@ -7,16 +7,14 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, JsonValue
+from pydantic import BaseModel, ConfigDict
 
 from faultpath.code import Root, read_code
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
 from faultpath.files.plain import Misread, model_of
-from faultpath.quadrotor.flight_settings import FlightSettings
-from faultpath.quadrotor.vehicle import VehicleRanges
 
-FORMAT = 1
+FORMAT = 2
 
 
 class Recipe(BaseModel):
@@ -28,15 +26,8 @@ class Recipe(BaseModel):
     pool: str
     episodes: int
     seed: int
-    flight: FlightSettings | None
-    """`None` for a pool that was recorded in closed loop."""
-    closed_loop: dict[str, JsonValue] | None = None
-    """What flew where in closed loop."""
-    vehicle: VehicleRanges
-    wind: dict[str, float | tuple[float, float]]
-    """Ranges and constants of the wind; empty in still air."""
     code_sha256: str
-    """Of the files that draw and fly the episodes."""
+    """Of the code that draws and flies the episodes, with all its settings."""
 
 
 class Provenance(Recipe):
@@ -44,10 +35,6 @@ class Provenance(Recipe):
 
     faultpath_version: str
     packages: dict[str, str]
-    rows: int
-    vehicle_seconds: float
-    ended_early: int
-    """Episodes that diverged before their time was over."""
     rows_sha256: str
     episodes_sha256: str
 

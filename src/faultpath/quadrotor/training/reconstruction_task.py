@@ -18,9 +18,10 @@ from faultpath.errors import UserError
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
+from faultpath.quadrotor.training.fitting import ModelTask
 from faultpath.quadrotor.training.provenance import rows_sha256
-from faultpath.quadrotor.training.task import Schedule, Task
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
+from faultpath.repairs.card import Schedule
 from faultpath.streams import generator
 
 HEAD = "reconstruction.head"
@@ -83,7 +84,7 @@ class _Samples:
         )
 
 
-class ReconstructionTask(Task):
+class ReconstructionTask(ModelTask):
     """One reconstruction: mean squared error of the standardised wind vector (paper, appendix).
 
     A window's history is its commands 0..11 with the states 1..12 that they led to; the target is
@@ -99,7 +100,7 @@ class ReconstructionTask(Task):
         self.name = name
         self.seed = seed
         self.platform = PLATFORM.weights_hash(name)
-        self.schedule = Schedule(epochs=40, optimiser="adam")  # paper, appendix
+        self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
         self._data = data_folder
         self._base = name.removesuffix("+dcc")

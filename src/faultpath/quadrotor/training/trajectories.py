@@ -12,11 +12,11 @@ from pathlib import Path
 from faultpath.quadrotor import native
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training.batches import Batch, Progress, make_pools
 from faultpath.quadrotor.training.closed_loop import record_flights
+from faultpath.quadrotor.training.collection import Batch, make_pool
+from faultpath.quadrotor.training.parts import Progress
 from faultpath.quadrotor.training.provenance import Recipe, code_of
 from faultpath.quadrotor.training.recorded import Flights
-from faultpath.store.lock import locked
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
 
@@ -29,47 +29,27 @@ SEED = 0
 BLOCK = 14
 
 
-def record(
-    folder: Path,
-    workers: int = 2,
-    progress: Progress | None = None,
-) -> Path:
+def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> Path:
     """Fly and write the pool, from wherever an earlier call left it; return its file.
 
     `progress` is called with the flights done and those in all. Raises `UserError` where the
     predictor's checkpoint is missing.
     """
-    path = folder / f"{POOL}.parquet"
-    code = code_sha256()
-    recipe = Recipe(
-        pool=POOL,
-        episodes=len(LEVELS) * SCENES,
-        seed=SEED,
-        flight=None,
-        vehicle=PLATFORM.ranges,
-        closed_loop={
-            "library": LIBRARY,
-            "scenes": SCENES,
-            "levels": list(LEVELS),
-            "variant": VARIANT,
-        },
-        wind={},
-        code_sha256=code,
-    )
-    place = folder / f".{POOL}-{code[:16]}"
     batches = [
         Batch(
-            place / f"{level}-{first:03d}",
+            f"{level}-{first:03d}",
             range(count * SCENES + first, count * SCENES + first + BLOCK),
             partial(fly, level, first),
         )
         for count, level in enumerate(LEVELS)
         for first in range(0, SCENES, BLOCK)
     ]
-    folder.mkdir(parents=True, exist_ok=True)
-    with locked(folder, lambda text: None):
-        make_pools({path: (recipe, batches)}, workers, progress)
-    return path
+    return make_pool(folder, recipe(), batches, workers, progress)
+
+
+def recipe() -> Recipe:
+    """Return what decides the pool's numbers."""
+    return Recipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code_sha256())
 
 
 @native.using(native.PORTABLE)
