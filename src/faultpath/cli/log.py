@@ -39,19 +39,12 @@ def command(
     from faultpath.report.compensation import CAVEAT, page, sentences, table
     from faultpath.store import write_text
     from faultpath.store.atomic import make_folder
-    from faultpath.store.outputs import NUMBERS, PAGE, check_output
 
     text = found.model_dump_json(indent=2) + "\n"
     if out is not None:
         make_folder(out)
-        written = (
-            ("compensation.json", text, NUMBERS),
-            ("report.html", page(found, log.name), PAGE),
-        )
-        for name, _, kind in written:
-            check_output(out / name, kind)
-        for name, content, _ in written:
-            write_text(out / name, content, out)
+        write_text(out / "compensation.json", text, out)
+        write_text(out / "report.html", page(found, log.name), out)
     if as_json:
         typer.echo(text, nl=False)
         return

@@ -54,11 +54,11 @@ def command(
     console = SafeConsole()
     if out is not None:
         from faultpath.report.film import film
-        from faultpath.store.outputs import FILM, check_output
+        from faultpath.store import check_writable
 
         if signals:
             raise UserError("--out flies nothing, so there is nothing to hear: leave one out.")
-        check_output(out, FILM)
+        check_writable(out)
         film(held, scenes[0], seed, tuple(path or ()), speed, out)
         console.print(f"Written: {out}", markup=False, soft_wrap=True)
         return 0

@@ -143,9 +143,9 @@ def audit(
     named += [f"{metric}-{','.join(f'{each:g}' for each in thresholds)}"] if metric else []
     named += [] if rule == IN_FORCE else [f"rule-{rule}"]
     named += _until(asked.question.stop)
-    place, other = run_folder(folder, chosen, named, scenes, drawn)
-    for sentence in filter(None, (other, chosen.notice)):
-        told.say(sentence)
+    place = run_folder(folder, chosen, named, scenes, drawn)
+    if chosen.notice:
+        told.say(chosen.notice)
     between = between_runs(share, folder, executor)
     with hands(built, chosen.workers, chosen.executor) as workforce:
         job = Job(place, workforce, told, time_limit_s, between)
@@ -172,8 +172,8 @@ def run_folder(
     named: Sequence[str],
     scenes: int | None,
     seeds: Sequence[int],
-) -> tuple[Path, str]:
-    """Return the folder of a run, and a sentence about others of the same question.
+) -> Path:
+    """Return the folder of a run.
 
     Without a `folder` it is that of the question, which `named` tells apart, and of the code as it
     is. `UserError` for one that holds a run of an object, which may have been another.
@@ -190,7 +190,7 @@ def run_folder(
             f"{place} holds a run, and whether it was of this same object cannot be told: give "
             "another folder, or put what builds the system into a file and name that."
         )
-    return place, ""
+    return place
 
 
 def _name(chosen: Chosen, named: Sequence[str], scenes: int | None, seeds: Sequence[int]) -> str:

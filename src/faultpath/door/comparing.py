@@ -36,9 +36,9 @@ class Comparison:
         `UserError` where it cannot be written.
         """
         from faultpath.report.comparison.page import page
-        from faultpath.store.outputs import PAGE, write_output
+        from faultpath.store import write_text
 
-        write_output(Path(path), page(self.runs), PAGE)
+        write_text(Path(path), page(self.runs))
         return Path(path)
 
     def as_json(self) -> dict[str, object]:

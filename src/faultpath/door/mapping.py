@@ -108,9 +108,9 @@ def reversal_map(
     said = {"system": chosen.spec.name, "options": chosen.spec.options}
     told = display(progress, "reversal_map", given | said)
     named = [plan.name, fault, *plan.question.against, f"{plan.question.up_to:g}", library]
-    place, other = run_folder(folder, chosen, [*named[:-1], Path(library).stem], count, drawn)
-    for sentence in filter(None, (other, chosen.notice)):
-        told.say(sentence)
+    place = run_folder(folder, chosen, [*named[:-1], Path(library).stem], count, drawn)
+    if chosen.notice:
+        told.say(chosen.notice)
 
     # What flies and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.job import Job

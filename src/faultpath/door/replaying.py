@@ -9,8 +9,8 @@ from faultpath.door.saved import read_run
 from faultpath.door.systems import choose
 from faultpath.errors import UserError
 from faultpath.execution.again import difference
+from faultpath.execution.dispatch import Dispatch, block_limit_s
 from faultpath.execution.provenance import amend
-from faultpath.execution.runner import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
 from faultpath.planning import plan_audit
 from faultpath.record import DecisionRecord

@@ -47,18 +47,16 @@ def reproduce(
     chosen = {"device": device}
     options = {option: value for option, value in chosen.items() if value is not None}
     asked = plan(named, profile, standing(library), options)
-    place, other = Path(folder or ""), ""
+    place = Path(folder or "")
     if folder is None:
         own = "" if library is None else f"-{Path(library).stem}"
         own += "" if platform is None else f"-{platform}"
-        place, other = asked.folder(f"reproduction{own}-{asked.profile.name}")
+        place = asked.folder(f"reproduction{own}-{asked.profile.name}")
     told = display(progress, "reproduce", given | {"pages": named})
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
     from faultpath.door.job import Job
     from faultpath.door.reproducing import carry_out
 
-    if other:
-        told.say(other)
     with hands(asked.system, workers, executor) as workforce:
         return carry_out(asked, Job(place, workforce, told, time_limit_s))

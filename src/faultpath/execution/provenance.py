@@ -96,27 +96,24 @@ def checkout(package: Path) -> tuple[str | None, bool | None]:
     `(None, None)` without one. A package installed into an environment that happens to lie inside
     some other repository is not tracked there, and that repository's commit would say nothing.
     """
-    if _git(package, "ls-files", "--error-unmatch", "__init__.py") is None:
-        return None, None
-    changes = _git(package, "status", "--porcelain", "--", ".")
-    return _git(package, "rev-parse", "HEAD"), None if changes is None else bool(changes)
+    return _state(package / "__init__.py", [package])
 
 
 def repository(code: Code) -> tuple[str | None, bool | None]:
-    """Return the commit of the repository that tracks a system, and whether what flew differs.
+    """Return the commit of the repository that tracks a system, and whether what ran differs.
 
-    `(None, None)` where its file is in none, or not tracked there. Of the files that flew and the
-    data files those in the repository are compared, whether they are tracked or not.
+    `(None, None)` where its file is in none, or not tracked there.
     """
-    main = code.main
-    if main is None or _git(main.parent, "ls-files", "--error-unmatch", "--", main.name) is None:
+    if code.main is None:
+        return None, None
+    return _state(code.main, (*code.sources.values(), *code.data.values()))
+
+
+def _state(main: Path, files: Iterable[Path]) -> tuple[str | None, bool | None]:
+    if _git(main.parent, "ls-files", "--error-unmatch", "--", main.name) is None:
         return None, None
     top = Path(_git(main.parent, "rev-parse", "--show-toplevel") or main.parent)
-    inside = [
-        str(path)
-        for path in (*code.sources.values(), *code.data.values())
-        if path.resolve().is_relative_to(top)
-    ]
+    inside = [str(path) for path in files if path.resolve().is_relative_to(top)]
     changes = _git(top, "status", "--porcelain", "--untracked-files=all", "--", *inside)
     return _git(top, "rev-parse", "HEAD"), None if changes is None else bool(changes)
 

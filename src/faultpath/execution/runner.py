@@ -1,29 +1,27 @@
 """Run a study into a folder, from wherever an earlier invocation left it."""
 
 import logging
-import time
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
 
 from faultpath.code import Code
 from faultpath.errors import Stopped, UserError
 from faultpath.execution.again import Rechecks
+from faultpath.execution.dispatch import Dispatch, block_limit_s
 from faultpath.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.execution.state import Looks, RunState, Stop
-from faultpath.execution.worker import Job, Started, run_here, run_task
+from faultpath.execution.worker import Job, run_here, run_task
 from faultpath.record.provenance import FlownAgain
-from faultpath.setup_limit import LONGEST_S, check_limit, setup_s, too_late
 from faultpath.store.folder import RunFolder
 from faultpath.store.manifest import Manifest
 from faultpath.store.shared import SharedTrials
 from faultpath.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.arm import Arm, Study
-from faultpath.trials.attempt import Died, Reply, Wrong
+from faultpath.trials.attempt import Reply
 from faultpath.trials.checks import library_of
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.registry import load_system
@@ -31,12 +29,9 @@ from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
 from faultpath.version import __version__
-from faultpath.work import Call, Executor, Failed, Lost, Progress, WorkerLost, local
+from faultpath.work import Call, Executor, Progress, local
 
 _log = logging.getLogger("faultpath")
-_TICK_S = 0.5
-_FALSE_STARTS = 4
-"""So many workers in a row may die before they have built the system."""
 
 
 @dataclass(frozen=True)
@@ -215,12 +210,6 @@ def run_study(
     )
 
 
-def block_limit_s(system: System, asked_s: float | None) -> float:
-    """Return the seconds that a block may take: as asked, as the system says, or an hour."""
-    check_limit(asked_s)
-    return asked_s or system.time_limit_s or LONGEST_S
-
-
 def _missing(state: RunState, run: RunFolder, notice: Callable[[str], None]) -> list[Unit]:
     """Take over what is stored, say how much and from when, and return what is left to do.
 
@@ -258,96 +247,3 @@ def _failures(units: tuple[Unit, ...], state: RunState, run: RunFolder) -> tuple
                 where = details if details.exists() else None
                 failures.append(Failure(unit.arm, scene, outcome.error or "", where))
     return tuple(failures)
-
-
-class Scened(Protocol):
-    """Some scenes to run."""
-
-    @property
-    def scenes(self) -> tuple[str, ...]:
-        """Scene ids."""
-        ...
-
-
-T = TypeVar("T", bound=Scened)
-
-
-@dataclass
-class _Running(Generic[T]):
-    task: T
-    since: float
-    lost: int = 0
-    """How many workers were lost over it."""
-    started: bool = False
-    """Whether the system was built; its building has a limit of its own."""
-
-
-class Dispatch(Generic[T]):
-    """Hands tasks to the workers of an executor, watches their time, and takes replies in.
-
-    `call` is what runs a task, and tells `Started`; `limit_s` is how long one may take; `name` is
-    that of the system.
-    """
-
-    def __init__(
-        self, executor: Executor, call: Callable[[T], Call], limit_s: float, name: str
-    ) -> None:
-        self._executor, self._call, self._limit_s, self._name = executor, call, limit_s, name
-        self._running: dict[int, _Running[T]] = {}
-        self._again: list[tuple[T, int]] = []
-        """Tasks whose worker was lost, through no fault of theirs that is known."""
-        self._false_starts = 0
-
-    def run(
-        self,
-        take: Callable[[int], T | None],
-        settle: Callable[[T, Any], None],
-        report: Callable[[], None] = lambda: None,
-    ) -> None:
-        """Run what `take` returns for a worker, until it returns nothing and all is settled.
-
-        `settle` gets what the call returned, `Wrong` for an error that it raised, or `Died`.
-        """
-        while True:
-            for worker in self._executor.free():
-                task, lost = self._again.pop(0) if self._again else (take(worker), 0)
-                if task is not None:
-                    self._submit(worker, task, lost)
-            if not self._running:
-                return
-            for worker, end in self._executor.completions(_TICK_S):
-                running = self._running.pop(worker)
-                if isinstance(end, Failed):
-                    settle(running.task, Wrong(end.error))
-                elif not isinstance(end, Lost):
-                    settle(running.task, end.value)
-                elif not running.started:
-                    self._false_starts += 1
-                    if self._false_starts > _FALSE_STARTS:
-                        raise WorkerLost(f"worker processes do not come up: {end.how}")
-                    self._again.append((running.task, running.lost))
-                elif running.lost < self._executor.retries:
-                    self._again.append((running.task, running.lost + 1))
-                else:
-                    settle(running.task, Died(end.how))
-            now = time.monotonic()
-            for worker, running in tuple(self._running.items()):
-                allowed = self._limit_s if running.started else setup_s(self._limit_s)
-                if now - running.since <= allowed:
-                    continue
-                if not running.started:
-                    raise too_late(self._name, allowed, " in a worker process")
-                self._executor.cancel(worker)
-                del self._running[worker]
-                how = f"it was stopped at the time limit of {allowed:g} s"
-                settle(running.task, Died(how, late=True))
-            report()
-
-    def _submit(self, worker: int, task: T, lost: int) -> None:
-        running = self._running[worker] = _Running(task, time.monotonic(), lost)
-
-        def told(message: Started) -> None:
-            running.started, running.since = True, time.monotonic()
-            self._false_starts = 0
-
-        self._executor.submit(worker, self._call(task), told)

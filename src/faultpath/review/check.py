@@ -6,7 +6,7 @@ from functools import partial
 from typing import Literal
 
 from faultpath.errors import UserError
-from faultpath.execution.runner import Dispatch, block_limit_s
+from faultpath.execution.dispatch import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
 from faultpath.faults import Fault, Offset, Replace, Scale
 from faultpath.faults import Sequence as InTurn

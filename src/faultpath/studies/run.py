@@ -88,8 +88,8 @@ class Plan:
         """The system in its first setting, for what does not depend on the setting."""
         return load_system(SystemSpec(name=SYSTEM, options=dict(self.options)))
 
-    def folder(self, name: str) -> tuple[Path, str]:
-        """Return the run folder of that name for the code as it is, and a sentence about others."""
+    def folder(self, name: str) -> Path:
+        """Return the run folder of that name for the code as it is."""
         spec = SystemSpec(name=SYSTEM, options=dict(self.options))
         return keyed(Path("runs"), name, system_code(self.system, spec).state)
 
