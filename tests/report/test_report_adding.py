@@ -28,10 +28,10 @@ def errors(one: float, other: float):
 @pytest.fixture
 def heard(one_seed: ReportInput) -> ReportInput:
     """The first scene of the viewer's choice, with the errors of all its trials."""
-    pair = choose(one_seed.record, one_seed.traces, pairs_of(one_seed))[0].any_pair
+    scene, seed = choose(one_seed.record, one_seed.traces, pairs_of(one_seed))[0]
     asked = one_seed.record.question
     signals = {
-        TrialAddress(variant, path, pair.seed, pair.scene): errors(*sizes)
+        TrialAddress(variant, path, seed, scene): errors(*sizes)
         for path, sizes in SIZES.items()
         for variant in (asked.baseline, asked.repair)
     }

@@ -64,11 +64,7 @@ def shown_first(
 ) -> tuple[tuple[str, int], ...]:
     """Return the scenes that the report begins with, and the seed of each."""
     pairs = read_pairs(outcomes, record)
-    few = picked(record, traces, pairs)
-    return (
-        tuple((each.any_pair.scene, each.any_pair.seed) for each in few)
-        or tuple(by_scene(pairs))[:1]
-    )
+    return picked(record, traces, pairs) or tuple(by_scene(pairs))[:1]
 
 
 def replay(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from faultpath.record import CORRECT, wording
 from faultpath.record.wording import where
 from faultpath.report.inputs import ReportInput
-from faultpath.report.pairing import Pair
+from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.svg import (
     Axis,
     Point,
@@ -103,8 +103,9 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
 
     `None` where the system names no errors, or nothing was recorded.
     """
-    for showing in choose(source.record, source.traces, pairs) if source.signals else ():
-        found = _of(source, showing.pairs)
+    groups = by_scene(pairs)
+    for at in choose(source.record, source.traces, pairs) if source.signals else ():
+        found = _of(source, groups[at])
         if found is not None:
             return found
     return None

@@ -53,11 +53,7 @@ def film(
         raise UserError(f"{out}: a film is a .gif file: name it so.")
     asked = held.record.question
     all_pairs = read_pairs(held.outcomes, held.record)
-    first = [
-        s.any_pair.seed
-        for s in choose(held.record, held.traces, all_pairs)
-        if s.any_pair.scene == scene
-    ]
+    first = [at[1] for at in choose(held.record, held.traces, all_pairs) if at[0] == scene]
     drawn = [*first, asked.seeds[0]][0] if seed is None else seed
     pairs = by_scene(all_pairs).get((scene, drawn))
     if pairs is None:

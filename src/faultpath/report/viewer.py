@@ -74,7 +74,7 @@ def viewer_data(
     }
     if not groups:
         return None
-    chosen = [(s.any_pair.scene, s.any_pair.seed) for s in choose(record, traces, pairs)]
+    chosen = choose(record, traces, pairs)
     kept = _kept(signals or {}, chosen, groups)
     if space == "line":
         kept = _with_positions(kept, traces)
