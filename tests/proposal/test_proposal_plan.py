@@ -185,52 +185,24 @@ def test_consumers_come_first_then_the_probe():
     assert [(each.name, each.rank) for each in order] == [("sized", 1), ("late", 1)]
 
 
+UNSIZED = {"fault": "", "unsized": "declares none"}
+
+
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ([candidate("a", 3)], "a (3 consumers) is the only uncertain source: no rank is due."),
-        (
-            [candidate("a", 3), candidate("b", 3, fault="", unsized="declares none")],
-            "a and b tie: 3 consumers each, and no probe. a is audited first because it alone has",
-        ),
-        (
-            [candidate("a", 3, fault="", unsized="declares none"), candidate("b", 2)],
-            "a comes first: 3 consumers, more than any other source. a cannot be audited without "
-            "an expected error; b is the first in the ranking that has one. Without an expected "
-            "error, and so without an audit: a (it declares none). Declare it",
-        ),
-        (
-            [candidate("a", 3, 0.1), candidate("b", 2, 9.0)],
-            "a comes first: 3 consumers, more than any other source.",
-        ),
-        (
-            [candidate("a", 2, 0.5), candidate("b", 2, 0.25)],
-            "a comes first: 2 consumers, as b, and the largest probe response (0.5, next 0.25). "
-            "These are point estimates from 5 scenes; no test compares them.",
-        ),
-        (
-            [candidate("a", 2, 0.5), candidate("b", 2)],
-            "a comes first: 2 consumers, as b, and a probe response (0.5); none is known of b. ",
-        ),
-        (
-            [candidate("a", 1, 0.5), candidate("b", 1, 0.5)],
-            "a and b tie: 1 consumer each, and the same probe response. a is audited first because",
-        ),
-        (
-            [candidate("a", 2), candidate("b", 2), candidate("c", 2)],
-            "a and b and c tie: 2 consumers each, and no probe.",
-        ),
+        ([candidate("a", 3)], "a (3 consumers) is the only uncertain source"),
+        ([candidate("a", 3, 0.1), candidate("b", 2, 9.0)], "more than any other source"),
+        ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 consumers each"),
+        ([candidate("a", 3, **UNSIZED), candidate("b", 2)], "b is the first in the ranking that"),
+        ([candidate("a", 2, 0.5), candidate("b", 2, 0.25)], "largest known probe response (0.5)"),
+        ([candidate("a", 2, 0.5), candidate("b", 2)], "largest known probe response (0.5)"),
+        ([candidate(name, 2) for name in "abc"], "a, b and c tie"),
     ],
 )
 def test_the_words_say_what_put_a_source_first(planned, given, said):
     changed = planned.plan.model_copy(update={"candidates": ranked(given)})
-    assert " ".join(sentences(changed)).startswith(said)
-
-
-def test_no_probe_is_explained_where_the_system_runs_a_loop_of_its_own(planned):
-    given = ranked([candidate("a", 2), candidate("b", 2)])
-    changed = planned.plan.model_copy(update={"candidates": given, "probed": 0})
-    assert "and no probe, since the system runs a loop of its own." in sentences(changed)[0]
+    assert said in " ".join(sentences(changed)[:2])
 
 
 def test_the_repaired_module_is_told_from_what_differs():
@@ -299,22 +271,9 @@ def test_the_plan_of_the_toy(planned):
     }
     assert planned.plan.trials == (160, 80, 40)
     said = " ".join(planned.sentences)
-    assert "280 trials, about" in said
-    assert "one block of 20 scenes under correct inputs with each variant, of which 10 were" in said
-    assert "without an audit: odometer (it declares no uncertainty). Declare it" in said
+    assert "280 trials in all" in said
+    assert "without an audit: odometer (declares no uncertainty)" in said
     assert "Taken as changed by the repair: observer." in said
-
-
-def test_a_long_block_is_timed_by_some_of_its_scenes(monkeypatch):
-    def flown(system, arm, scenes):
-        return Done((), (), {"calibrated": 1.0, "blind": 2.0}[arm.variant] + 0.5 * len(scenes))
-
-    monkeypatch.setattr("faultpath.proposal.plan.attempt", flown)
-    timing = plan().plan.timing
-    assert (timing.scenes, timing.flown) == (20, 10)
-    assert timing.block_s == pytest.approx({"calibrated": 11.0, "blind": 12.0})
-    timing = plan(scenes=6).plan.timing
-    assert (timing.flown, timing.block_s) == (6, {"calibrated": 4.0, "blind": 5.0})
 
 
 def test_the_trials_told_are_those_flown(planned, tmp_path):
@@ -337,7 +296,7 @@ def test_the_trials_told_are_those_flown(planned, tmp_path):
 def test_a_repair_that_changes_nothing_to_be_seen_says_so():
     said = " ".join(
         plan(
-            DOCK, baseline="ranges", repair="wheels", library="floors", faults="range:scale=0.7"
+            DOCK, baseline="ranges", repair="wheels", library="floors", fault="range:scale=0.7"
         ).sentences
     )
     assert "range_rate (output of speedometer)" in said

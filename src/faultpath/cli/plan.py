@@ -35,12 +35,9 @@ def command(
     out: Annotated[Path, typer.Option(parser=path, help="Study file to write.")] = Path(
         "study.yaml"
     ),
-    workers: Annotated[
-        int | None, typer.Option(help="Worker processes that the time is told for.")
-    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
 ) -> None:
-    """Rank the uncertain sources, propose the audits of a repair with their trials and time, and
+    """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
     drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
 
@@ -58,7 +55,6 @@ def command(
         scenes=scenes,
         seeds=drawn,
         options=options,
-        workers=workers,
         progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),
     )
     written = found.write(out)

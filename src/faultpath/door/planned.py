@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.door.audit import audit, checked_count, checked_seeds, checked_texts
 from faultpath.door.display import Display, display
-from faultpath.door.systems import choose, hands
+from faultpath.door.systems import choose
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
 from faultpath.planning import plan_audit
@@ -79,15 +79,12 @@ def plan(
     scenes: int | None = None,
     seeds: int | Sequence[int] = 0,
     options: Mapping[str, object] | None = None,
-    workers: int | None = None,
     progress: bool | Display = True,
-    faults: str | Sequence[str] = (),
-    modules: str | Sequence[str] = (),
 ) -> Planned:
     """Rank the uncertain sources of a system, and propose the audits of a repair.
 
-    Flies a block of scenes of both variants to tell the time, and where faultpath runs the
-    system's modules itself a few scenes to probe sources; nothing is decided from them.
+    Where faultpath runs the system's modules itself, a few scenes are flown to probe sources;
+    nothing is decided from them.
 
     Args:
         system: As for `audit`, but by name: a study file has to build it again.
@@ -100,22 +97,18 @@ def plan(
         scenes: How many of its first scenes; `None` for all.
         seeds: Of the audits.
         options: The system's own options.
-        workers: Worker processes that the time is told for.
         progress: As for `audit`.
-        faults: As `fault`, which it was called before.
-        modules: As `module`, likewise.
 
     Raises:
         UserError: What was asked cannot be done; the sentence says why, and what to do.
     """
-    given = {name: value for name, value in locals().items() if name not in ("faults", "modules")}
+    given = dict(locals())
     checked_texts(baseline=baseline, repair=repair, library=library)
-    given |= {"fault": (*_several(fault), *_several(faults))}
-    given |= {"module": (*_several(module), *_several(modules))}
+    given |= {"fault": _several(fault), "module": _several(module)}
     drawn, count = checked_seeds(seeds), checked_count("scenes", scenes)
     called = isinstance(progress, Display) and progress.is_command
     with setup_limit(str(system), None) if called else nullcontext():
-        chosen = choose(system, options or {}, workers, (baseline, repair))
+        chosen = choose(system, options or {}, None, (baseline, repair))
         scenes_from = library_of(chosen.system, library)
     if chosen.own:
         raise UserError(
@@ -140,7 +133,7 @@ def plan(
         def note(done: int, total: int) -> None:
             show(Progress(done, total, f"{done} of {total} flights"))
 
-        return Planned(asked.make(hands(chosen.system, chosen.workers).count, note))
+        return Planned(asked.make(note))
 
 
 def _several(given: str | Sequence[str]) -> tuple[str, ...]:

@@ -1,1 +1,1 @@
-"""What to audit first: uncertain sources ranked, arms proposed, trials and time told in advance."""
+"""What to audit first: uncertain sources ranked, and arms proposed."""

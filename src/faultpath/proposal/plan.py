@@ -15,24 +15,8 @@ from faultpath.trials.attempt import Raised, Wrong, attempt
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""
-TIMED_SCENES = 10
-"""So many of a block are flown to tell how long it takes."""
 Note = Callable[[int, int], None]
 """Takes how many flights are done, and of how many."""
-
-
-class Timing(Result, allow_inf_nan=False):
-    """What the study will take, from a block of each variant under correct inputs."""
-
-    scenes: int
-    """Of the block."""
-    flown: int
-    """Of these, the ones that were flown; the others are taken to add as much, each, as these."""
-    block_s: dict[str, float]
-    """Seconds that the block takes here, by variant."""
-    workers: int
-    seconds: float
-    """Of the whole study, all workers together at work on it."""
 
 
 class Plan(Result):
@@ -50,12 +34,6 @@ class Plan(Result):
     """Scenes of the probe; 0 where there was none."""
     trials: tuple[int, ...]
     """Of each audit, beyond those that an earlier one flies."""
-    timing: Timing
-
-    @property
-    def total(self) -> int:
-        """Trials of the whole study."""
-        return sum(self.trials)
 
 
 @dataclass(frozen=True)
@@ -79,8 +57,8 @@ class Proposal:
         pair = variant_of(self.system, self.baseline), variant_of(self.system, self.repair)
         object.__setattr__(self, "variants", pair)
 
-    def make(self, workers: int, note: Note = lambda done, total: None) -> Plan:
-        """Rank, lay the audits out, probe and time.
+    def make(self, note: Note = lambda done, total: None) -> Plan:
+        """Rank, probe and lay the audits out.
 
         `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
         variant that does not run.
@@ -91,22 +69,15 @@ class Proposal:
         repaired = repaired_modules(self.system, *self.variants, self.repaired)
         chosen = self._audit(next(each for each in found if each.fault)).study.scenes
         probes = isinstance(self.system, LoopSystem) and sum(bool(c.fault) for c in found) > 1
-        total, done = 4 if probes else 2, 0
-        note(done, total)
         if isinstance(self.system, LoopSystem) and probes:
-            for variant in self.variants:
+            for done, variant in enumerate(self.variants):
+                note(done, len(self.variants))
                 found = self._probed(self.system, found, variant.name, chosen[:PROBED_SCENES])
-                note(done := done + 1, total)
         order = ranked(found)
         first, why = self._reasons(order, repaired)
         named = [each for each in order if each.fault and each.name in why]
         named.sort(key=lambda each: each.name != first)
         laid = [self._audit(each) for each in named]
-        block_s: dict[str, float] = {}
-        block = chosen[: self.system.block_size]
-        for variant in self.variants:
-            block_s[variant.name] = self._seconds(variant.name, block)
-            note(done := done + 1, total)
         fresh = _fresh(laid)
         return Plan(
             study=StudyFile(
@@ -133,7 +104,6 @@ class Proposal:
             unplanned={c.name: why[c.name] for c in order if c.name in why and not c.fault},
             probed=min(len(chosen), PROBED_SCENES) if probes else 0,
             trials=tuple(len(arms) * len(chosen) for arms in fresh),
-            timing=_timing(fresh, block_s, len(block), len(chosen), workers),
         )
 
     def _audit(self, each: Candidate) -> Audit:
@@ -185,23 +155,6 @@ class Proposal:
             name: why for name, why in more.items() if name != first.name
         }
 
-    def _seconds(self, variant: str, block: Sequence[str]) -> float:
-        self._flown_s(variant, block[:1])
-        few = block[:TIMED_SCENES]
-        taken = self._flown_s(variant, few)
-        if len(few) == len(block):
-            return taken
-        more = max(0.0, taken - self._flown_s(variant, few[:1])) / (len(few) - 1)
-        return taken + more * (len(block) - len(few))
-
-    def _flown_s(self, variant: str, scenes: Sequence[str]) -> float:
-        done = attempt(self.system, Arm(variant=variant, seed=self.seeds[0]), scenes)
-        if isinstance(done, Wrong):
-            raise done.error
-        if isinstance(done, Raised):
-            raise UserError(f"variant '{variant}' does not run: {done.error}")
-        return done.seconds
-
 
 def _fresh(laid: Sequence[Audit]) -> list[list[Arm]]:
     """Return the arms of each audit that the first one has not got: those it shares are taken
@@ -209,21 +162,6 @@ def _fresh(laid: Sequence[Audit]) -> list[list[Arm]]:
     held = {arm.key() for arm in laid[0].study.arms()}
     more = ([a for a in each.study.arms() if a.key() not in held] for each in laid[1:])
     return [list(laid[0].study.arms()), *more]
-
-
-def _timing(
-    arms: Sequence[Sequence[Arm]], block_s: dict[str, float], block: int, scenes: int, workers: int
-) -> Timing:
-    each = [block_s[arm.variant] for audit in arms for arm in audit]
-    blocks = -(-scenes // block)
-    lanes = max(1, min(workers, blocks * len(arms[0])))
-    return Timing(
-        scenes=block,
-        flown=min(block, TIMED_SCENES),
-        block_s=block_s,
-        workers=lanes,
-        seconds=sum(each) * scenes / block / lanes,
-    )
 
 
 def _nothing_sized(system: System, found: Sequence[Candidate]) -> str:
