@@ -17,7 +17,6 @@ from faultpath.proposal.order import makers, placed, ranked, recursion, repaired
 from faultpath.proposal.sources import Candidate, candidates
 from faultpath.proposal.words import sentences
 from faultpath.trials import Library, SceneRef, System, Variant
-from faultpath.trials.attempt import Done
 
 HERE = Path(__file__).resolve().parent
 DECLARED = f"{HERE / 'declared_toy.py'}:create"

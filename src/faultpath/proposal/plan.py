@@ -11,7 +11,6 @@ from faultpath.proposal.sources import Candidate, candidates, parsed
 from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
 from faultpath.results import Result
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
-from faultpath.trials.attempt import Raised, Wrong, attempt
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""
