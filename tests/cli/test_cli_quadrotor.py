@@ -1,19 +1,29 @@
 """A library of one's own, from its making to its report."""
 
 import json
+from pathlib import Path
 
 from cli_runs import audit, faultpath
 
 from faultpath.door.run import open_run
 from faultpath.quadrotor import native
-from faultpath.quadrotor.scenes.library import write_library
+from faultpath.quadrotor.scenes.library import Library, as_text, load_library
 from faultpath.trials import SystemSpec, load_system
 
 
-def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
+def write_library(count):
+    """Write a library of one's own, of scenes of the package under other names."""
+    scenes = tuple(
+        scene.model_copy(update={"library": "mine", "id": f"mine/{scene.index:03d}"})
+        for scene in load_library("selection").scenes[:count]
+    )
+    Path("mine.json").write_text(as_text(Library.of("mine", scenes)))
+
+
+def test_a_library_of_ones_own_is_flown_and_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
-    write_library("mine.json", seed=5, count=2, name="mine")
+    write_library(2)
     ended = audit(
         system="quadrotor",
         baseline="zero-wind",
@@ -53,7 +63,7 @@ def test_a_generated_library_is_flown_and_reported(tmp_path, monkeypatch):
 def test_a_worker_finds_a_library_file(tmp_path, monkeypatch):
     """What a worker is told is the system and the library's name, and no more."""
     monkeypatch.chdir(tmp_path)
-    write_library("mine.json", seed=5, count=1, name="mine")
+    write_library(1)
     system = load_system(SystemSpec(name="quadrotor"))
     library = system.library("mine.json")
     assert load_system(SystemSpec(name="quadrotor")).library(library.name) == library

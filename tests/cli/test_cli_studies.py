@@ -22,7 +22,7 @@ MISTAKES = {
     ),
     "no library to reproduce on": (
         ["reproduce", "table-4", "--library", "nowhere.json"],
-        ["nowhere.json", "write_library"],
+        ["nowhere.json", "library file"],
     ),
     "a library that no page flies on": (
         ["reproduce", "figure-3", "--library", "training"],

@@ -6,7 +6,7 @@ from math import ceil, dist, prod
 
 from faultpath.quadrotor.scenes.prisms import arena, solids
 from faultpath.quadrotor.scenes.scene import Point, Scene
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M, VehicleParameters
+from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
 
 MOST_OBSTACLES = 256
 """Boxes and pillars of a scene: all scenes of a block are padded to as many."""
@@ -17,15 +17,6 @@ MOST_CELLS = 2**22
 CELL_M = 0.1
 GOAL_RADIUS_M = 0.5
 """Where a flight has reached its goal, as `world` has it."""
-_RANGES = {
-    "mass_kg": (0.05, 20.0),
-    "thrust_scale": (0.1, 10.0),
-    "torque_scale": (0.1, 10.0),
-    "inertia_kgm2": (1e-4, 10.0),
-    "motor_time_constant_s": (0.005, 1.0),
-    "drag_kgps": (1e-6, 10.0),
-}
-
 _NAME = re.compile(r"\w[\w .+-]{0,63}")
 
 
@@ -100,15 +91,6 @@ def _faults(scene: Scene) -> Iterator[str]:
     if scene.vehicle.thrust_to_weight <= 1:
         ratio = scene.vehicle.thrust_to_weight
         yield f"vehicle: thrust over weight is {ratio:.2f}, so it cannot lift itself"
-    yield from _outlandish(scene.vehicle)
-
-
-def _outlandish(vehicle: VehicleParameters) -> Iterator[str]:
-    for name, (least, most) in _RANGES.items():
-        found = getattr(vehicle, name)
-        for value in found if isinstance(found, tuple) else (found,):
-            if not least <= value <= most:
-                yield f"vehicle.{name}: {value:g} is not between {least:g} and {most:g}"
 
 
 def _not_free(scene: Scene, place: str, at: Point) -> Iterator[str]:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from faultpath.quadrotor.scenes.layout import WALL_M, Door, Layout
+from layout import WALL_M, Door, Layout
 from faultpath.quadrotor.scenes.scene import Topology
 
 _Range = tuple[float, float]

@@ -1,0 +1,40 @@
+"""Make a library of scenes from a seed: python make.py mine.json --seed 7 --count 100."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from generate import generate_scene
+
+from faultpath.quadrotor.scenes.library import FROZEN, Library, as_text, load_library
+
+FROZEN_SEEDS = {"training": 101, "selection": 202, "held-out": 303}
+"""What made the libraries of the package, 100 scenes each."""
+
+
+def made(name: str, seed: int, count: int) -> Library:
+    """Return `count` new scenes; the same name, seed and count give the same scenes."""
+    return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
+
+
+def main() -> None:
+    """Write a library, or make the frozen ones again and compare."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path, nargs="?", help="to write; its stem names the library")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--check", action="store_true", help="make the frozen libraries again")
+    given = parser.parse_args()
+    if given.check:
+        for name, seed in FROZEN_SEEDS.items():
+            same = made(name, seed, 100).content_hash == load_library(name).content_hash
+            print(name, "is the same" if same else "DIFFERS")
+        return
+    if given.file is None or given.file.exists() or given.file.stem in FROZEN:
+        sys.exit("name a file that does not exist, by another name than the frozen libraries")
+    given.file.write_text(as_text(made(given.file.stem, given.seed, given.count)))
+    load_library(given.file)  # what cannot be flown is refused now
+
+
+if __name__ == "__main__":
+    main()
