@@ -26,7 +26,7 @@ class Comparison:
     @property
     def headline(self) -> str:
         """How many audits there are, and where they are decided in opposite directions."""
-        from faultpath.report.comparison.words import headline
+        from faultpath.report.comparison.page import headline
 
         return headline(self.runs)
 
@@ -43,12 +43,13 @@ class Comparison:
 
     def as_json(self) -> dict[str, object]:
         """Return headline, sentences, what differs, and each record, for `json.dumps`."""
-        from faultpath.report.comparison import facts, words
+        from faultpath.report.comparison.page import sentences
+        from faultpath.report.comparison.runs import differing
 
         return {
             "headline": self.headline,
-            "sentences": words.sentences(self.runs),
-            "differs": {fact.title: fact.values for fact in facts.differing(self.runs)},
+            "sentences": sentences(self.runs),
+            "differs": differing(self.runs),
             "runs": [_folder_and_record(each) for each in self.runs],
         }
 

@@ -1,13 +1,18 @@
-"""The audits that are set side by side, and how each is called."""
+"""The audits that are set side by side, how each is called, and what differs between them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
+from faultpath.record import wording
 from faultpath.record.family import CORRECT, SHARED
 from faultpath.record.model import DecisionRecord, Effect
 from faultpath.record.provenance import RunProvenance
 from faultpath.record.question import Question
 from faultpath.statistics import Sign
+from faultpath.tables import Line, Table, line
+
+_DIGITS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +44,8 @@ class Compared:
     @property
     def headline(self) -> str:
         """Its own headline, qualified where not all that it decided stands over all sizes."""
-        own = self.record.verdict.headline
-        fallen = any(
-            effect.sign and not self.family[effect.path][0]
-            for effect in (self.record.effects if self.family else ())
-            if self.family and effect.path in self.family
-        )
+        own, family = self.record.verdict.headline, self.family or {}
+        fallen = any(e.sign and not family.get(e.path, (e.sign, 0))[0] for e in self.record.effects)
         return f"By itself, and not over all sizes: {own}" if fallen else own
 
     def absent(self, path: str) -> str:
@@ -67,12 +68,91 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
     }
 
 
-def numbers(runs: Sequence[Compared]) -> str:
-    """Return `1`, `1 and 3` or `1, 2 and 3`."""
-    return joined([str(run.number) for run in runs])
-
-
 def joined(words: Sequence[str]) -> str:
-    """Return words as a list in a sentence."""
+    """Return words as a list in a sentence: `1`, `1 and 3` or `1, 2 and 3`."""
     *first, last = words
     return f"{', '.join(first)} and {last}" if first else last
+
+
+_ASKED: Mapping[str, Callable[[Compared], str]] = {
+    "Fault": lambda run: run.asked.fault,
+    "Baseline": lambda run: run.asked.baseline,
+    "Repair": lambda run: run.asked.repair,
+    "System": lambda run: run.asked.system,
+    "Library": lambda run: run.asked.library,
+    "State of the library": lambda run: run.asked.library_hash[:_DIGITS],
+    "Scenes flown": lambda run: run.record.flown,
+    "Scenes compared": lambda run: str(run.record.scenes),
+    "Seeds": lambda run: ", ".join(map(str, run.asked.seeds)),
+    "Primary path": lambda run: run.asked.primary,
+    "Intervals and tests hold for": lambda run: run.record.estimand,
+    "Stopping": lambda run: wording.sentence(run.record.stopping or "all scenes were flown"),
+}
+_MADE: Mapping[str, Callable[[Compared], str]] = {
+    "Code, data and packages": lambda run: run.provenance.system_fingerprint[:_DIGITS],
+    "faultpath": lambda run: run.provenance.faultpath_version,
+    "Python": lambda run: run.provenance.python,
+    "Computed with": lambda run: run.provenance.backend or "not said",
+    "Processor": lambda run: run.provenance.processor,
+    "Platform": lambda run: run.provenance.platform,
+}
+
+Facts = Mapping[str, tuple[str, ...]]
+"""By title, the value in each run."""
+
+
+def differing(runs: Sequence[Compared]) -> Facts:
+    """Return what differs between runs: what was asked first, then what ran, then on what."""
+    packages = [run.provenance.packages for run in runs]
+    found = {
+        **_asked(runs),
+        **{title: tuple(map(read, runs)) for title, read in _MADE.items()},
+        **_keyed("Package", packages, "not named"),
+    }
+    return {title: values for title, values in found.items() if len(set(values)) > 1}
+
+
+def asked_alike(runs: Sequence[Compared], but_for: Collection[str]) -> bool:
+    """Return whether the runs asked the same, but for some facts by their titles."""
+    return all(len(set(each)) == 1 or title in but_for for title, each in _asked(runs).items())
+
+
+def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
+    """Return a label for each run: its number, with what of the question tells all of them apart
+    if one thing does, and otherwise with its folder."""
+    apart = [values for values in _asked(runs).values() if len(set(values)) == len(runs)]
+    told = apart[0] if apart else tuple(Path(run.folder).name for run in runs)
+    return tuple(f"{run.number}  {text}" for run, text in zip(runs, told, strict=True))
+
+
+def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
+    """Return what differs, each value with the runs that have it."""
+
+    def lines() -> Iterator[Line]:
+        for title, values in facts.items():
+            yield line(title)
+            for value in dict.fromkeys(values):
+                having = [
+                    str(run.number) for run, own in zip(runs, values, strict=True) if own == value
+                ]
+                yield line(value, joined(having))
+
+    return Table(
+        title="What differs",
+        corner="Value",
+        columns=("Runs",),
+        lines=tuple(lines()),
+        words=("Runs",),
+    )
+
+
+def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
+    found = {title: tuple(map(read, runs)) for title, read in _ASKED.items()}
+    return found | _keyed("Option", [run.asked.options for run in runs], "not given")
+
+
+def _keyed(
+    title: str, each: Sequence[Mapping[str, str]], absent: str
+) -> dict[str, tuple[str, ...]]:
+    keys = sorted({key for values in each for key in values})
+    return {f"{title} {key}": tuple(values.get(key, absent) for values in each) for key in keys}

@@ -6,8 +6,7 @@ from dataclasses import dataclass, replace
 
 from faultpath.record.family import ALPHA, CORRECT, alpha_shares
 from faultpath.record.model import DecisionRecord, Effect
-from faultpath.report.comparison import facts
-from faultpath.report.comparison.runs import Compared, joined, titles
+from faultpath.report.comparison.runs import Compared, asked_alike, joined, titles
 from faultpath.report.svg import tick_label
 from faultpath.statistics import RULES, Sign
 from faultpath.statistics.decisions import holm
@@ -35,7 +34,7 @@ def swept(runs: Sequence[Compared]) -> Swept | None:
         sizes = tuple(float(size) for _, size, _ in found)
     except ValueError:
         return None
-    if len(set(sizes)) < len(sizes) or not facts.asked_alike(runs, _MAY_DIFFER):
+    if len(set(sizes)) < len(sizes) or not asked_alike(runs, _MAY_DIFFER):
         return None
     name, _, rest = found[0]
     return Swept(f"{name}{rest}", sizes)
@@ -50,7 +49,7 @@ def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
     """
     if swept(runs) is None:
         return tuple(runs)
-    once = {f"effect/{CORRECT}"} if list(_same(runs)) else set[str]()
+    once = {f"effect/{CORRECT}"} if _same(runs) else set[str]()
     p_values: dict[str, float] = {}
     weights: dict[str, float] = {}
     for run in runs:
@@ -88,22 +87,11 @@ def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     return {name: (p, parts[name] if weighted else 1.0) for name, p in found.items()}
 
 
-def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return what the number of sizes does to what was decided; nothing for other runs."""
+def sentences(runs: Sequence[Compared]) -> Iterator[str]:
+    """Yield what the number of sizes does to what was decided; nothing for other runs."""
     sizes = swept(runs)
     if sizes is None:
-        return ()
-    return (
-        *_differ(runs, sizes),
-        *_same(runs),
-        f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
-        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm).",
-        *_fallen(runs, sizes),
-    )
-
-
-def _differ(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
-    """Say on which paths verdicts are not the same at every size, and what they are."""
+        return
     for path, title in titles(runs).items():
         at: dict[str, list[str]] = {}
         for run, size in sorted(zip(runs, sizes.sizes, strict=True), key=lambda each: each[1]):
@@ -113,17 +101,20 @@ def _differ(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
         if len(at) > 1:
             said = "; ".join(f"{words} at {joined(where)}" for words, where in at.items())
             yield f"{title}, verdicts differ with the size: {said}."
+    if _same(runs):
+        yield "Correct inputs are the same trials at every size, and count once."
+    yield (
+        f"All {len(runs)} sizes are one family here: what is called decided, and what is bold, is "
+        f"wrong in at most {100 * ALPHA:g} % of such sweeps, all sizes together (Holm)."
+    )
+    yield from _fallen(runs, sizes)
 
 
-def _same(runs: Sequence[Compared]) -> Iterator[str]:
+def _same(runs: Sequence[Compared]) -> bool:
     found = [run.effect(CORRECT) for run in runs]
     code = {run.provenance.system_fingerprint for run in runs}
     same = {(each.success.value, each.wins, each.losses) for each in found if each}
-    if None not in found and len(same) == len(code) == 1:
-        yield (
-            "Correct inputs are the same trials at every size: one result, drawn as often as there "
-            "are sizes."
-        )
+    return None not in found and len(same) == len(code) == 1
 
 
 def _fallen(runs: Sequence[Compared], sizes: Swept) -> Iterator[str]:
