@@ -7,10 +7,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from faultpath.report.scale import Axis, tick_label
-
 from benchmarks.results import ROOT, Record, Target, load
-from faultpath.report.svg import Svg, shortened
+from faultpath.report.svg import Axis, Svg, shortened, tick_label
 from faultpath.tables import MISSING, Entry, Line, Table, line
 from faultpath.tables.markdown import grid
 

@@ -51,7 +51,11 @@ BLOCK = re.compile(
 MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 
 
-PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (map_blocks.pictures, performance.files)
+PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
+    map_blocks.pictures,
+    paper_blocks.pictures,
+    performance.files,
+)
 """What makes whole files, by their path."""
 
 
@@ -128,7 +132,7 @@ def write() -> None:
 def leftover(files: Mapping[Path, str]) -> list[Path]:
     """Return the drawn pictures that no measurement gives."""
     pages = {IMAGES / name_of(*each) for each in pictures()} | {IMAGES / n for n in made_from()}
-    kept = set(IMAGES.glob("fault-*.svg"))
+    kept = {*IMAGES.glob("fault-*.svg"), IMAGES / "paper-figure-2.svg"}
     return sorted(set(IMAGES.glob("*.svg")) - set(files) - pages - kept)
 
 
@@ -136,9 +140,7 @@ def pictures() -> list[tuple[str, str]]:
     """Return the run and part of every picture that documents show and that a run is there for."""
     texts = [path.read_text("utf-8") for path in documents()]
     names = [m["name"].split(":") for text in texts for m in BLOCK.finditer(text)]
-    runs = {(name[1], name[2]) for name in names if name[0] == "picture" and load(name[1])}
-    drawn = {("paper", name[2]) for name in names if name[:2] == ["paper", "picture"]}
-    return sorted(runs | drawn)
+    return sorted({(n[1], n[2]) for n in names if n[0] == "picture" and load(n[1])})
 
 
 def take(what: str) -> None:

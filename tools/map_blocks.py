@@ -12,7 +12,7 @@ from flown_code import flown_by
 from pictures import IMAGES
 from rich.console import Console
 
-from faultpath.door.map_flying import MADE_FROM
+from faultpath.door.run import MAP_MADE_FROM as MADE_FROM
 from faultpath.door.saved import MAP
 from faultpath.plane.decide import conclude as decide
 from faultpath.plane.lattice import UNITS

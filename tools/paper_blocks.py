@@ -1,23 +1,24 @@
 """What the marked blocks of the documents show of the shipped reproduction of the paper."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from flown_code import flown_by
+from pictures import IMAGES, standing
 
 from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
+from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.reproduction.terminal import ledger_markdown
 from faultpath.store import read_outcomes
-from faultpath.studies import shipped
 from faultpath.studies.cells import SYSTEM, Setting
 from faultpath.studies.central import ELSEWHERE, central, of_run, state
+from faultpath.studies.shipped import RUN
 from faultpath.tables import Table
 from faultpath.tables.markdown import block
 
-RUN = shipped.shipped_run()
-PLACE = REFERENCE / "paper" / "matched"
+PLACE = REFERENCE / "paper"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")
 """What of a run is shipped with the package: the claims are evaluated from it."""
 PAGES = ("reproduction.html", "tables.tex", "tables.md", "ledger.md")
@@ -42,6 +43,12 @@ def take(folder: Path) -> None:
     copied(FILES, folder, RUN)
     copied(PAGES, folder, PLACE)
     load.cache_clear()
+
+
+def pictures() -> Mapping[Path, str]:
+    """Return the paper's figures, by their path."""
+    figures = load()[0].figures
+    return {IMAGES / f"paper-{each.name}.svg": standing(sweep_plot(each)) for each in figures}
 
 
 def central_claim() -> str:

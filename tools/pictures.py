@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from blocks import FILM, PARTS, REFERENCE, ROOT, Wrong
-from paper_blocks import PLACE
 
 from faultpath.door.replaying import chosen_scenes
 from faultpath.door.saved import read_run
@@ -40,9 +39,7 @@ ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-backg
 
 
 def report(run: str) -> Path:
-    """Return the page of a reference run; `paper` is the run of the paper that is shown."""
-    if run == "paper":
-        return PLACE / "reproduction.html"
+    """Return the page of a reference run."""
     return REFERENCE / run / "report.html"
 
 
@@ -96,11 +93,11 @@ def picture(browser: "Browser", run: str, part: str) -> str:
     A part that is one drawing stays one, with its title above; any other is taken twice, as a page
     shows it in the light and in the dark.
     """
-    wanted = PARTS[part][1] if part in PARTS else f"#{part}"
+    wanted = PARTS[part][1]
     with _opened(browser, run, "light") as page:
         drawings = page.query_selector_all(f":is({wanted}) svg.fig:visible, svg.fig:is({wanted})")
         texts = page.query_selector_all(f":is({wanted}) p:visible, p:is({wanted})")
-        if len(drawings) == 1 and (part.startswith("figure") or not texts):
+        if len(drawings) == 1 and not texts:
             return standing(drawings[0].evaluate("e => new XMLSerializer().serializeToString(e)"))
     taken: list[str] = []
     size = (0.0, 0.0)
@@ -110,7 +107,7 @@ def picture(browser: "Browser", run: str, part: str) -> str:
             areas = [box for box in boxes if box is not None and box["height"] > 0]
             if not areas:
                 raise Wrong(f"the report of {run} has no {part}")
-            clip = _around(areas, 0.0 if run == "paper" else MARGIN)
+            clip = _around(areas, MARGIN)
             shot = b64encode(page.screenshot(full_page=True, clip=clip)).decode()
             taken.append(page.evaluate(_SMALL, shot))
             size = clip["width"], clip["height"]
@@ -147,7 +144,8 @@ def standing(drawing: str) -> str:
     around = left - MARGIN, top - MARGIN - TITLE, width + 2 * MARGIN, height + 2 * MARGIN + TITLE
     head, _, rest = drawing.partition(">")
     head = re.sub(r'viewBox="[^"]*"', f'viewBox="{" ".join(f"{n:g}" for n in around)}"', head)
-    head = re.sub(r'( width| height)="[^"]*"', "", head)
+    head = re.sub(r'( width| height| xmlns)="[^"]*"', "", head)
+    head += ' xmlns="http://www.w3.org/2000/svg"'
     head += f' width="{around[2]:g}" height="{around[3]:g}">'
     own = [line for line in template("reproduction.css").splitlines() if line.startswith(".fig")]
     css = "".join((template("tokens.css"), template("svg.css"), *own))

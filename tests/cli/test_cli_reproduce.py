@@ -1,34 +1,31 @@
-"""The quick profile of the paper's central table, as the command carries it out.
-
-On the selection library: held-out scenes are flown once per frozen configuration, not by tests.
-"""
+"""The quick profile of the paper's central table, as the command carries it out."""
 
 import shutil
 from pathlib import Path
 
 import pytest
-from cli_runs import faultpath as run_command
 
 import faultpath
 from faultpath.cli import report
 from faultpath.cli.reproduce import tell
 from faultpath.door.display import Display
+from faultpath.door.job import Job
 from faultpath.door.reproducing import carry_out
 from faultpath.door.reproduction import ReproductionRun
 from faultpath.errors import UserError
-from faultpath.studies.cells import HELD_OUT, QUICK, SELECTION
-from faultpath.studies.pages import FIGURE_2, table_4
+from faultpath.studies.cells import QUICK
+from faultpath.studies.pages import table_4
 from faultpath.studies.run import Plan
 from faultpath.tables import MISSING
 from faultpath.work import Here
 
 TOLD = Display(command=("faultpath", "reproduce"))
-ASKED = Plan((table_4.PAGE,), QUICK, {HELD_OUT: SELECTION}, {"platform": "first"})
+ASKED = Plan((table_4.PAGE,), QUICK)
 
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> ReproductionRun:
-    return carry_out(ASKED, tmp_path_factory.mktemp("quick"), Here(), TOLD)
+    return carry_out(ASKED, Job(tmp_path_factory.mktemp("quick"), Here(), TOLD))
 
 
 def test_every_file_is_there(done: ReproductionRun) -> None:
@@ -45,14 +42,6 @@ def test_every_file_is_there(done: ReproductionRun) -> None:
         "tables.tex",
         "traces.parquet",
     }
-
-
-def test_no_file_names_the_library_that_did_not_fly(done: ReproductionRun) -> None:
-    """`The library selection takes the place of the held-out one` apart."""
-    stands = "takes the place of the held-out one"
-    for name in ("ledger.md", "tables.md", "tables.tex", "reproduction.html"):
-        text = (done.folder / name).read_text("utf-8").replace(stands, "")
-        assert "held-out" not in text.lower(), name
 
 
 def test_no_figure_of_ours_is_missing(done: ReproductionRun) -> None:
@@ -76,7 +65,7 @@ def test_the_fault_at_the_reconstruction_hurts_what_trusts_calibration(
 
 
 def test_the_same_command_again_flies_nothing(done: ReproductionRun) -> None:
-    again = carry_out(ASKED, done.folder.parent, Here(), TOLD)
+    again = carry_out(ASKED, Job(done.folder.parent, Here(), TOLD))
     provenance = (again.folder / "provenance.json").read_text("utf-8")
     assert '"blocks_computed": 0' in provenance
     assert again.record.tables == done.record.tables
@@ -107,17 +96,3 @@ def test_a_reproduction_is_not_reported_as_an_audit(done: ReproductionRun) -> No
 def test_the_tables_are_printed(done: ReproductionRun, capsys: pytest.CaptureFixture[str]) -> None:
     tell(done, whole=False)
     assert "Wins:losses" in capsys.readouterr().out
-
-
-def test_a_page_that_flies_nothing_shows_the_library(tmp_path: Path) -> None:
-    drawn = Plan((FIGURE_2,), QUICK, {HELD_OUT: SELECTION})
-    done = carry_out(drawn, tmp_path, Here(), TOLD)
-    page = (done.folder / "reproduction.html").read_text("utf-8")
-    assert (done.record.trials, done.record.flown) == (0, None)
-    assert all(shown.topology in page for shown in done.record.gallery)
-
-
-def test_an_unknown_platform_is_refused_before_anything_flies(tmp_path: Path) -> None:
-    ended = run_command("reproduce", "table-4", "--platform", "moon", "--out", tmp_path / "r")
-    assert "unknown platform 'moon'; choose one of first" in ended.refused()
-    assert not (tmp_path / "r").exists()

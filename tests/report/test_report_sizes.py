@@ -1,23 +1,15 @@
 """Sizes in words: of a claim, of a ledger, on the page, in the terminal and in Markdown."""
 
 import re
-from dataclasses import replace
 
 import pytest
-from reproduction_toys import claim, ledger, part, source
+from reproduction_toys import claim, ledger, part, reproduction
 from rich.console import Console
 
 from faultpath.record import ClaimVerdict
-from faultpath.report.inputs import ReportInput
 from faultpath.report.reproduction import words
-from faultpath.report.reproduction.inputs import ReproductionInput
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
-
-
-@pytest.fixture(scope="module")
-def toy(one_seed: ReportInput) -> ReproductionInput:
-    return source(one_seed)
 
 
 def said_in(html: str) -> str:
@@ -86,7 +78,7 @@ def test_sizes_are_counted_in_a_sentence(claims: list[tuple[str, ...]], said: st
     assert words.sizes(found) == said
 
 
-def test_sizes_stand_beside_the_verdict_everywhere(toy: ReproductionInput) -> None:
+def test_sizes_stand_beside_the_verdict_everywhere() -> None:
     found = ledger().model_copy(update={"claims": (sized(SAME, "compatible"),)})
     row = next(
         line for line in ledger_markdown(found, "paper").splitlines() if line.startswith("| C01")
@@ -96,25 +88,8 @@ def test_sizes_stand_beside_the_verdict_everywhere(toy: ReproductionInput) -> No
     with console.capture() as captured:
         console.print(ledger_view(found, "paper"))
     assert "right sign only" in captured.get()
-    reproduced = toy.reproduction.model_copy(update={"ledger": found})
-    html = reproduction_page(replace(toy, reproduction=reproduced))
+    reproduced = reproduction().model_copy(update={"ledger": found})
+    html = reproduction_page(reproduced, None, None)
     text = said_in(html)
     assert f"size: {SAME}, 1 of 2" in text
     assert f"the paper +3.0 pp: {SAME}" in text
-    assert html.count('class="papers-figure"') == 3  # of the claim and of both parts
-
-
-def test_other_platforms_answers_stand_beside(toy: ReproductionInput) -> None:
-    other = ledger().model_copy(update={"platform": "second", "claims": (sized("compatible"),)})
-    text = said_in(reproduction_page(replace(toy, beside=(other,))))
-    assert text.count("platform second: ✓ confirmed , +5.0 pp [4.0, 6.0] · size: compatible") == 1
-
-
-@pytest.mark.parametrize(
-    ("unmatched", "said"),
-    [((), 0), (("C99",), 0), (("C01",), "themselves: C01."), (("C01", "C02"), "C01, C02.")],
-)
-def test_what_a_platform_was_not_matched_to_is_said(unmatched: tuple[str, ...], said: str) -> None:
-    notes = words.notes(ledger().model_copy(update={"unmatched": unmatched}))
-    assert len(notes) == bool(said)
-    assert all(note.endswith(str(said)) for note in notes)

@@ -1,7 +1,5 @@
 """Tables of the studies: known figures from runs with known results."""
 
-from dataclasses import replace
-
 from toy_runs import (
     EMPTY,
     MEASUREMENTS,
@@ -19,9 +17,8 @@ from toy_runs import (
 
 from faultpath.evidence import Measurement
 from faultpath.record import Sweep
-from faultpath.studies.cells import HELD_OUT, Cell
-from faultpath.studies.claims import evaluate
-from faultpath.studies.pages import PAGES, figure_3, table_1, table_2, table_4, table_6
+from faultpath.studies.cells import Cell
+from faultpath.studies.pages import PAGES, figure_3, table_2, table_4, table_6
 from faultpath.studies.quantities.differences import contrast
 from faultpath.trials import Status
 
@@ -188,23 +185,6 @@ def test_notes_say_what_was_flown_and_measured() -> None:
     assert nothing == "No trial of this table was run."
 
 
-def test_only_the_library_that_flew_is_named() -> None:
-    """Where a user's library takes the place of the held-out one, nothing says `held-out`."""
-    published = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
-    results = replace(published, libraries={HELD_OUT: "mine"})
-    built = [part for each in PAGES for part in each.build(results)]
-    told = [part.model_dump_json() for part in built] + [each.title for each in PAGES]
-    assert sum("of the mine library" in words for words in told) > 10
-    assert [words for words in told if "held-out" in words.lower()] == []
-
-
-def test_a_reason_names_the_library_that_flew() -> None:
-    empty = replace(EMPTY, libraries={HELD_OUT: "mine"})
-    reasons = [part.reason for claim in evaluate(empty) for part in claim.parts]
-    assert any("mine, obstacles, L0" in reason for reason in reasons)
-    assert [reason for reason in reasons if "held-out" in reason] == []
-
-
 def test_a_freeze_is_compared_with_the_same_seed_alone() -> None:
     def ends(cell: Cell, seed: int, scene: int) -> Status:
         return Status.CRASH if seed or scene >= 10 else Status.SUCCESS
@@ -243,12 +223,3 @@ def test_the_ceiling_counts_scenes_that_end_alike_everywhere() -> None:
 
     table = tables(page("text-planning"), run(ends))["text-ceiling"]
     assert [texts(each)[0] for each in table.lines] == ["40", "40"]
-
-
-def test_detection_sensitivity_gives_the_least_detectable_difference() -> None:
-    table = tables(page("detection-sensitivity"), run(won(lambda cell: 10)))
-    results = run(won(lambda cell: 10))
-    least = contrast(results, table_1.DKI, table_1.WM_A).least
-    assert least is not None
-    shown = line(table["detection-sensitivity"], "DKI minus WM-A, seed 0")
-    assert texts(shown) == ["0.0", "[−16.1, 16.1]", "0:0", "1.000", f"{least:.1f}"]

@@ -31,16 +31,10 @@ def command(
     out: Annotated[
         Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>-<code>.")
     ] = None,
-    library: Annotated[
-        str | None, typer.Option(help="Library or file in place of the held-out library.")
-    ] = None,
     workers: Annotated[
         int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
     ] = None,
     device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
-    platform: Annotated[
-        str | None, typer.Option(help="Frozen platform; default the quadrotor's.")
-    ] = None,
     executor: Executor = "local",
     time_limit: TimeLimit = None,
     as_json: Annotated[
@@ -53,13 +47,11 @@ def command(
             "--judge",
             pages=pages or None,
             profile=profile,
-            library=library,
             workers=workers,
             device=device,
             time_limit=time_limit,
-            **({} if out is None else {"platform": platform}),
         )
-        return _judge(out, platform, as_json)
+        return _judge(out, as_json)
 
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.reproduction import reproduce
@@ -67,12 +59,10 @@ def command(
     run = reproduce(
         pages or (),
         profile=profile or "quick",
-        library=library,
         folder=out,
         workers=workers,
         executor=executor,
         device=device,
-        platform=platform,
         time_limit_s=time_limit,
         progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
     )
@@ -84,12 +74,12 @@ def command(
     return FAILED_TRIALS if run.record.failed_trials else 0
 
 
-def _judge(folder: Path | None, platform: str | None, as_json: bool) -> int:
+def _judge(folder: Path | None, as_json: bool) -> int:
     """Show the claims; those of a run that did not ship are judged by the code that is here."""
     if folder is None:
         from faultpath.studies.shipped import shipped_ledger
 
-        answers, profile = shipped_ledger(platform), "paper"
+        answers, profile = shipped_ledger(), "paper"
     else:
         answers, profile = _judged(folder)
     if as_json:

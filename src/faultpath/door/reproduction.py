@@ -7,18 +7,16 @@ from pathlib import Path
 from faultpath.door.display import Display, display
 from faultpath.door.reproduced import ReproductionRun
 from faultpath.door.systems import LOCAL, check_executor, hands
-from faultpath.studies.run import plan, standing
+from faultpath.studies.run import plan
 
 
 def reproduce(
     pages: str | Sequence[str] = (),
     *,
     profile: str = "quick",
-    library: str | None = None,
     folder: str | PathLike[str] | None = None,
     workers: int | None = None,
     device: str | None = None,
-    platform: str | None = None,
     time_limit_s: float | None = None,
     progress: bool | Display = True,
     executor: str = LOCAL,
@@ -28,11 +26,9 @@ def reproduce(
     Args:
         pages: `table-4`, `figure-3`, `text-wind` and so on; default all.
         profile: `quick` (few scenes, one seed) or `paper` (its size).
-        library: Library or file to fly in place of the held-out one.
-        folder: Run folder; default `runs/reproduction-<library>-<profile>-<code>`.
+        folder: Run folder; default `runs/reproduction-<profile>-<code>`.
         workers: Worker processes, 0 for this process alone; default one per core, or per GPU.
         device: `cpu` (default) or `cuda`.
-        platform: The frozen platform to fly on; default the quadrotor's own.
         time_limit_s: Seconds that a block of scenes may take in a worker.
         progress: As in `audit`.
         executor: As in `audit`, for the flights; windows are measured on this machine.
@@ -44,14 +40,8 @@ def reproduce(
     given = dict(locals())
     check_executor(executor)
     named = (pages,) if isinstance(pages, str) else tuple(pages)
-    chosen = {"device": device}
-    options = {option: value for option, value in chosen.items() if value is not None}
-    asked = plan(named, profile, standing(library), options)
-    place = Path(folder or "")
-    if folder is None:
-        own = "" if library is None else f"-{Path(library).stem}"
-        own += "" if platform is None else f"-{platform}"
-        place = asked.folder(f"reproduction{own}-{asked.profile.name}")
+    asked = plan(named, profile, {} if device is None else {"device": device})
+    place = Path(folder) if folder else asked.folder(f"reproduction-{asked.profile.name}")
     told = display(progress, "reproduce", given | {"pages": named})
 
     # What flies, stores and draws takes a while to load, and no mistake so far waits for it.

@@ -12,7 +12,6 @@ from faultpath.record.reproduction import (
     Part,
     Point,
     Reproduction,
-    SceneShown,
     Series,
     Sweep,
 )
@@ -32,7 +31,6 @@ __all__ = [
     "Question",
     "Reproduction",
     "RunProvenance",
-    "SceneShown",
     "Series",
     "StopRule",
     "StopWhen",

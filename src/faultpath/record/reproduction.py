@@ -72,12 +72,6 @@ class Ledger(_Frozen):
     claims: tuple[ClaimVerdict, ...]
     left_out: int = 0
     """Claims that the run is not about."""
-    note: str = ""
-    """What was flown elsewhere than on `library`, where that takes the place of another."""
-    platform: str = "first"
-    """On which the system flew; runs that do not say are older than the second one."""
-    unmatched: tuple[str, ...] = ()
-    """Platform claims to whose figures this platform was not matched, by their ids."""
 
     def count(self, answer: Answer) -> int:
         """Return how many claims got this answer."""
@@ -113,13 +107,6 @@ class Sweep(_Frozen):
     notes: tuple[str, ...] = ()
 
 
-class SceneShown(_Frozen):
-    """A scene of the gallery."""
-
-    scene: str
-    topology: str
-
-
 class Configuration(_Frozen):
     """One setting of the system as it was flown."""
 
@@ -139,7 +126,6 @@ class Reproduction(_Frozen):
     ledger: Ledger
     tables: tuple[Table, ...]
     figures: tuple[Sweep, ...]
-    gallery: tuple[SceneShown, ...]
     configurations: tuple[Configuration, ...]
     trials: int
     failed_trials: int

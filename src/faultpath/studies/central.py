@@ -6,29 +6,17 @@ What was decided of it besides in a run itself stands in a file that comes with 
 from collections.abc import Iterable
 from pathlib import Path
 
-from faultpath.record import SHARED, DecisionRecord, Ledger, Reproduction, wording
+from faultpath.record import Ledger, Reproduction, wording
 from faultpath.report.reproduction import words
 from faultpath.studies.entries import bracket
 from faultpath.studies.pages.table_4 import NAMES, PAGE, paper_contrast
-from faultpath.studies.reversal import BASELINE, REPAIR
 from faultpath.tables import Entry, Line, Table, line
 
 CLAIM = "C26"
-ISOLATED = "reconstruction"
+BASELINE, REPAIR = "gru", "gru+dcc"
 ELSEWHERE = Path(__file__).parent / "paper" / "reversal.json"
 COLUMNS = ("Reconstruction only", "Shared error", "Reversal")
 DECIDED, OPEN = "decided", "not decided"
-
-
-def decided(record: DecisionRecord, place: str) -> Line:
-    """Return what an audit of the question decided, in a place."""
-    effects = {effect.path: effect for effect in record.effects}
-    turns = [change.turn for change in record.changes if change.isolated == ISOLATED]
-    shown = (
-        Entry(text=wording.with_interval(effects[path].success), detected=effects[path].detected)
-        for path in (ISOLATED, SHARED)
-    )
-    return line(place, *shown, DECIDED if turns == ["reversal"] else OPEN)
 
 
 def of_run(found: Reproduction, place: str) -> Line | None:
@@ -76,20 +64,17 @@ def central(lines: Iterable[Line]) -> Table:
 def of_page(found: Reproduction) -> tuple[str, Table] | None:
     """Return what the page of a run says first: the claim's state, and where it holds.
 
-    What was decided besides stands there too, unless another library took the place of the
-    held-out one; of a quick run nothing else does.
+    `None` for a run that is not about the claim; of a quick run only what was decided besides.
     """
     asked = found.ledger
     if all(each.id != CLAIM for each in asked.claims):
         return None
-    besides = () if asked.note else Table.model_validate_json(ELSEWHERE.read_bytes()).lines
+    besides = Table.model_validate_json(ELSEWHERE.read_bytes()).lines
     if found.profile == words.QUICK:
         return f"A quick run decides nothing about {CLAIM}.", central(besides)
     seeds = wording.seeds(asked.seeds)
     own = of_run(found, f"In this run, {asked.scenes} scenes of {asked.library}, {seeds}")
-    platform = f", platform {asked.platform}"
-    others = [each for each in besides if not each.label.endswith(platform)]
-    return state(asked), central([*([own] if own else []), *others])
+    return state(asked), central([*([own] if own else []), *besides])
 
 
 def _when(lines: Iterable[Line]) -> Iterable[str]:

@@ -83,7 +83,7 @@ def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
         counts = results.counts(cell)
         flown = sum(counts.values()) - counts[Status.FAILED]
         if not flown:
-            raise NotRun(f"a trial of {results.named(cell)} that did not fail")
+            raise NotRun(f"a trial of {cell} that did not fail")
         return (wording.plain(100 * counts[status] / flown, 0),)
 
     return Group(make, (printed(paper),), (of_seed(cell),))

@@ -3,13 +3,12 @@
 import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.execution import RunResult
 from faultpath.studies.cells import SYSTEM, Cell, Profile, Setting
-from faultpath.studies.stand_in import shown
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
 from faultpath.work import Progress
 
@@ -25,8 +24,6 @@ class Leg:
     setting: Setting
     system: System
     study: Study
-    title: str
-    """The setting with the name of the library that flies."""
 
     @property
     def folder(self) -> str:
@@ -61,16 +58,12 @@ class Flown:
 
 
 def plan_legs(
-    cells: Iterable[Cell],
-    profile: Profile,
-    libraries: Mapping[str, str],
-    options: Mapping[str, str],
+    cells: Iterable[Cell], profile: Profile, options: Mapping[str, str]
 ) -> tuple[Leg, ...]:
-    """Return what a profile flies of `cells`, setting by setting in the order of the cells.
+    """Return what a profile runs of `cells`, setting by setting in the order of the cells.
 
-    `libraries` gives the library that stands for a role, where it is not the one of that name;
-    `options` are added to those of every setting. Raises `UserError` for a library that cannot be
-    read or an option that does not exist.
+    `options` are added to those of every setting. Raises `UserError` for an option that does not
+    exist.
     """
     by_setting: dict[Setting, list[Cell]] = {}
     for cell in profile.cells(cells):
@@ -79,17 +72,15 @@ def plan_legs(
     for setting, members in by_setting.items():
         spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
         system = load_system(spec)
-        name = libraries.get(setting.library, setting.library)
-        library = system.library(name)
+        scenes = system.library(setting.library).scenes[: profile.scenes]
         study = Study(
             name=str(setting),
             system=spec,
-            library=name,
-            scenes=tuple(scene.id for scene in library.scenes[: profile.scenes]),
+            library=setting.library,
+            scenes=tuple(scene.id for scene in scenes),
             rows=tuple(_row(system, cell, seed) for cell in members for seed in cell.seeds),
         )
-        title = str(replace(setting, library=shown(library.name)))
-        legs.append(Leg(setting, system, study, title))
+        legs.append(Leg(setting, system, study))
     return tuple(legs)
 
 
@@ -103,7 +94,7 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
     for leg in legs:
 
         def progress(now: Progress, before: int = before, leg: Leg = leg) -> None:
-            show(now.within(total, before, leg.title))
+            show(now.within(total, before, leg.study.name))
 
         place = folder / FLIGHTS / leg.folder
         results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))

@@ -33,7 +33,7 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
     for cell in cells:
         with suppress(NotRun):
             run = results.seeds(cell)
-            library = results.library(cell.setting.library)
+            library = cell.setting.library
             scenes, seeds = held.setdefault(library, (set(), set()))
             seeds.update(run)
             rows = results.outcomes.arm(cell.variant, cell.path, run[0])
@@ -57,7 +57,7 @@ def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
     if not found:
         return "No error of this table was measured."
     measurement, windows = next(iter(found.items()))
-    library = results.library(measurement.recording.library)
+    library = measurement.recording.library
     scenes = wording.counted(len(set(windows.scenes)), "scene")
     seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in found})))
     return f"{len(windows):,} windows of {scenes} of the {library} library, {seeds}."

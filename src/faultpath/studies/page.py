@@ -117,14 +117,12 @@ class Page:
     name: str
     """Such as `table-2`."""
     title: str
-    parts: tuple[Part, ...] = ()
-    drawn: tuple[Cell, ...] = ()
-    """Cells of what the report draws by itself."""
+    parts: tuple[Part, ...]
 
     @property
     def cells(self) -> tuple[Cell, ...]:
         """What the page needs flown."""
-        return (*self.drawn, *(cell for part in self.parts for cell in part.cells))
+        return tuple(cell for part in self.parts for cell in part.cells)
 
     @property
     def measurements(self) -> tuple[Measurement, ...]:

@@ -1,7 +1,7 @@
 """What the studies' runs left, as tables, figures and claims ask for it."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -28,23 +28,12 @@ class Results:
     evidence: EvidenceTable | None
     library_hash: str
     """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
-    libraries: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Name of the library that flew for a role, such as `held-out`, where it is another."""
-
-    def library(self, role: str) -> str:
-        """Return the name of the library that flew for a role."""
-        return self.libraries.get(role, role)
-
-    def named(self, cell: Cell) -> str:
-        """Return a cell in words, with the library that flew."""
-        library = self.library(cell.setting.library)
-        return str(replace(cell, setting=replace(cell.setting, library=library)))
 
     def seeds(self, cell: Cell) -> tuple[int, ...]:
         """Return the seeds of a cell that were run; `NotRun` without any."""
         run = [s for s in self.outcomes.seeds(cell.variant, cell.path) if s in cell.seeds]
         if not run:
-            raise NotRun(self.named(cell))
+            raise NotRun(cell)
         return tuple(run)
 
     def has(self, cell: Cell) -> bool:
@@ -66,7 +55,7 @@ class Results:
         """
         seeds = [seed for seed in self.seeds(first) if seed in self.seeds(second)]
         if not seeds:
-            raise NotRun(f"a seed that {self.named(first)} and {self.named(second)} share")
+            raise NotRun(f"a seed that {first} and {second} share")
         pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
         if pairs.mismatches:
             raise PairingRefused(str(pairs.mismatches[0]))
@@ -74,7 +63,7 @@ class Results:
             kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
             pairs = pairs.only([scene for scene, index in kept if index in scenes])
         if not pairs.scenes:
-            raise NotRun(f"a scene of {self.named(first)} and {self.named(second)} to compare")
+            raise NotRun(f"a scene of {first} and {second} to compare")
         return pairs
 
     def rate(self, cell: Cell, scenes: Sequence[int] | None = None) -> Estimate:
@@ -85,7 +74,7 @@ class Results:
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
         """Return how many trials of a cell ended in each way, for one seed."""
         if seed not in self.seeds(cell):
-            raise NotRun(f"{self.named(cell)}, seed {seed}")
+            raise NotRun(f"{cell}, seed {seed}")
         ends = [row.outcome.status for row in self.outcomes.arm(cell.variant, cell.path, seed)]
         return {status: ends.count(status) for status in Status}
 
@@ -95,7 +84,7 @@ class Results:
         rows = self.outcomes.arm(cell.variant, cell.path, seed)
         times = [row.outcome.time_s for row in rows if row.outcome.status is Status.SUCCESS]
         if not times:
-            raise NotRun(f"a success of {self.named(cell)}")
+            raise NotRun(f"a success of {cell}")
         return float(np.median(times))
 
     def measured(self, measurement: Measurement) -> Measured:

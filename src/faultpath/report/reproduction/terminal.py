@@ -62,13 +62,12 @@ def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
     A quick run has neither counts nor sizes.
     """
     title = Text(f"{words.headline(ledger, profile)}.", style="bold")
-    note = tuple(Text(each, "dim") for each in words.notes(ledger))
     blank = Text("")
     below = (Text(words.sizes(ledger)),) if words.sizes(ledger) else ()
     about, claims = Text(_about(ledger)), _claims(ledger)
     if profile == words.QUICK:
-        return Group(title, Text(words.VERDICTS), about, *note, blank, *claims)
-    return Group(title, about, *note, blank, *claims, blank, _counts(ledger), *below)
+        return Group(title, Text(words.VERDICTS), about, blank, *claims)
+    return Group(title, about, blank, *claims, blank, _counts(ledger), *below)
 
 
 def _claims(ledger: Ledger) -> Iterable[RenderableType]:
@@ -97,7 +96,7 @@ def _shown(claim: ClaimVerdict) -> Iterable[Text]:
 
 def ledger_markdown(ledger: Ledger, profile: str) -> str:
     """Return the ledger as a Markdown table, the counts above it."""
-    about = " ".join([f"{_about(ledger)}.", *words.notes(ledger)])
+    about = f"{_about(ledger)}."
     table = grid(_table(ledger))
     sizes = ["", markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
     return "\n".join(
@@ -107,7 +106,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
 
 def _about(ledger: Ledger) -> str:
     scenes = wording.counted(ledger.scenes, "scene")
-    return f"{ledger.library}, platform {ledger.platform}, {scenes}, {wording.seeds(ledger.seeds)}"
+    return f"{ledger.library}, {scenes}, {wording.seeds(ledger.seeds)}"
 
 
 def _entries(claim: ClaimVerdict) -> dict[str, str | Entry]:

@@ -16,14 +16,6 @@ ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
 SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
 """From the nearest to the paper's figure to the farthest."""
-STATES: dict[Size, str] = {
-    "compatible": "same",
-    "right sign, other size": "right",
-    "other size": "other",
-    "other sign": "sign",
-    "not comparable": "none",
-}
-"""Each size as a name for styles and addresses."""
 _HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
@@ -105,34 +97,6 @@ def size(claim: ClaimVerdict) -> str:
     return worst if compared == 1 else f"{worst}, {count} of {compared}"
 
 
-def state(claim: ClaimVerdict) -> str:
-    """Return the size of a claim as a word for classes and filters: `right`, `same` and so on."""
-    return STATES[farthest(claim)[0]]
-
-
-def by_size(ledger: Ledger, answer: Answer) -> dict[Size, list[ClaimVerdict]]:
-    """Return the claims that got an answer, by how large the effect is beside the paper's."""
-    claims = [claim for claim in ledger.claims if claim.verdict == answer]
-    return {
-        size: having
-        for size in STATES
-        if (having := [claim for claim in claims if farthest(claim)[0] == size])
-    }
-
-
-def beside(ledger: Ledger, other: Ledger) -> str:
-    """Say what another platform's run answered to the same claims."""
-    theirs = {claim.id: claim.verdict for claim in other.claims}
-    both = [claim for claim in ledger.claims if claim.id in theirs]
-    there = [theirs[claim.id] for claim in both]
-    counts = ", ".join(f"{there.count(answer)} {answer}" for answer in ANSWERS)
-    same = sum(theirs[claim.id] == claim.verdict for claim in both)
-    return (
-        f"Platform {other.platform}, of the same claims, beside each in grey: {counts}; {same} of "
-        f"{len(both)} claims have the same answer on both."
-    )
-
-
 def sizes(ledger: Ledger) -> str:
     """Return in one sentence how many figures of the paper ours are compatible with."""
     parts = [part for claim in ledger.claims for part in claim.parts]
@@ -161,16 +125,6 @@ def headline(ledger: Ledger, profile: str) -> str:
         f"Of {about}, our runs confirm "
         f"{confirmed}, refute {refuted} and leave {undecided} undecided"
     )
-
-
-def notes(ledger: Ledger) -> tuple[str, ...]:
-    """Return what qualifies all claims: what flew elsewhere, what a platform was not matched to."""
-    there = [claim.id for claim in ledger.claims if claim.id in ledger.unmatched]
-    unmatched = (
-        f"Platform claims that platform {ledger.platform} was not matched to, so that they had to "
-        f"come out by themselves: {', '.join(there)}."
-    )
-    return tuple(filter(None, (ledger.note, unmatched if there else "")))
 
 
 def _digits(unit: str) -> int:

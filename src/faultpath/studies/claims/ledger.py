@@ -16,35 +16,12 @@ from faultpath.studies.claims.statement import Statements, verdict
 from faultpath.studies.published import published_claims
 from faultpath.studies.results import Results
 
-SUBJECTS = (predictors, calibration, wind, shared, compensation, paying, others)
-
 STATEMENTS: Mapping[str, Statements] = {
-    claim: statements for subject in SUBJECTS for claim, statements in subject.CLAIMS.items()
+    claim: statements
+    for subject in (predictors, calibration, wind, shared, compensation, paying, others)
+    for claim, statements in subject.CLAIMS.items()
 }
 """What each claim consists of, by its id."""
-
-TOPICS: Mapping[str, tuple[str, ...]] = {
-    title: tuple(subject.CLAIMS)
-    for title, subject in (
-        ("Predictors with correct inputs", predictors),
-        ("Calibration error, and DCC against it", calibration),
-        ("Wind and its reconstruction", wind),
-        ("The same error isolated and shared", shared),
-        ("Why: errors that cancel", compensation),
-        ("When the repair pays", paying),
-        ("Other", others),
-    )
-}
-"""The claims by topic, by their ids."""
-
-LIMITS = {
-    claim: tuple(statement.limits for statement in statements)
-    for claim, statements in STATEMENTS.items()
-}
-"""By claim, what each of its statements is decided at, in the unit of its estimate."""
-
-UNMATCHED: Mapping[str, tuple[str, ...]] = {"first": ("C02", "C03")}
-"""Platform claims, by platform, to whose figures it was not matched: it was frozen before."""
 
 
 def evaluate(results: Results) -> tuple[ClaimVerdict, ...]:
@@ -60,10 +37,8 @@ def ledger(
     seeds: Sequence[int],
     *,
     only_run: bool = False,
-    note: str = "",
-    platform: str = "first",
 ) -> Ledger:
-    """Return all answers with what they were answered on; `note` and `platform` as in `Ledger`.
+    """Return all answers with what they were answered on.
 
     `only_run` leaves claims out of which a part was not run: a run of some pages is not about them.
     """
@@ -76,13 +51,9 @@ def ledger(
         seeds=tuple(seeds),
         claims=tuple(kept),
         left_out=len(every) - len(kept),
-        note=note,
-        platform=platform,
-        unmatched=UNMATCHED.get(platform, ()),
     )
 
 
 def again(results: Results, old: Ledger) -> Ledger:
     """Return a ledger answered anew, every claim of it, by the rules that are here."""
-    asked = old.library, old.library_hash, old.scenes, old.seeds
-    return ledger(results, *asked, note=old.note, platform=old.platform)
+    return ledger(results, old.library, old.library_hash, old.scenes, old.seeds)

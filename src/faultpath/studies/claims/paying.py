@@ -89,11 +89,6 @@ class Pays:
             return f"{subject} does not exist: the repair pays at none"
         return self.bound.words.format(f"{subject} in percent,")
 
-    @property
-    def limits(self) -> tuple[float, ...]:
-        """The bound, where there is one, percent."""
-        return () if self.bound is None else (self.bound.limit,)
-
     def part(self, results: Results) -> Part:
         """Answer it from a run."""
         found = crossing(results, self.repair)

@@ -41,8 +41,6 @@ class Rule:
     """Answers it."""
     sided: bool = True
     """Whether the statement is about a side of no effect, rather than about there being none."""
-    limits: tuple[float, ...] = ()
-    """What it is decided at, in the unit of the quantity; no part of any answer."""
 
 
 def points_decide(n_scenes: int) -> bool:
@@ -73,7 +71,7 @@ def detected(sign: int) -> Rule:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 
-    return Rule(f"{{}} is {_SIDES[sign]} 0", judge, limits=(0.0,))
+    return Rule(f"{{}} is {_SIDES[sign]} 0", judge)
 
 
 def not_detected(sign: int | None = None) -> Rule:
@@ -94,7 +92,7 @@ def not_detected(sign: int | None = None) -> Rule:
         return CONFIRMED
 
     where = "to differ from" if sign is None else _SIDES[sign]
-    return Rule(f"{{}} is not detected {where} 0", judge, sided=False, limits=(0.0,))
+    return Rule(f"{{}} is not detected {where} 0", judge, sided=False)
 
 
 @dataclass(frozen=True)
@@ -151,7 +149,7 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
             return Judged("undecided", "met, but not detected")
         return met
 
-    return Rule(f"{bound.words}{' and detected' if seen else ''}", judge, limits=(bound.limit,))
+    return Rule(f"{bound.words}{' and detected' if seen else ''}", judge)
 
 
 def at_least(limit: float) -> Rule:
@@ -188,9 +186,7 @@ def within(least: float, most: float) -> Rule:
         inside = least < low and high < most
         return CONFIRMED if inside or points_decide(found.n_scenes) else FEW_FOR_POINTS
 
-    return Rule(
-        f"{{}} lies between {least:g} and {most:g}", judge, sided=False, limits=(least, most)
-    )
+    return Rule(f"{{}} lies between {least:g} and {most:g}", judge, sided=False)
 
 
 def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
@@ -209,7 +205,7 @@ def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
             return CONFIRMED
         return REFUTED if bound.ahead(found.value) else TIED
 
-    return Rule(f"{bound.words}, by the point estimate", judge, limits=(limit,))
+    return Rule(f"{bound.words}, by the point estimate", judge)
 
 
 _SIDES = {1: "above", -1: "below"}

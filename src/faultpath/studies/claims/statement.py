@@ -25,11 +25,6 @@ class Stated(Protocol):
         """The paper's figure for it."""
         ...
 
-    @property
-    def limits(self) -> tuple[float, ...]:
-        """What it is decided at, in the unit of its estimate."""
-        ...
-
     def part(self, results: Results) -> Part:
         """Answer it from a run; raises `NotRun` or `Undecidable`."""
         ...
@@ -53,11 +48,6 @@ class Statement:
     def words(self) -> str:
         """The statement."""
         return self.rule.words.format(self.subject)
-
-    @property
-    def limits(self) -> tuple[float, ...]:
-        """What it is decided at, in the unit of the quantity."""
-        return self.rule.limits
 
     def part(self, results: Results) -> Part:
         """Answer it from a run."""

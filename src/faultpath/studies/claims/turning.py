@@ -57,11 +57,6 @@ class TurnsDown:
         """The statement."""
         return f"{self.subject} turns from above 0 to below 0"
 
-    @property
-    def limits(self) -> tuple[float, ...]:
-        """The change, and both effects, are held against 0."""
-        return (0.0,)
-
     def part(self, results: Results) -> Part:
         """Answer it from a run."""
         one, two = together(results, self.before, self.after)

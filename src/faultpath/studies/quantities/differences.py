@@ -96,9 +96,7 @@ def time(first: Cell, second: Cell) -> Quantity:
         one, two = pairs.first, pairs.second
         both = one.success & two.success
         if not both.any():
-            raise NotRun(
-                f"a scene in which both {results.named(first)} and {results.named(second)} succeed"
-            )
+            raise NotRun(f"a scene in which both {first} and {second} succeed")
         return decisive(median_effect(one.time_s, two.time_s, both, results.resamples(pairs)))
 
     return found
@@ -127,7 +125,7 @@ def joint(results: Results, *pairs: Pair) -> tuple[Pairs, ...]:
     """Return pairs over the seeds and the scenes that all of them have; `NotRun` without any."""
     seeds = _common([results.seeds(cell) for pair in pairs for cell in pair])
     if not seeds:
-        raise NotRun(f"a seed that {results.named(pairs[0][0])} and all it is compared with share")
+        raise NotRun(f"a seed that {pairs[0][0]} and all it is compared with share")
     cut = [(replace(first, seeds=seeds), replace(second, seeds=seeds)) for first, second in pairs]
     kept = _common([results.pairs(*pair).scene_indices for pair in cut])
     return tuple(results.pairs(*pair, scenes=kept) for pair in cut)
