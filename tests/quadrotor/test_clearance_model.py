@@ -4,7 +4,6 @@ import copy
 
 import pytest
 import torch
-from safetensors.torch import load, save
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
@@ -70,18 +69,6 @@ def test_clearance_is_bounded_and_is_what_training_sees_between_the_bounds(model
     torch.testing.assert_close(found, free.clamp(LOWEST_M, HIGHEST_M), atol=1e-5, rtol=1e-5)
 
 
-def test_clearance_depends_on_the_image_and_on_the_point(model: ClearanceModel):
-    found = model.query(model.encode(images(2)), points(1).expand(3, 2, POINTS))
-    assert not torch.allclose(found[0], found[1], atol=0.01)
-    assert found[0].std() > 0.01
-
-
-def test_erased_and_huge_depths_give_finite_clearance(model: ClearanceModel):
-    for depth in (0.0, -1.0, 1e6):
-        code = model.encode(torch.full((1, HEIGHT, WIDTH), depth))
-        assert model.query(code, points(1)).isfinite().all()
-
-
 def captured(
     model: ClearanceModel, count: int
 ) -> tuple[DepthClearance, torch.Tensor, torch.Tensor]:
@@ -91,19 +78,6 @@ def captured(
     rotation = so3.exp(torch.randn(3, count, generator=draws(4), dtype=torch.float64))
     perception.capture(images(count), position, rotation.movedim(-1, 0))
     return perception, position, rotation
-
-
-def test_the_encoder_runs_once_a_capture_however_often_it_is_queried(model: ClearanceModel):
-    seen: list[int] = []
-    hook = model.encoder.register_forward_hook(lambda module, given, code: seen.append(len(code)))
-    try:
-        perception, _, _ = captured(model, 5)
-        assert len(seen) == 1
-        for _ in range(3):
-            perception.query(points(2), [0, 4])
-        assert len(seen) == 1
-    finally:
-        hook.remove()
 
 
 def test_points_are_taken_from_the_world_into_the_frame_of_the_capture(model: ClearanceModel):
@@ -152,35 +126,3 @@ def test_the_view_is_the_images_pyramid_and_the_vehicles_own_place_needs_no_pixe
     behind = torch.tensor([-1.0, 0.0, 0.0])
     assert near(behind * (NEAR_M - 0.01), NEAR_M)
     assert not near(behind * (NEAR_M + 0.01), NEAR_M)
-
-
-def test_a_later_capture_replaces_the_one_before(model: ClearanceModel):
-    perception, position, rotation = captured(model, 2)
-    before = perception.query(points(2), [0, 1])
-    perception.capture(images(3)[1:], position, rotation.movedim(-1, 0))
-    assert not torch.equal(perception.query(points(2), [0, 1]), before)
-
-
-def test_a_query_without_an_image_is_refused(model: ClearanceModel):
-    with pytest.raises(RuntimeError, match="captured"):
-        DepthClearance(model).query(points(1), [0])
-
-
-def test_weights_come_back_from_safetensors(model: ClearanceModel):
-    data = save({name: value.clone() for name, value in model.state_dict().items()})
-    again = ClearanceModel().eval()
-    again.load_state_dict(load(data))
-    depth, at = images(2), points(2)
-    with torch.no_grad():
-        found = again.query(again.encode(depth), at)
-    assert torch.equal(found, model.query(model.encode(depth), at))
-
-
-def test_initial_weights_depend_on_the_generator_only():
-    one, same, other = ClearanceModel(), ClearanceModel(), ClearanceModel()
-    one.initialise(draws(5))
-    same.initialise(draws(5))
-    other.initialise(draws(6))
-    for name, value in one.state_dict().items():
-        assert torch.equal(value, same.state_dict()[name]), name
-    assert not torch.equal(one.layers[0].weight, other.layers[0].weight)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 import torch
-from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, trace, with_halls
+from flights import HELD_OUT, STEPS, fault, fly, quadrotor, trace
 from simulated_gpu import GPU, HostWaited, SimulatedGPU, simulated_gpu
 from torch import Tensor
 from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicOutputShapeException
@@ -18,13 +18,9 @@ from faultpath import arrays
 from faultpath.errors import UserError
 from faultpath.loop import Batch
 from faultpath.quadrotor import device as devices
-from faultpath.quadrotor import models, native, so3, system
+from faultpath.quadrotor import models, native, system
 from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.perception import DepthRenderer
 from faultpath.quadrotor.plant.module import ACTION
-from faultpath.quadrotor.predictors import AnchoredPredictor
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.state import State
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.taps import Observer, Query, Reading, Taps
 from faultpath.taps.tap import Tap
@@ -127,15 +123,6 @@ SINS: dict[str, tuple[Callable[[Tensor], object], type[Exception]]] = {
 }
 
 
-@pytest.mark.parametrize(("sin", "error"), SINS.values(), ids=SINS.keys())
-def test_the_simulation_notices(sin, error, gpu):
-    """Otherwise the test above would hold of nothing."""
-    there = torch.ones(3, 3).to(GPU)
-    gpu.watching = True
-    with pytest.raises(error):
-        sin(there)
-
-
 @pytest.fixture
 def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
     """Return what sends the program the way of an accelerator while tensors are on the CPU."""
@@ -150,30 +137,6 @@ def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], Non
     _forget()
 
 
-def test_planning_for_ended_trials_changes_no_result_and_no_receipt(tmp_path, as_on_a_device):
-    """Scenes end at different times, and who is looked at only now and then is flown on."""
-    with native.using(native.PORTABLE):
-        flyer = quadrotor(wind="L3")
-        scenes = with_halls(
-            flyer,
-            tmp_path,
-            hall(0, start=(0.0, 0.0, 1.5), goal=(0.0, 0.0, 0.995)),
-            hall(1, start=(0.0, 1.0, 0.3), goal=(4.0, 1.0, 1.5)),
-            hall(2, start=(0.0, -1.0, 0.5), goal=(4.0, 1.0, 1.5)),
-        )
-        falls = [fault("action:erase=0/0/0/0@vehicle", flyer), fault("mass:scale=1.1", flyer)]
-        usual, taps = fly(flyer, "dob", scenes, falls)
-        as_on_a_device()
-        other, later = fly(flyer, "dob", scenes, falls)
-    assert len({outcome.time_s for outcome in usual}) == 3
-    assert [bits(outcome) for outcome in other] == [bits(outcome) for outcome in usual]
-    before, after = taps.receipts(), later.receipts()
-    assert before.steps_struck.tolist() == after.steps_struck.tolist()
-    assert before.steps_altered.tolist() == after.steps_altered.tolist()
-    tap = ("action", "vehicle.actuators")
-    assert 0 < before.at(*tap).deliveries < after.at(*tap).deliveries < STEPS
-
-
 def test_learned_modules_fly_the_same_to_rounding_the_way_of_a_device(as_on_a_device):
     with native.using(native.PORTABLE):
         flyer = quadrotor(**LEARNED)
@@ -185,43 +148,6 @@ def test_learned_modules_fly_the_same_to_rounding_the_way_of_a_device(as_on_a_de
         assert one.status is two.status
         assert one.planner_noise_hash == two.planner_noise_hash
         assert trace(two) == pytest.approx(trace(one), abs=1e-4)
-
-
-def test_images_drawn_at_once_are_those_drawn_in_rounds(monkeypatch):
-    scenes = load_library("held-out").scenes[:6]
-    start = State.hover(
-        torch.tensor([scene.start_m for scene in scenes], dtype=torch.float64).T,
-        torch.tensor([scene.start_yaw_rad for scene in scenes], dtype=torch.float64),
-    )
-    with native.using(native.PORTABLE):
-        rounds = DepthRenderer(scenes).render(start)
-        monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
-        assert torch.equal(DepthRenderer(scenes).render(start), rounds)
-    assert rounds.min() < 2 < rounds.max()
-
-
-@pytest.mark.parametrize("noise", [0.0, 0.05, 0.3])
-def test_the_nearest_rotation_needs_no_singular_values(noise, monkeypatch):
-    generator = torch.Generator().manual_seed(2)
-    matrix = so3.exp(torch.randn(3, 256, generator=generator))
-    matrix = 1.2 * (matrix + noise * torch.randn(3, 3, 256, generator=generator))
-    expected = so3.project(matrix)
-    monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
-    assert torch.allclose(so3.project(matrix), expected, atol=1e-5)
-    nothing = so3.project(torch.zeros(3, 3, 2))
-    assert torch.allclose(nothing, torch.eye(3)[..., None].expand(3, 3, 2)), "still a rotation"
-
-
-def test_models_are_kept_apart_by_device():
-    def places(found: object) -> set[str]:
-        assert isinstance(found, AnchoredPredictor)
-        return {weight.device.type for weight in found.network.parameters()}
-
-    meta = torch.device("meta")
-    there, here = models.predictor("wm-a", None, meta), models.predictor("wm-a", None)
-    assert places(there) == {"meta"}
-    assert places(here) == {"cpu"}
-    assert models.predictor("wm-a", None, meta) is there
 
 
 def test_the_device_is_part_of_the_fingerprint_and_decides_the_blocks():

@@ -15,7 +15,6 @@ from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
 from faultpath.quadrotor.platform import PLATFORM, Platform
 from faultpath.quadrotor.reconstruction import DisturbanceObserver
 from faultpath.quadrotor.training.flight import fly
-from faultpath.quadrotor.training.playback import CODE
 from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath.quadrotor.training.windows import HISTORY, cut, places
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
@@ -49,15 +48,6 @@ def ask(recorded, quantity, subject, *faults, seed=0, recording=RECORDING) -> np
     assert (found.scenes, len(found)) == (recorded.scenes, len(recorded.windows))
     assert np.isfinite(found.values).all()
     return found.values
-
-
-def test_windows_stand_close_together_and_steps_are_those_of_their_present(recorded):
-    of_first = [
-        s for s, scene in zip(recorded.steps, recorded.scenes, strict=True) if "/0" in scene
-    ]
-    assert of_first[0] == HISTORY
-    assert min(np.diff(of_first)) >= STRIDE
-    assert len(of_first) > 10
 
 
 def test_an_identity_fault_gives_exactly_no_response_and_changes_no_error(recorded):
@@ -146,25 +136,6 @@ def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity
     )
     whole = ask(recorded, quantity, subject, fault)
     assert np.array_equal(ask(some, quantity, subject, fault), whole[order.numpy()])
-
-
-def test_a_shuffle_gives_every_code_to_another_window(recorded):
-    subject = Subject.load(quantities.quadrotor(RECORDING), "wm-a", 0)
-    with torch.inference_mode():
-        plain, shuffled, again, other = (
-            replace(subject, seed=seed).at_present(recorded.windows, faults, "name")[CODE].T
-            for seed, faults in (
-                (0, ()),
-                (0, ("history_code:shuffle",)),
-                (0, ("history_code:shuffle",)),
-                (1, ("history_code:shuffle",)),
-            )
-        )
-    columns = [{tuple(column) for column in code.T.tolist()} for code in (plain, shuffled)]
-    assert columns[0] == columns[1]
-    assert (plain != shuffled).any(0).float().mean() > 0.9
-    assert torch.equal(shuffled, again)
-    assert not torch.equal(shuffled, other)
 
 
 @pytest.mark.parametrize(

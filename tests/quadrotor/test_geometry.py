@@ -46,13 +46,6 @@ def spread(scenes: list[Scene], count: int, margin: float = 0.5) -> torch.Tensor
     return torch.from_numpy(rng.uniform(low, high, (3, len(scenes), count)))
 
 
-def test_a_floating_box_is_measured_to_faces_edges_and_corners():
-    scene = scene_of(Box(centre_m=(0.0, 0.0, 1.5), half_extents_m=(0.5, 0.3, 0.2)))
-    points = [(0.9, 0.0, 1.5), (0.8, 0.7, 1.5), (0.8, 0.7, 2.0), (0.0, 0.0, 1.55), (0.4, 0.0, 1.5)]
-    expected = [0.4, 0.5, math.hypot(0.3, 0.4, 0.3), -0.15, -0.1]
-    assert at(scene, *points) == pytest.approx(expected, abs=1e-12)
-
-
 def test_yaw_turns_a_box_from_x_towards_y():
     angle = math.radians(30)
     scene = scene_of(Box(centre_m=(1.0, 0.5, 1.5), half_extents_m=(0.8, 0.1, 1.5), yaw_rad=angle))
@@ -138,11 +131,6 @@ def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_point
     assert (nearest[free] <= np.hypot(distance[free], bend) + 1e-9).all()
 
 
-def test_inside_a_solid_points_are_negative_down_to_the_floor():
-    scene = scene_of(Box(centre_m=(0.0, 0.0, 1.5), half_extents_m=(0.5, 0.5, 1.5)))
-    assert at(scene, (0.0, 0.0, 0.01), (0.0, 0.0, 2.99)) == pytest.approx([-0.5, -0.5], abs=1e-9)
-
-
 def test_neither_neighbours_nor_place_nor_padding_change_a_bit():
     scenes = list(load_library("training").scenes[:32])
     points = spread(scenes, 1)[:, :, 0]
@@ -153,23 +141,6 @@ def test_neither_neighbours_nor_place_nor_padding_change_a_bit():
     shuffled = Geometry.stack([scenes[k] for k in order.tolist()]).distance(points[:, order])
     assert torch.equal(shuffled, together[order])
     assert len({len(scene.boxes) + len(scene.cylinders) for scene in scenes}) > 1
-
-
-def test_trailing_axes_are_points_of_the_same_scene():
-    scenes = list(load_library("training").scenes[:3])
-    points = spread(scenes, 12)
-    geometry = Geometry.stack(scenes)
-    grid = geometry.distance(points.view(3, 3, 4, 3))
-    assert torch.equal(grid.view(3, 12), geometry.distance(points))
-    assert torch.equal(geometry.distance(points[:, :, 5]), grid.view(3, 12)[:, 5])
-
-
-def test_distance_leaves_its_points_alone():
-    scenes = list(load_library("training").scenes[:2])
-    points = spread(scenes, 5)
-    before = points.clone()
-    Geometry.stack(scenes).distance(points)
-    assert torch.equal(points, before)
 
 
 def test_free_space_keeps_only_the_arena():

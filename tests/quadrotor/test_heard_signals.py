@@ -5,8 +5,6 @@ import numpy as np
 from faultpath.execution.again import difference
 from faultpath.faults import parse_fault
 from faultpath.quadrotor.evidence.signals import quadrotor_signals
-from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2
 from faultpath.review.hearing import fly_heard, signals
 from faultpath.store.signals import TOGETHER
 from faultpath.trials import Arm, SystemSpec, load_system
@@ -55,23 +53,3 @@ def test_a_heard_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     flown = correct["vehicle.position"]
     missed = np.linalg.norm(predicted - flown[20:], axis=1).mean()
     assert missed < 0.3 * np.linalg.norm(flown[20:] - flown[:-20], axis=1).mean()
-
-
-def test_what_errors_are_held_against_is_the_acceleration_that_was_flown() -> None:
-    """The sum is believed minus true: so what it takes for true has to be what happened."""
-    system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
-    assert isinstance(system, Quadrotor)
-    done, heard = fly_heard(system, Arm(variant="dob"), SCENE)
-    assert isinstance(done, Done)
-    told = {each.name: each.values for each in signals(heard, done, system.control_dt_s)[0]}
-    velocity, physics = told["vehicle.velocity"], told["true_physics"]
-    rotation = told["vehicle.attitude"].reshape(-1, 3, 3)
-    axis, mass = rotation[:, :, 2], told["vehicle.mass"]
-    drag = np.array(system.options.settings.drag_kgps)
-    air = np.einsum("tji,tj->ti", rotation, told["true_wind"] - velocity)
-    force = told["vehicle.thrust_scale"] * physics[:, 8:9] * axis
-    force += np.einsum("tij,tj->ti", rotation, drag * air)
-    expected = force / mass - np.array([0.0, 0.0, GRAVITY_MPS2])
-    flown = np.diff(velocity, axis=0) / system.control_dt_s
-    off = flown - 0.5 * (expected[:-1] + expected[1:])  # over the interval, and at its ends
-    assert np.abs(np.einsum("ti,ti->t", off, axis[:-1])).mean() < 0.2

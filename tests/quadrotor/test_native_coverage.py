@@ -1,6 +1,5 @@
 """A kernel stands for exactly what it repeats; anything else flies as it is, and that is said."""
 
-import warnings
 from collections.abc import Callable, Iterator
 from types import MethodType
 
@@ -23,12 +22,9 @@ from faultpath.quadrotor.predictors import (
     LatentNetwork,
     Memory,
     Predictor,
-    TrueParameter,
-    UnanchoredPredictor,
 )
 from faultpath.quadrotor.predictors.compiled import horizon_loop, uncovered
 from faultpath.quadrotor.predictors.drag import LinearDrag
-from faultpath.quadrotor.predictors.network import GatedCell
 from faultpath.quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
@@ -113,22 +109,6 @@ def test_a_step_of_ones_own_is_what_flies(make: Callable[[], Predictor]) -> None
     torch.testing.assert_close(seen.positions, wanted.positions, rtol=1e-4, atol=1e-4)
 
 
-@torch.inference_mode()
-def test_an_unanchored_step_of_ones_own_is_what_flies() -> None:
-    network = UnanchoredPredictor.build_network()
-    random_weights(network)
-
-    class Own(UnanchoredPredictor):
-        def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
-            ahead, memory = super().step(state, command, memory)
-            far = ahead.position + SHIFT_M
-            return State(far, ahead.velocity, ahead.rotation, ahead.rate), memory
-
-    with pytest.warns(PortableNotice, match="not of Own"):
-        seen = believed(Own(network))
-    assert float(seen.positions[..., -1, :].min()) > SHIFT_M / 2
-
-
 class OtherNetwork(LatentNetwork):
     pass
 
@@ -143,16 +123,11 @@ def with_drag() -> Predictor:
     return integrator
 
 
-def doubled() -> Predictor:
-    return anchored_on(AnchoredPredictor.build_network().double())
-
-
 REASONS: dict[str, tuple[Callable[[], Predictor], str]] = {
     "too many hidden units": (lambda: anchored_on(LatentNetwork(4096, 6)), "128 hidden.*4096"),
     "one unit too many": (lambda: anchored_on(LatentNetwork(129, 6)), "128 hidden units, not 129"),
     "more outputs": (lambda: anchored_on(LatentNetwork(64, 17)), "layer 'last'"),
     "other inputs": (lambda: anchored_on(LatentNetwork(64, 6, conditioning=40)), "'first'"),
-    "double precision": (doubled, "float32 on the CPU"),
     "network": (lambda: anchored_on(OtherNetwork(64, 6)), "not of OtherNetwork"),
     "drag": (with_drag, "not of OtherDrag"),
 }
@@ -169,16 +144,6 @@ def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(
 
 
 @torch.inference_mode()
-def test_a_network_of_4096_hidden_units_flies_on_the_portable_path() -> None:
-    network = LatentNetwork(4096, 6)
-    random_weights(network)
-    large = anchored_on(network)
-    with pytest.warns(PortableNotice, match="128 hidden units, not 4096"):
-        seen = believed(large)
-    assert seen.positions.isfinite().all()
-
-
-@torch.inference_mode()
 @pytest.mark.parametrize("hidden", [1, 3, 126, 128])
 def test_every_size_that_the_kernel_can_hold_is_computed(hidden: int) -> None:
     network = LatentNetwork(hidden, 6)
@@ -189,20 +154,6 @@ def test_every_size_that_the_kernel_can_hold_is_computed(hidden: int) -> None:
     roll = rolling(model)
     ours, theirs = roll(given, commands), rollout(model, given, commands)
     torch.testing.assert_close(ours.positions, theirs.positions, rtol=1e-4, atol=1e-4)
-
-
-def test_it_is_said_once() -> None:
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        for _ in range(3):
-            rolling(Kinematic())
-    assert [each.category for each in said] == [PortableNotice]
-
-
-def test_shipped_predictors_say_nothing() -> None:
-    for name in ("dki", "dki-drag", "dki-still", "wm-a", "wm-a-wind", "wm-u"):
-        rolling(predictor(name))
-    rolling(TrueParameter())
 
 
 # Other parts
@@ -237,17 +188,3 @@ def test_a_cost_of_ones_own_is_what_decides() -> None:
     case = scored(torch.Generator().manual_seed(0), 16)
     with pytest.warns(PortableNotice, match="not of Own"):
         assert float(own(case).min()) > 1e5
-
-
-@torch.inference_mode()
-def test_a_recurrent_cell_of_ones_own_is_what_remembers() -> None:
-    class Own(GatedCell):
-        def forward(self, x: Tensor, latent: Tensor) -> Tensor:
-            return torch.full_like(super().forward(x, latent), 7)
-
-    with pytest.warns(PortableNotice, match="not of Own"):
-        assert Own(19, 32).last(torch.ones(4, 19, 5)).eq(7).all()
-    with pytest.warns(PortableNotice, match="33 inputs"):
-        assert GatedCell(33, 32).last(torch.ones(4, 33, 5)).shape == (32, 5)
-    with pytest.warns(PortableNotice, match="latent of 64"):
-        assert GatedCell(19, 64).last(torch.ones(4, 19, 5)).shape == (64, 5)

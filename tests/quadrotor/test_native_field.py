@@ -42,27 +42,3 @@ def test_a_point_s_distance_does_not_depend_on_its_neighbours(isa: str) -> None:
     together = asked(isa, points)
     for some in (slice(0, 1), slice(5, 22), slice(83, 100)):
         assert torch.equal(asked(isa, points[..., some]), together[..., some])
-
-
-@pytest.mark.parametrize("isa", COMPILED)
-def test_selected_scenes_come_in_the_order_of_their_rows(isa: str) -> None:
-    rows = [4, 0, 4]
-    points = scattered(40)[:, rows]
-    assert torch.equal(asked(isa, points, rows), asked(PORTABLE, points, rows))
-
-
-@pytest.mark.parametrize("isa", [*COMPILED, PORTABLE])
-def test_only_points_that_are_no_numbers_get_none(isa: str) -> None:
-    points = scattered(60)
-    points[torch.arange(60) % 3, :, torch.arange(60)] = torch.nan
-    points[..., ::4] = scattered(60)[..., ::4]
-    lost = asked(isa, points).isnan()
-    assert torch.equal(lost, points.isnan().any(0))
-    far = torch.full((3, len(SCENES), 5), 1e30)
-    assert not (asked(isa, far) > 0).any()
-
-
-@pytest.mark.parametrize("isa", COMPILED)
-def test_points_of_another_number_of_scenes_are_refused(isa: str) -> None:
-    with pytest.raises(RuntimeError, match="expand"):
-        asked(isa, scattered(10)[:, :4])

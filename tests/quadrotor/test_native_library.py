@@ -15,13 +15,6 @@ def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None
     assert built.isa in native.describe()
 
 
-def test_a_set_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(library.VARIABLE, "baseline")
-    built = native.kernels()
-    assert built is not None
-    assert built.isa == native.numerics() == "baseline"
-
-
 def test_the_portable_path_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(library.VARIABLE, "portable")
     assert native.kernels() is None
@@ -46,21 +39,7 @@ def test_without_built_kernels_the_portable_path_runs_and_says_why(
     library._chosen.cache_clear()
 
 
-def test_a_set_that_was_not_built_is_refused(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
-    monkeypatch.setenv(library.VARIABLE, "avx2")
-    monkeypatch.setattr(library, "_path", lambda isa: tmp_path / isa)
-    library._chosen.cache_clear()
-    with pytest.raises(UserError, match="'avx2' were not built or do not run"):
-        native.kernels()
-
-
 def test_kernels_of_other_sources_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(library, "_sources", lambda: "another digest")
     with pytest.raises(UserError, match=r"other sources .* make setup"):
         native.load("baseline")
-
-
-def test_what_keeps_to_the_portable_path_goes_back_after() -> None:
-    with native.using(native.PORTABLE):
-        assert native.kernels() is None
-    assert native.kernels() is not None

@@ -8,7 +8,7 @@ import torch
 
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
+from faultpath.quadrotor.perception import DepthClearance
 from faultpath.quadrotor.perception.camera import CaptureFrame
 from faultpath.quadrotor.planners import (
     AutoregressiveSampler,
@@ -93,14 +93,6 @@ def test_every_term_of_the_cost_counts(isa: str, term: str, stream: torch.Genera
     close(rest, reference)
 
 
-def test_what_is_no_number_stays_so_in_costs(isa: str, stream: torch.Generator) -> None:
-    case = scored(stream, 16)
-    case.clearance[1, 4, 3] = torch.nan
-    mine, reference = both(isa, NavigationCost(), case)
-    assert mine.isnan().any()
-    assert torch.equal(mine.isnan(), reference.isnan())
-
-
 @torch.inference_mode()
 def test_clearance_is_the_portable_one(isa: str, stream: torch.Generator) -> None:
     model = clearance_model()
@@ -135,8 +127,3 @@ def test_codes_are_the_portable_ones(isa: str, stream: torch.Generator) -> None:
     lost = encode(depth).isnan()
     assert torch.equal(lost, model.encode(depth).isnan())
     assert lost[:, 2].all()
-
-
-def test_a_query_before_the_first_image_is_refused(isa: str) -> None:
-    with pytest.raises(RuntimeError, match="capture"):
-        under(isa, DepthClearance, ClearanceModel()).query(torch.zeros(3, 1, 32), [0])

@@ -1,7 +1,5 @@
 """The compiled plant flies as the portable one does, and its contact checks end the same trials."""
 
-import dataclasses
-
 import numpy as np
 import pytest
 import torch
@@ -71,16 +69,6 @@ def test_neighbours_and_the_number_of_lanes_change_no_bit(isa: str) -> None:
 
 
 @pytest.mark.parametrize("isa", COMPILED)
-def test_a_value_that_is_no_number_stays_in_its_lane(isa: str) -> None:
-    start, command, winds = wild(0)
-    command[0, 4] = torch.nan
-    with native.using(isa):
-        plant = TorchPlant(Vehicle.nominal(LANES))
-    position = plant.advance(start, command, winds).state.position
-    assert position.isnan().any(0).nonzero().flatten().tolist() == [4]
-
-
-@pytest.mark.parametrize("isa", COMPILED)
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
     with native.using(isa):
         for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
@@ -90,15 +78,6 @@ def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
             end = plant.advance(now, vehicle.hover_command(), still.expand(5, *still.shape))
             assert end.state.position.dtype == vehicle.mass_kg.dtype
             assert end.state.position.abs().max() < 1e-6
-
-
-@pytest.mark.parametrize("isa", COMPILED)
-def test_a_batch_of_another_size_is_refused(isa: str) -> None:
-    start, command, winds = wild(0)
-    with native.using(isa):
-        plant = TorchPlant(Vehicle.nominal(LANES - 1))
-    with pytest.raises(RuntimeError, match="expand"):
-        plant.advance(start, command, winds)
 
 
 # --- contact -----------------------------------------------------------------------------------
@@ -150,20 +129,6 @@ def test_trials_end_at_the_same_moment(isa: str, theirs: World) -> None:
     assert_same_trials(worlds(isa, SCENES, COMMANDS, "L2"), theirs)
 
 
-@pytest.mark.parametrize("isa", COMPILED)
-def test_a_lane_that_is_lost_neither_crashes_nor_disturbs_others(isa: str) -> None:
-    lost = COMMANDS[:12].clone()
-    lost[3, 1, 7] = torch.nan
-    ours, whole = (worlds(isa, SCENES, commands, "L2") for commands in (lost, COMMANDS[:12]))
-    assert ours.progress.running[7]
-    assert ours.progress.min_clearance_m[7].isnan()
-    others = torch.arange(len(ours.lanes)) != 7
-    for mine, expected in zip(
-        *(dataclasses.astuple(w.progress) for w in (ours, whole)), strict=True
-    ):
-        assert torch.equal(mine[others], expected[others])
-
-
 def beside(gap_m: float, thing: str) -> Scene:
     """A vehicle above the floor that falls past a solid with so much between it and the solid."""
     away = 1.0 + COLLISION_RADIUS_M + gap_m
@@ -201,15 +166,3 @@ def test_a_micrometre_decides_between_a_graze_and_a_crash(isa: str) -> None:
     assert early < late - 0.1
     assert earlier < later - 0.1
     assert_same_trials(world, worlds(PORTABLE, scenes, falling))
-
-
-@pytest.mark.parametrize("isa", COMPILED)
-def test_advancing_leaves_the_earlier_progress_alone(isa: str) -> None:
-    with native.using(isa):
-        world = World(SCENES[:3], "L2", free_space=False)
-    before = world.progress
-    kept = [value.clone() for value in dataclasses.astuple(before)]
-    world.advance(COMMANDS[0, :, :32])
-    assert world.progress.time_s[0] == 0.05
-    after = dataclasses.astuple(before)
-    assert all(torch.equal(a, b) for a, b in zip(kept, after, strict=True))

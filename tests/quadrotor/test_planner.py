@@ -14,9 +14,8 @@ from faultpath.quadrotor.planners import (
     NavigationCost,
     SamplerSettings,
     Scored,
-    shift,
 )
-from faultpath.quadrotor.planners.mppi import best_bundle, softmax
+from faultpath.quadrotor.planners.mppi import softmax
 from faultpath.quadrotor.planners.sampler import standard_normals
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
 from faultpath.quadrotor.predictors.rollout import Rollout
@@ -48,16 +47,6 @@ def test_noise_belongs_to_scene_seed_and_step():
     assert torch.equal(sampler.noise(["s/2"], 0, 3)[:, :, 0], noise[:, :, 2])
     assert not torch.equal(sampler.noise(["s/2"], 1, 3)[:, :, 0], noise[:, :, 2])
     assert not torch.equal(sampler.noise(["s/2"], 0, 4)[:, :, 0], noise[:, :, 2])
-
-
-def test_first_candidate_is_the_plan():
-    sampler = AutoregressiveSampler()
-    plan = torch.randn(20, 4, 4) * 0.1
-    plan[:, 0] += GRAVITY_MPS2
-    candidates = sampler.candidates(
-        plan, torch.full((4,), GRAVITY_MPS2), sampler.noise(SCENES, 0, 0)
-    )
-    assert torch.equal(candidates[..., 0], plan)
 
 
 def test_candidates_are_bounded_evenly_around_hover():
@@ -122,11 +111,6 @@ def test_bundles_are_neighbours_and_each_candidate_is_distributed_as_before():
     assert float((centre * others).mean()) == pytest.approx(0.5**0.5, abs=0.1)
 
 
-def test_the_plan_is_that_of_one_bundle():
-    weights = best_bundle(torch.tensor([[0.05, 0.05, *[0.06] * 12, 0.08, 0.1]]))
-    assert weights[0].tolist() == pytest.approx([0.0] * 14 + [0.08 / 0.18, 0.1 / 0.18])
-
-
 def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
     planner = QuadrotorOptions().build_planner()
     given = planner_inputs()
@@ -140,11 +124,6 @@ def test_plan_moves_towards_the_goal_and_away_from_what_is_close():
     # A ceiling just above: the same goal no longer pulls the plan up.
     kept = replan(planner, given, plan, SCENES, goal=goal, clearance=lambda at: 0.3 - at[2])
     assert (kept[:, 0].mean(0)[[0, 2]] < better[:, 0].mean(0)[[0, 2]]).all()
-
-
-def test_shift_repeats_the_last_row():
-    plan = torch.arange(3.0).view(3, 1, 1).expand(3, 4, 1)
-    assert shift(plan)[:, 0, 0].tolist() == [1, 2, 2]
 
 
 def test_normals_are_standard_normal():

@@ -1,7 +1,6 @@
 """The plant on MuJoCo: the reference plant's trajectories, and the laws that every plant keeps."""
 
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,10 +17,8 @@ from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.plant.wind import Winds
 from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.state import State, padded_lanes
+from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
-    COLLECTIVE_MAX_N,
-    RATE_LIMIT_RADPS,
     STEPS_PER_CONTROL,
     draw,
 )
@@ -84,75 +81,6 @@ def test_both_plants_fly_the_same_trajectories(kind: str) -> None:
         error = (getattr(ours.state, name) - getattr(theirs.state, name)).abs().max()
         assert error < TOLERANCE[name], (name, error)
     assert (ours.thrusts - theirs.thrusts).abs().max() < 1e-4
-
-
-def test_commands_are_clipped_to_the_vehicle_s_limits() -> None:
-    plant = MujocoPlant(Vehicle.nominal(LANES))
-    stream = torch.Generator().manual_seed(3)
-    wild = 50 * torch.randn(4, LANES, dtype=F64, generator=stream)
-    rate = torch.tensor(RATE_LIMIT_RADPS, dtype=F64)[:, None]
-    limited = torch.cat((wild[:1].clamp(0.0, COLLECTIVE_MAX_N), wild[1:].clamp(-rate, rate)))
-    still = torch.zeros(25, 3, LANES, dtype=F64)
-    start = plant.start(moving())
-    clipped, inside = (plant.advance(start, command, still) for command in (wild, limited))
-    assert bits(clipped) == bits(inside)
-    assert not torch.allclose(
-        plant.advance(start, 0.5 * limited, still).state.rate, clipped.state.rate, rtol=1e-3
-    )
-
-
-def bits(now: PlantState) -> list[bytes]:
-    return [part.contiguous().numpy().tobytes() for part in parts(now)]
-
-
-def parts(now: PlantState) -> list[Tensor]:
-    return [*(getattr(now.state, name) for name in PARTS), now.thrusts]
-
-
-def in_company(lanes: Tensor) -> PlantState:
-    """The given vehicles after some control steps, padded as the application does."""
-    pick = lanes[padded_lanes(len(lanes))]
-    plant = MujocoPlant(vehicles().take(pick))
-    commands, winds = manoeuvres()[:4, :, pick], blowing("varying")[:100, :, pick]
-    return fly(plant, plant.start(moving().take(pick)), commands, winds).take(
-        torch.arange(len(lanes))
-    )
-
-
-def test_neighbours_and_order_change_no_bit() -> None:
-    everyone = torch.arange(LANES)
-    together = in_company(everyone)
-    assert len({bytes(x) for x in together.state.position.T.numpy()}) == LANES
-    order = torch.randperm(LANES, generator=torch.Generator().manual_seed(8))
-    assert bits(in_company(order)) == bits(together.take(order))
-    for lane in (0, 31, 39):
-        one = torch.tensor([lane])
-        assert bits(in_company(one)) == bits(together.take(one))
-
-
-def test_flying_leaves_its_input_alone_and_nothing_behind() -> None:
-    plant, commands, winds = MujocoPlant(vehicles()), manoeuvres()[:2], blowing("varying")[:50]
-    start = plant.start(moving())
-    kept = [x.clone() for x in (*parts(start), commands, winds)]
-    first = fly(plant, start, commands, winds)
-    after = [*parts(start), commands, winds]
-    assert all(torch.equal(a, b) for a, b in zip(kept, after, strict=True))
-    assert bits(fly(plant, start, commands, winds)) == bits(first)
-
-
-def test_a_value_that_is_no_number_stays_in_its_lane(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)  # MuJoCo writes its complaints into the working directory
-    plant, winds = MujocoPlant(vehicles()), blowing("varying")[:50]
-    commands = manoeuvres()[:2]
-    whole = fly(plant, plant.start(moving()), commands, winds)
-    commands[1, 2, 7] = torch.nan
-    lost = fly(plant, plant.start(moving()), commands, winds)
-    others = torch.arange(LANES) != 7
-    assert all(part[..., 7].isnan().all() for part in parts(lost))
-    assert bits(lost.take(others)) == bits(whole.take(others))
-    assert list(tmp_path.iterdir()) == []
 
 
 SCENES = load_library("selection").scenes[:34]

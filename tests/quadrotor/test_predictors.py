@@ -8,13 +8,11 @@ import torch
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.predictors import (
     Calibration,
-    History,
     KinematicIntegrator,
     Physics,
     PredictorInputs,
     TrueParameter,
 )
-from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.predictors.rollout import rollout
 from faultpath.quadrotor.state import State
 from faultpath.quadrotor.vehicle import (
@@ -110,14 +108,6 @@ def test_drag_slows_the_vehicle_as_the_closed_form_says():
     assert float(rolled.velocities[0, 0, -1, 0]) == pytest.approx(float(exact), rel=0.01)
 
 
-def test_air_at_rest_with_the_vehicle_exerts_no_force():
-    given = inputs(wind=(3.0, 1.0, 0.0), velocity=(3.0, 1.0, 0.0))
-    rolled = rollout(
-        KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS), given, commands(GRAVITY_MPS2)
-    )
-    torch.testing.assert_close(rolled.velocities[:, 0, -1, 0], given.state.velocity[:, 0, 0])
-
-
 def test_rate_lag_turns_by_its_closed_form():
     given = inputs()
     end = rollout(
@@ -143,25 +133,6 @@ def test_true_parameter_follows_a_thrust_step_with_the_motor_lag():
     )
 
 
-def test_motors_that_follow_the_executed_commands_need_not_be_told():
-    """A climb that was commanded for long: the replay knows the thrust from the history alone."""
-    given = inputs(thrust=0.0)
-    past = History(
-        velocity_mps=torch.zeros(3, 12, 1, 1, dtype=torch.float64),
-        rotation=torch.eye(3, dtype=torch.float64)[..., None, None, None].expand(3, 3, 12, 1, 1),
-        rate_radps=torch.zeros(3, 12, 1, 1, dtype=torch.float64),
-        commands=commands(1.2 * GRAVITY_MPS2, candidates=1)[:12].movedim(0, 1),
-        mass_kg=torch.ones(1, 1, dtype=torch.float64),
-    )
-    predictor = TrueParameter()
-    code = predictor.encode(past)
-    assert code.shape == (32, 1, 1)
-    told = replace(inputs(thrust=1.2 * GRAVITY_MPS2), code=code)
-    followed = rollout(predictor, replace(given, code=code), commands(GRAVITY_MPS2))
-    expected = rollout(TrueParameter(), told, commands(GRAVITY_MPS2))
-    torch.testing.assert_close(followed.positions, expected.positions)
-
-
 @pytest.mark.parametrize("predictor", PREDICTORS)
 def test_a_scene_does_not_depend_on_its_neighbours(predictor):
     generator = torch.Generator().manual_seed(1)
@@ -180,10 +151,3 @@ def test_a_scene_does_not_depend_on_its_neighbours(predictor):
     moved = rollout(predictor, given.take(order), noise[:, :, order].contiguous())
     assert torch.equal(moved.positions, whole.positions[:, order])
     assert torch.equal(moved.velocities, whole.velocities[:, order])
-
-
-def test_anisotropic_drag_inverts_its_own_force():
-    air = LinearDrag((0.2, 0.3, 0.5))
-    rotation = so3.exp(torch.tensor([[0.3], [-0.8], [0.5]], dtype=torch.float64))
-    wind = torch.tensor([[1.0], [-2.0], [3.0]], dtype=torch.float64)
-    torch.testing.assert_close(air.inverse(rotation, air.force(rotation, wind)), wind)

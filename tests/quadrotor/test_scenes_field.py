@@ -54,17 +54,6 @@ def test_the_interpolation_error_is_as_documented(scenes, field):
     assert (error.abs() > 0.03).double().mean() < 0.01
 
 
-def test_beside_a_flat_wall_the_field_is_exact_to_rounding(scenes, field):
-    points = spread(scenes, 4000)
-    free = DistanceField.bake(scenes, free_space=True)
-    low = torch.tensor([scene.bounds.low_m for scene in scenes]).T[:, :, None]
-    points[0] = low[0] + torch.rand(points.shape[1:]) * 0.5
-    points[1] = points[1].clamp(-1.5, 1.5)
-    points[2] = points[2].clamp(1.0, 1.8)
-    error = free.query(points) - (points[0] - low[0])
-    assert error.abs().max() < 1e-5
-
-
 def test_outside_the_field_falls_by_the_distance_beyond_each_wall(scenes, field):
     points = spread(scenes, 4000, margin=30.0)
     bounds = [(scene.bounds.low_m, scene.bounds.high_m) for scene in scenes]
@@ -95,39 +84,3 @@ def test_a_scene_does_not_feel_its_neighbours(scenes, field, count):
     for row, scene in enumerate(scenes):
         alone = DistanceField.bake(scene).query(points[:, row : row + 1])
         assert torch.equal(alone[0], together[row])
-
-
-def test_rows_are_picked_in_any_order_and_share_the_table(scenes, field):
-    rows = [7, 2, 2, 9]
-    points = spread(scenes, 100)[:, rows]
-    picked = field.select(rows)
-    assert picked.table is field.table
-    assert torch.equal(
-        picked.query(points), DistanceField.bake([scenes[r] for r in rows]).query(points)
-    )
-    assert torch.equal(field.select(torch.tensor(rows)).query(points), picked.query(points))
-
-
-def test_a_query_leaves_its_points_and_the_table_alone(scenes, field):
-    points, table = spread(scenes, 50), field.table.clone()
-    before = points.clone()
-    first = field.query(points)
-    assert torch.equal(field.query(points), first)
-    assert torch.equal(points, before)
-    assert torch.equal(field.table, table)
-
-
-@pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
-def test_a_point_that_is_no_number_stays_apart(scenes, field, bad):
-    points = spread(scenes, 8)
-    clean = field.query(points)
-    points[1, 3, 5] = bad
-    dirty = field.query(points)
-    assert not math.isfinite(dirty[3, 5])
-    assert not dirty[3, 5] > 0
-    dirty[3, 5] = clean[3, 5]
-    assert torch.equal(dirty, clean)
-
-
-def test_arenas_of_different_size_are_among_those_tested(scenes):
-    assert len({scene.bounds.high_m for scene in scenes}) > 3

@@ -9,8 +9,6 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
-from faultpath.quadrotor.plant import world
-from faultpath.quadrotor.scenes import soundness
 from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import (
     FROZEN,
@@ -118,10 +116,6 @@ UNSOUND: dict[str, tuple[dict[str, Any], str]] = {
 }
 
 
-def test_a_goal_is_reached_where_flights_end() -> None:
-    assert soundness.GOAL_RADIUS_M == world.GOAL_RADIUS_M
-
-
 @pytest.mark.parametrize(("changed", "says"), UNSOUND.values(), ids=UNSOUND)
 def test_a_scene_that_cannot_be_flown_is_refused(
     tmp_path: Path, changed: dict[str, Any], says: str
@@ -162,10 +156,3 @@ def test_reserved_names_are_refused_unless_they_are_the_packages_own(tmp_path: P
     copy = tmp_path / "copy.json"
     copy.write_text(frozen_file("selection").read_text("utf-8"), encoding="utf-8")
     assert load_library(copy) == load_library("selection")
-
-
-def test_a_library_without_scenes_and_one_too_deep_are_refused(tmp_path: Path) -> None:
-    assert "holds no scene" in refused(tmp_path, Library.of("mine", ()))
-    (tmp_path / "mine.json").write_text("[" * 100_000, encoding="utf-8")
-    with pytest.raises(UserError, match="cannot be read as a library"):
-        load_library(tmp_path / "mine.json")

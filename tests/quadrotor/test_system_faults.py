@@ -71,14 +71,6 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else(e
             assert np.array_equal(value, reading * (1 + sign * error)), (channel, consumer)
 
 
-def test_a_variant_without_an_observer_has_no_taps_of_it():
-    system = quadrotor(wind="L2")
-    _, taps = fly(system, "zero-wind", faults=[fault("calibration=0.1", system)])
-    struck = {key for key in ALTERED_BY_CALIBRATION if not key[1].startswith("reconstruction.")}
-    assert _altered(taps.receipts()) == struck
-    assert not any(consumer.startswith("reconstruction.") for _, consumer in taps.log)
-
-
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
     system = quadrotor(wind="L2")
     faults = [fault("calibration=0.2@reconstruction", system)]
@@ -94,29 +86,6 @@ def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain)
     # The observer starts at zero wind whatever its calibration says: the fault needs a step.
     assert np.array_equal(trace(struck)[1], trace(plain)[1])
     assert not np.array_equal(trace(struck)[3:], trace(plain)[3:])
-
-
-def test_a_fault_at_the_predictor_leaves_the_observer_clean():
-    system = quadrotor(wind="L2")
-    _, clean = fly(system)
-    _, taps = fly(system, faults=[fault("calibration=0.2@predictor", system)])
-    predictor = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("predictor.")}
-    assert _altered(taps.receipts()) == predictor
-    # What the observer says first depends on nothing that the predictor got.
-    assert np.array_equal(*(t.delivered("wind", "predictor.wind_map")[0] for t in (clean, taps)))
-
-
-def test_the_observer_takes_thrust_that_it_was_not_told_of_for_an_updraught():
-    """A larger supplied mass and a smaller thrust scale explain less lift than there is."""
-    system = quadrotor(wind="L0")
-    seen = {
-        error: fly(system, faults=[fault(f"calibration={error}@reconstruction", system)])[
-            1
-        ].delivered("wind", "predictor.wind_map")[-1, 0, 2]
-        for error in (-0.2, 0.2)
-    }
-    assert seen[0.2] > 1.0
-    assert seen[-0.2] < -1.0
 
 
 TEXTS = (

@@ -1,7 +1,5 @@
 """The parts of the quadrotor: their ports are the interface, and what flies reads them all."""
 
-from typing import Any
-
 import numpy as np
 import pytest
 import torch
@@ -14,8 +12,6 @@ from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath.quadrotor.system import Quadrotor
 from faultpath.review.flights import Trace
-from faultpath.taps import Observer, Query
-from faultpath.taps.tap import Tap
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
 
@@ -51,16 +47,6 @@ def test_variants_are_all_predictors_with_all_winds(systems):
         assert {predictor for predictor, _ in flown} == set(PREDICTORS)
         winds = {wind for predictor, wind in flown if predictor == "wm-a-wind"}
         assert winds == {"zero-wind", "true-wind", *RECONSTRUCTIONS}
-
-
-def test_the_declared_consumers_are_the_ports(systems):
-    found: dict[str, set[str]] = {}
-    for graph in graphs(systems):
-        for part in graph.parts:
-            for port in part.ports:
-                found.setdefault(port.channel, set()).add(f"{part.name}.{port.place}")
-    declared = quadrotor_interface()
-    assert {each.name: set(each.consumers) for each in declared.channels} == found
 
 
 def test_the_declared_reconstructions_are_what_modules_write(systems):
@@ -102,30 +88,6 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
     assert late == taught - {"vehicle.actuators"}
 
 
-class _Watching(Observer):
-    """Notes whether an answer of a query is what the source gave."""
-
-    def __init__(self) -> None:
-        self.untouched: list[bool] = []
-
-    def answered(
-        self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
-    ) -> None:
-        self.untouched.append(got is answer)
-
-
-@pytest.mark.parametrize(("text", "touched"), [(None, 0), ("rollout:offset=0.1", STEPS)])
-def test_an_answer_without_a_fault_is_handed_on_as_it_is(text, touched):
-    system = quadrotor()
-    faults = () if text is None else fault(text, system).resolved(system.interface)
-    watching = _Watching()
-    arm = Arm(variant="dob", faults=faults)
-    taps = taps_of(system, arm, HELD_OUT[:1], observer=watching)
-    system.run("dob", HELD_OUT[:1], taps, 0)
-    assert len(watching.untouched) == 2 * STEPS  # rollout and clearance
-    assert watching.untouched.count(False) == touched
-
-
 @pytest.mark.parametrize(
     ("text", "tap"),
     [
@@ -147,14 +109,3 @@ def test_a_fault_between_predictor_and_planner_changes_the_command(text, tap):
         (each.channel, each.consumer) for each in struck.receipts().taps if each.steps_altered.any()
     }
     assert altered == {tap}
-
-
-def test_a_moved_rollout_moves_what_the_clearance_is_asked_for():
-    system = quadrotor()
-    _, plain = fly(system)
-    _, struck = fly(system, faults=[fault("rollout:offset=0.5", system)])
-    made = [taps.log["rollout", "planner.candidates"][0] for taps in (plain, struck)]
-    np.testing.assert_array_equal(made[0][0], made[1][0])
-    np.testing.assert_allclose(made[1][1], made[1][0] + np.float32(0.5))
-    near = [taps.delivered("clearance", "planner.risk_cost")[0] for taps in (plain, struck)]
-    assert not np.array_equal(*near)
