@@ -297,8 +297,7 @@ def duration(run: Run) -> str:
 def picture(run: Run, part: str) -> str:
     """Return the picture of a part of the run's report."""
     about = run.record.verdict.headline
-    kind = "gif" if part == FILM else "svg"
-    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.{kind})"
+    return f"![{PARTS[part][0]} of {run.name}: {about}]({{images}}/{run.name}-{part}.svg)"
 
 
 def code(place: str, part: str) -> str:
@@ -315,16 +314,12 @@ def fence(info: str, body: str) -> str:
     return f"```{info}\n{body}\n```"
 
 
-FILM = "film"
-"""What moves: no part of a page."""
-
 PARTS: dict[str, tuple[str, str]] = {
     "verdict": ("Verdict", ".masthead, #verdict > *"),
     "interface": ("What the fault strikes", "[aria-labelledby=interface] > *"),
     "effects": ("Effects of the repair", "[aria-labelledby=effects] figure"),
     "frequency": ("Difference against fault frequency", "[aria-labelledby=frequency] > *"),
     "flights": ("Some flights", "[aria-labelledby=flights] > *"),
-    FILM: ("One scene, all paths and both arms,", ""),
 }
 """What may be pictured: its name in words, and where in the page it is."""
 

@@ -10,11 +10,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-from blocks import FILM, PARTS, REFERENCE, ROOT, Wrong
+from blocks import PARTS, REFERENCE, ROOT, Wrong
 
-from faultpath.door.replaying import chosen_scenes
-from faultpath.door.saved import read_run
-from faultpath.report.film import film
 from faultpath.report.svg import template
 
 if TYPE_CHECKING:
@@ -55,13 +52,7 @@ def made_from() -> dict[str, str]:
 
 def name_of(run: str, part: str) -> str:
     """Return the file name of a picture."""
-    return f"{run}-{part}.{'gif' if part == FILM else 'svg'}"
-
-
-def make_film(run: str, out: Path) -> None:
-    """Write the scene that the report of a reference run begins with, as a moving picture."""
-    held, _ = read_run(REFERENCE / run)
-    film(held, chosen_scenes(held, (), ())[0], None, (), 1.0, out)
+    return f"{run}-{part}.svg"
 
 
 def make_images(pictures: Sequence[tuple[str, str]]) -> None:
@@ -76,10 +67,7 @@ def make_images(pictures: Sequence[tuple[str, str]]) -> None:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=found, args=ARGUMENTS)
         for run, part in pictures:
-            if part == FILM:
-                make_film(run, IMAGES / name_of(run, part))
-            else:
-                (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
+            (IMAGES / name_of(run, part)).write_text(picture(browser, run, part), "utf-8")
             made[name_of(run, part)] = digest(run)
         browser.close()
     for old in made_from().keys() - made.keys():

@@ -91,9 +91,6 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--scene": ("carts/000", "nowhere"),
             "--path": ("shared", "nobody"),
             "--signals": (None,),
-            "--out": ("a.gif", "a.txt", "folder"),
-            "--seed": ("0", "7"),
-            "--speed": ("2", "0", "nan"),
         },
     ),
     "log": (

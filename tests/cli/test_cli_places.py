@@ -8,11 +8,11 @@ from typing import get_args, get_type_hints
 import pytest
 import typer
 from cli_runs import ROOT, TOY, audit, faultpath
+from faultpath.store.outputs import PAGE
 from typer.models import OptionInfo
 
 from faultpath.cli.app import build
 from faultpath.cli.options import path
-from faultpath.store.outputs import PAGE
 
 
 @pytest.fixture(autouse=True)
@@ -74,7 +74,6 @@ REFERENCE = ROOT / "docs" / "reference"
 OUTPUTS = {
     "report --out": ["report", REFERENCE / "toy", REFERENCE / "dock", "--out"],
     "plan --out": ["plan", TOY, "--baseline=calibrated", "--repair=blind", "--out"],
-    "replay --out": ["replay", REFERENCE / "toy", "--out"],
 }
 """Every option that takes the name of a file to write, and a command that ends with it."""
 ENDINGS = {"report": "html"}
@@ -86,7 +85,7 @@ def test_a_file_that_faultpath_did_not_write_is_not_replaced(
     option: str, name: str, tmp_path: Path
 ):
     ending = next((e for word, e in ENDINGS.items() if word in option), "json")
-    place = tmp_path / name.replace("right", "gif" if "replay" in option else ending)
+    place = tmp_path / name.replace("right", ending)
     place.write_text("" if name == "__init__.py" else "mine = 1\n")
     before = place.read_bytes()
     assert place.name in faultpath(*OUTPUTS[option], place).refused()

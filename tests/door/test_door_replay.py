@@ -6,14 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import faultpath
 from faultpath.cli.replay import command
 from faultpath.door.replaying import chosen_scenes, keep_signals, replay
 from faultpath.door.saved import read_run
 from faultpath.errors import UserError
-from faultpath.report.film import film
 from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, SIGNALS, Signal
 
@@ -114,25 +112,6 @@ def test_an_object_cannot_be_flown_again(folder) -> None:
     lost = replace(held, record=held.record.model_copy(update={"question": question}))
     with pytest.raises(UserError, match="flew a Toy object, which only its own process had"):
         replay(lost, (SCENE,))
-
-
-def test_a_scene_is_filmed(folder, tmp_path) -> None:
-    held, _ = read_run(folder)
-    out = tmp_path / "x.gif"
-    film(held, SCENE, None, ("shared",), 2.0, out)
-    with Image.open(out) as moving:
-        first = moving.convert("RGB").tobytes()
-        assert 50 <= moving.n_frames <= 121
-        moving.seek(moving.n_frames - 1)
-        assert moving.convert("RGB").tobytes() != first
-    still = replace(held, traces=replace(held.traces, positions={}))
-    for source, name, seed, said in (
-        (still, "x.gif", None, "gives no positions"),
-        (held, "x.png", None, "a .gif file"),
-        (held, "x.gif", 7, "was not flown with seed 7"),
-    ):
-        with pytest.raises(UserError, match=said):
-            film(source, SCENE, seed, (), 1.0, tmp_path / name)
 
 
 def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:

@@ -51,13 +51,13 @@ def _declared(root: Path, *extras: str) -> set[str]:
 def test_the_core_imports_what_is_declared_and_nothing_else(root: Path, files: list[Path]) -> None:
     quadrotor = root / "src" / "faultpath" / "quadrotor"
     core = [path for path in files if not path.is_relative_to(quadrotor)]
-    declared = _declared(root, "film", "pandas", "ulog", "gymnasium", "torch", "ray")
+    declared = _declared(root, "pandas", "ulog", "gymnasium", "torch", "ray")
     assert _third_party(core) == declared
 
 
 def test_the_quadrotor_imports_only_what_its_extras_declare(root: Path, files: list[Path]) -> None:
     assert _third_party(files) <= _declared(
-        root, "film", "pandas", "quadrotor", "mujoco", "ulog", "gymnasium", "ray"
+        root, "pandas", "quadrotor", "mujoco", "ulog", "gymnasium", "ray"
     )
 
 

@@ -84,5 +84,5 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
         assert not re.search(r"pip install '?faultpath", text), file
         found = re.findall(r"pip install '(?:\.|/faultpath)\[([\w,]+)\]'|\bextra\(['\"](\w+)", text)
         named |= {each for pair in found for one in pair for each in one.split(",") if each}
-    assert {"quadrotor", "torch", "pandas", "ray", "film"} <= named
+    assert {"quadrotor", "torch", "pandas", "ray"} <= named
     assert named | set(_EXTRAS.values()) <= extras

@@ -1,13 +1,11 @@
-"""The scenes that a viewer and a film begin with: those that go as the audit announced."""
+"""The scenes that the viewer begins with: those that go as the audit announced."""
 
 from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
 from faultpath.record import DecisionRecord
-from faultpath.report import film
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import viewer_data
@@ -151,24 +149,3 @@ def test_the_choice_is_fixed_and_counts_every_seed(three_seeds: ReportInput) -> 
     assert len(set(shown)) == len(shown) == 6
     assert "doorways-017" not in shown
     assert all("of 237 (79 scenes, 3 seeds)" in said for said in captions(record, pairs).values())
-
-
-def test_a_film_takes_the_seed_that_the_report_shows(
-    three_seeds: ReportInput, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    record = three_seeds.record
-    pairs = read_pairs(three_seeds.outcomes, record)
-    chosen = choose(record, three_seeds.traces, pairs)
-    other = next(at for at in chosen if at[1] != 0)
-    said: list[str] = []
-    monkeypatch.setattr(film, "_write", lambda out, frames, count, pace: None)
-    monkeypatch.setattr(
-        film, "_Film", lambda held, scene, words, *rest: said.append(words) or _None()
-    )
-    film.film(three_seeds, other[0], None, (), 1.0, tmp_path / "x.gif")
-    assert said == [captions(record, pairs)[other]]
-
-
-class _None:
-    def frames(self, steps: object) -> tuple[()]:
-        return ()

@@ -1,4 +1,4 @@
-"""`faultpath replay`: fly trials of a finished run again, to check, to listen, or to film them."""
+"""`faultpath replay`: fly trials of a finished run again, to check or to record signals."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import LARGEST
 from faultpath.cli.options import path as as_path
 from faultpath.errors import UserError
 
@@ -27,16 +26,9 @@ def command(
         list[str] | None, typer.Option(help="Path of the fault, such as shared; default all.")
     ] = None,
     signals: Annotated[
-        bool, typer.Option("--signals", help="Keep what was heard, and make the report again.")
+        bool,
+        typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
     ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(parser=as_path, help="Film a scene into a .gif; flies nothing."),
-    ] = None,
-    seed: Annotated[
-        int | None, typer.Option(min=0, max=LARGEST, help="Seed to film; default the first.")
-    ] = None,
-    speed: Annotated[float, typer.Option(min=0.1, max=10, help="Of the film.")] = 1.0,
 ) -> int:
     """Fly trials of a finished run again and compare them with the run, to the bit; it runs the
     system that the run names. Exits with 1 where one differs."""
@@ -52,18 +44,6 @@ def command(
     held, _ = read_run(folder)
     scenes = chosen_scenes(held, scene or (), path or ())
     console = SafeConsole()
-    if out is not None:
-        from faultpath.report.film import film
-        from faultpath.store import check_writable
-
-        if signals:
-            raise UserError("--out flies nothing, so there is nothing to hear: leave one out.")
-        check_writable(out)
-        film(held, scenes[0], seed, tuple(path or ()), speed, out)
-        console.print(f"Written: {out}", markup=False, soft_wrap=True)
-        return 0
-    if seed is not None:
-        raise UserError("--seed says what to film with --out: all seeds are flown again.")
     return fly_again(console, folder, held, scenes, path or (), signals)
 
 

@@ -1,4 +1,4 @@
-"""Which scenes the viewer and the film begin with, and what goes on in them.
+"""Which scenes the viewer begins with, and what goes on in them.
 
 A scene with one seed shows who succeeded on each path: its pattern. Patterns come first that show
 the most detected reversals, then those that show the most decided effects, less what they
@@ -107,15 +107,14 @@ def parting_step(a: Track, b: Track) -> int | None:
     return int(np.argmax(apart)) if apart.any() else None
 
 
-def track_of(traces: Traces, variant: str, pair: Pair) -> Track:
-    """Return the track of an arm of a pair; what left none has no row."""
-    address = TrialAddress(variant, pair.path, pair.seed, pair.scene)
-    return traces.positions.get(address, np.empty((0, 3), np.float32))
-
-
 def tracks_of(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
-    """Return the tracks of baseline and repair."""
-    return [track_of(traces, variant, pair) for variant in (asked.baseline, asked.repair)]
+    """Return the tracks of baseline and repair; what left none has no row."""
+    nothing = np.empty((0, 3), np.float32)
+    arms = (asked.baseline, asked.repair)
+    return [
+        traces.positions.get(TrialAddress(arm, pair.path, pair.seed, pair.scene), nothing)
+        for arm in arms
+    ]
 
 
 def _patterns(pairs: Sequence[Pair]) -> dict[At, Pattern]:
