@@ -1,59 +1,64 @@
 """Interfaces as YAML, written so that reading gives the same."""
 
+import copy
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
+
+from pydantic import ValidationError
 
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
 from faultpath.files.plain import Misread, read_yaml, yaml_text
 from faultpath.interface.checks import Interface
-
-_TEXT = "the interface text"
+from faultpath.misfits import misfit_of
 
 
 def read_interface(
-    path_or_text: Path | str,
+    facts: Path | str | Mapping[str, Any],
     consumers: Mapping[str, Sequence[str]] | None = None,
     writers: Mapping[str, str] | None = None,
 ) -> Interface:
-    """Return the interface in a YAML file, or in YAML text (a `str` that has a line break).
+    """Return the interface in a YAML file, in YAML text (a `str` with a line break), or as data.
 
-    What the text does not say about who reads and who reconstructs is taken from `consumers`
-    (by channel) and `writers` (module by source), where these are given.
+    What it does not say about who reads and who reconstructs is taken from `consumers` (by
+    channel) and `writers` (module by source), where these are given.
 
     Raises `UserError` with file, line and what to do.
     """
-    if isinstance(path_or_text, str) and "\n" in path_or_text:
-        data = path_or_text.encode("utf-8", "surrogatepass")
-        return _parse(data, _TEXT, consumers or {}, writers or {})
-    path = Path(path_or_text)
+    if isinstance(facts, Mapping):
+        data = copy.deepcopy(dict(facts))
+        _complete(data, consumers or {}, writers or {})
+        try:
+            return Interface.model_validate(data)
+        except ValidationError as error:
+            raise UserError(str(misfit_of(error, Interface))) from None
+    where, text = "the interface text", b""
+    if isinstance(facts, str) and "\n" in facts:
+        text = facts.encode("utf-8", "surrogatepass")
+    else:
+        where = str(facts)
+        try:
+            text = contents(Path(facts))
+        except OSError as error:
+            raise UserError(
+                f"{where}: cannot be read ({error.strerror}); give the path of an interface file"
+            ) from None
     try:
-        return _parse(contents(path), str(path), consumers or {}, writers or {})
-    except OSError as error:
-        raise UserError(
-            f"{path}: cannot be read ({error.strerror}); give the path of an interface file"
-        ) from None
+        document = read_yaml(text)
+        data = cast("dict[str, Any]", document.data)
+        if not isinstance(data, dict):  # pyright: ignore[reportUnnecessaryIsInstance]
+            raise Misread("holds no interface; start with `name:`, `sources:`, `channels:`")
+        _complete(data, consumers or {}, writers or {})
+        return document.fill(Interface)
+    except Misread as error:
+        raise UserError(error.at(where)) from None
 
 
 def interface_yaml(interface: Interface) -> str:
     """Return the interface as YAML text; what equals its default is left out."""
     data = interface.model_dump(mode="json", exclude_defaults=True)
     return yaml_text(data, width=100)
-
-
-def _parse(
-    text: bytes, where: str, consumers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
-) -> Interface:
-    try:
-        document = read_yaml(text)
-        data = document.data
-        if not isinstance(data, dict):
-            raise Misread("holds no interface; start with `name:`, `sources:`, `channels:`")
-        _complete(cast("dict[str, Any]", data), consumers, writers)
-        return document.fill(Interface)
-    except Misread as error:
-        raise UserError(error.at(where)) from None
 
 
 def _complete(

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from faultpath.errors import SystemMistake
 from faultpath.interface import Interface, read_interface
@@ -112,24 +113,23 @@ def _ordered(
     return tuple(ordered)
 
 
-def interface_of(facts: Path | str, parts: Iterable[Part]) -> Interface:
-    """Return the interface in a YAML file or text, with the readers that the parts' ports say.
+def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -> Interface:
+    """Return the interface of facts about deployment and of the ports of parts.
 
-    The text keeps what is fact about deployment: sources, their provenance, uncertainty, latency
-    and rate, channels and what feeds them. A channel that lists consumers itself keeps its list.
+    The facts are sources, their provenance, uncertainty, latency and rate, channels and what feeds
+    them. Who reads a channel and who reconstructs a source follows from the parts.
 
     Args:
         facts: As `faultpath.interface.read_interface` takes it; channels need no consumers.
         parts: The plant and the modules of all variants, in the order in which readers are shown.
 
     Raises:
-        UserError: The text is no interface, or nobody reads a channel of it.
+        UserError: The facts are no interface, or nobody reads a channel of it.
     """
     consumers: dict[str, dict[str, None]] = {}
     writers: dict[str, str] = {}
     for part in parts:
         for port in sorted(part.ports):
             consumers.setdefault(port.channel, {})[f"{part.name}.{port.place}"] = None
-        if isinstance(part, Module):
-            writers |= dict.fromkeys(part.writes, part.name)
+        writers |= dict.fromkeys(part.writes, part.name)
     return read_interface(facts, {name: tuple(found) for name, found in consumers.items()}, writers)

@@ -41,6 +41,9 @@ class Part(ABC):
     """Ports that get what their source held one step before: this is what closes a cycle. At the
     first step that is what the source's module gives as `before`."""
 
+    writes: tuple[str, ...] = ()
+    """Sources of the interface that it produces at every step; a plant senses its sources."""
+
     @property
     def ports(self) -> frozenset[Port]:
         """All that it may know."""
@@ -55,8 +58,6 @@ class Module(Part):
     from `faultpath.streams`, by scene, seed and step.
     """
 
-    writes: tuple[str, ...] = ()
-    """Sources of the interface that it produces at every step."""
     truths: tuple[str, ...] = ()
     """What it takes of the plant's own state, past all taps. Only a stand-in for an estimator does
     so, and tracing names it."""

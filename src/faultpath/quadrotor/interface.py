@@ -1,22 +1,39 @@
-"""The information interface of the quadrotor, as `interface.yaml` declares it."""
+"""The information interface of the quadrotor: facts of deployment, and the ports of its modules."""
 
+from collections.abc import Iterable
 from functools import cache
 from importlib.resources import files
 
-from faultpath.interface import Interface, read_interface
+from faultpath.interface import Interface
+from faultpath.loop import Part, Port, interface_of
+from faultpath.quadrotor.perception.module import Perception
+from faultpath.quadrotor.planners.module import Planning
+from faultpath.quadrotor.plant.module import VehiclePlant
+from faultpath.quadrotor.predictors.history import HistoryEncoder
+from faultpath.quadrotor.predictors.module import Prediction
+from faultpath.quadrotor.predictors.places import PLACES, ports
+from faultpath.quadrotor.reconstruction import DisturbanceObserver
+from faultpath.quadrotor.reconstruction.module import WindReconstruction
+from faultpath.quadrotor.reconstruction.recurrent import READS
 
-LIMITS, GEOFENCE = "altitude_limits", "geofence"
+
+class _Declared(Part):
+    """All that any module of a kind reads and writes."""
+
+    def __init__(self, name: str, reads: Iterable[Port], *writes: str) -> None:
+        self.name, self.reads, self.writes = name, frozenset(reads), writes
 
 
 @cache
-def quadrotor_interface(limited: bool = False) -> Interface:
-    """Return the interface that training, audits and reports share.
-
-    `limited` says whether perception knows the altitudes between which to fly.
-    """
-    declared = read_interface(files("faultpath.quadrotor").joinpath("interface.yaml").read_text())
-    if limited:
-        return declared
-    channels = tuple(each for each in declared.channels if each.name != LIMITS)
-    sources = tuple(each for each in declared.sources if each.name != GEOFENCE)
-    return declared.model_copy(update={"channels": channels, "sources": sources})
+def quadrotor_interface() -> Interface:
+    """Return the interface that training, audits and reports share."""
+    reconstruction = (Port(*read) for read in (*DisturbanceObserver.reads, *READS))
+    parts = (
+        _Declared(Prediction.name, ports(PLACES), *Prediction.writes, *HistoryEncoder.writes),
+        _Declared(WindReconstruction.name, reconstruction, *WindReconstruction.writes),
+        _Declared(Perception.name, Perception.reads, *Perception.writes),
+        _Declared(Planning.name, Planning.reads, *Planning.writes),
+        _Declared(VehiclePlant.name, VehiclePlant.reads),
+    )
+    facts = files("faultpath.quadrotor").joinpath("interface.yaml").read_text("utf-8")
+    return interface_of(facts, parts)

@@ -6,13 +6,11 @@ from hashlib import sha256
 from typing import Any, cast
 
 import numpy as np
-from pydantic import ValidationError
 from typing_extensions import override
 
 from faultpath.errors import SystemMistake, UserError
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Loop, Module, Part, graph
-from faultpath.misfits import misfit_of
+from faultpath.loop import Batch, Loop, Module, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant, scene
 from faultpath.taps import Reading
 from faultpath.text import unknown
@@ -171,43 +169,31 @@ class _Facts:
 
     def interface(self, shapes: Mapping[str, tuple[int, ...]]) -> Interface:
         """Return the interface; what no shape is known of counts as a number."""
-        readers = self._readers()
+        parts = (*self.modules, self.plant)
         commanded = self.several.get(self.plant.action, (self.plant.action,))
-        made: dict[str, dict[str, None]] = {}
-        for module in self.modules:
-            written = (name for name in module.writes if name not in commanded)
-            made.setdefault(module.name, {}).update(dict.fromkeys(written))
-        read = (name for c in readers for name in self.several.get(c, (c,)))
+        read = dict.fromkeys(port.channel for part in parts for port in sorted(part.ports))
+        feeds = {channel: self.several.get(channel, (channel,)) for channel in read}
         written = (name for module in self.modules for name in module.writes)
-        sources = dict.fromkeys((*self.plant.senses, *written, *read))
-        declared = {name: self._source(name, shapes, commanded) for name in sources}
-        feeds = {c: declared[self.several.get(c, (c,))[0]]["provenance"] for c in readers}
+        names = dict.fromkeys(
+            (*self.plant.senses, *written, *(n for f in feeds.values() for n in f))
+        )
+        declared = {name: self._source(name, shapes, commanded) for name in names}
         content = {
             "name": self.name,
             "sources": list(declared.values()),
             "channels": [
                 {
                     "name": channel,
-                    "sources": list(self.several.get(channel, (channel,))),
-                    "consumers": list(consumers),
-                    "gap": "fidelity" if feeds[channel] == "estimated" else "none",
+                    "sources": list(fed),
+                    "gap": "fidelity" if declared[fed[0]]["provenance"] == "estimated" else "none",
                 }
-                for channel, consumers in readers.items()
+                for channel, fed in feeds.items()
             ],
-            "reconstructs": {module: list(names) for module, names in made.items() if names},
         }
         try:
-            return Interface.model_validate(content)
-        except ValidationError as error:
-            raise SystemMistake(f"system '{self.name}': {misfit_of(error, Interface)}") from None
-
-    def _readers(self) -> dict[str, dict[str, None]]:
-        found: dict[str, dict[str, None]] = {}
-        parts: list[Part] = [*self.modules, self.plant]
-        for part in parts:
-            for port in sorted(part.ports):
-                found.setdefault(port.channel, {})[f"{part.name}.{port.place}"] = None
-        return found
+            return interface_of(content, parts)
+        except UserError as error:
+            raise SystemMistake(f"system '{self.name}': {error}") from None
 
     def _source(
         self, name: str, shapes: Mapping[str, tuple[int, ...]], commanded: Sequence[str]

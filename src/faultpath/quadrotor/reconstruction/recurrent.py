@@ -14,6 +14,8 @@ _HISTORY: frozenset[Read] = frozenset(
     (channel, "history") for channel in (*_STATE_CHANNELS, "action")
 )
 _HEAD: tuple[Read, Read] = (("mass", "head"), ("thrust_scale", "head"))
+READS = _HISTORY.union(_HEAD)
+"""All that such a reconstruction may read."""
 
 
 @dataclass(frozen=True)
