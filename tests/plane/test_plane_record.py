@@ -9,13 +9,11 @@ from plane_toys import alike, grown, question, record, reversal
 
 from faultpath.plane.decide import decided
 from faultpath.plane.joint import Errors, Expected
-from faultpath.plane.lattice import COARSE, SHOWN, UNITS, lattice
+from faultpath.plane.lattice import SHOWN, UNITS, lattice
 from faultpath.plane.model import MapRecord
 from faultpath.plane.surface import Differences
-from faultpath.plane.words import cut
 from faultpath.record import RunProvenance
-from faultpath.report.plane import page, tables
-from faultpath.report.plane_pictures import correlation_picture, map_picture
+from faultpath.report.plane import tables
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
@@ -39,12 +37,6 @@ def test_exchanging_the_modules_exchanges_the_errors() -> None:
     for correlation in (-0.7, 0.3, 1.0):
         turned = two.weights(correlation).reshape(side, side).T
         np.testing.assert_allclose(one.weights(correlation).reshape(side, side), turned, atol=1e-12)
-
-
-def test_what_lies_beyond_the_map_is_counted_at_its_edge() -> None:
-    errors = Errors((0.0, 0.0), (0.5, 0.5))
-    assert errors.outside(1.0) == pytest.approx(0.0455, abs=0.01)
-    assert errors.weights(0.0)[X == 1.0].sum() > 0.02
 
 
 def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
@@ -119,53 +111,6 @@ def test_every_claim_of_a_path_is_one_of_its_points() -> None:
     assert "Sharing the error reverses the ranking at" in said
 
 
-def test_a_verdict_that_is_not_decided_under_correct_inputs_is_not_said_to_turn() -> None:
-    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-        scenes = np.arange(60)
-        return scenes >= 0, scenes >= 3 + 40 * (abs(x) > 0.2)
-
-    made = record(seen)
-    first = next(f for f in made.flips if (f.path, f.direction) == ("observer", 1))
-    assert (first.start, first.until, first.turned) == (0, None, 1)
-    assert first.estimate is None
-    (said,) = (
-        s for s in made.sentences if s.startswith("With the observer alone wrong, error above")
-    )
-    assert re.fullmatch(r".*: new is ahead from \+[\d.]+ % on\.", said)
-
-
-def test_sizes_are_rounded_so_that_they_claim_less() -> None:
-    assert cut(0.12345, out=True) == pytest.approx(0.124)
-    assert cut(-0.12345, out=True) == pytest.approx(-0.124)
-    assert cut(0.12345, out=False) == pytest.approx(0.123)
-    assert cut(0.3, out=True) == pytest.approx(0.3)
-    assert cut(0.0, out=True) == 0.0
-
-
-def test_the_distribution_is_told_with_what_lies_beyond_the_map() -> None:
-    said = " ".join(record(reversal(20), others=("logger",)).sentences)
-    assert "at the observer with standard deviation 20 %" in said
-    assert re.search(r"Up to \d+ % of them lie beyond the map", said)
-    assert "Without error: logger." in said
-    inside = record(reversal(20), spreads=(0.08, 0.08), means=(0.1, 0.0), correlation=0.5)
-    assert "mean +10 %" in " ".join(inside.sentences)
-    assert "beyond the map" not in " ".join(inside.sentences)
-    assert any(s.startswith("With a correlation of 0.5") for s in inside.sentences)
-
-
-def test_what_finer_points_showed_beside_what_was_foretold_is_told() -> None:
-    def straight(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-        scenes = (np.arange(100) + 0.5) / 100
-        return scenes < 0.5 + 0.4 * x, scenes < 0.5
-
-    made = record(straight)
-    assert made.foretold > 0
-    assert made.missed_pp is not None
-    assert made.missed_pp < 1
-    assert record(lambda x, y: (np.ones(40), np.zeros(40))).missed_pp is None
-    assert len(record(lambda x, y: (np.ones(40), np.zeros(40))).points) == len(lattice(COARSE))
-
-
 def origin() -> RunProvenance:
     return RunProvenance.model_validate_json((REFERENCE / "map-toy/provenance.json").read_bytes())
 
@@ -194,36 +139,3 @@ def test_the_table_of_turning_sizes_says_what_its_sentences_say() -> None:
     assert f"new is ahead from {beyond.removeprefix('new, ')} on" in said
     sizes = [float(re.findall(r"[\d.]+", each)[0]) for each in (kept, turn, beyond)]
     assert sizes == sorted(sizes)
-
-
-def test_where_correct_inputs_decide_nothing_no_verdict_is_shown_to_turn() -> None:
-    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
-        scenes = np.arange(60)
-        return scenes >= 0, scenes >= 3 + 40 * (0.4 < abs(x) < 0.8)
-
-    kept, turn, beyond = shown(record(seen))["observer alone, above 0"]
-    assert (kept, turn) == ("–", "–")
-    assert re.fullmatch(r"new, \+[\d.]+ % to \+[\d.]+ %", beyond)
-
-
-@pytest.mark.parametrize("scenes", [1, 2, 4])
-def test_of_a_few_scenes_no_turning_size_is_shown(scenes: int) -> None:
-    made = record(reversal(scenes))
-    assert [each.name for each in tables(made)] == ["paths"]
-    assert "turns" not in page(made, origin())
-    assert not any(entry.detected for each in tables(made)[0].lines for entry in each.entries)
-
-
-def test_of_ties_no_turning_size_is_shown() -> None:
-    assert set(shown(record(alike(40))).values()) == {("–", "–", "–")}
-
-
-def test_the_map_says_what_is_compared_what_0_means_and_cuts_no_label() -> None:
-    made = record(reversal(40), against=("reconstruction", "predictor"))
-    drawn = [map_picture(made).render(), correlation_picture(made).render()]
-    for each in drawn:
-        assert "uccess of new minus that of old, pp" in each
-        assert "0: both succeed equally often" in each
-        assert "…" not in each
-    assert "error at the reconstruction, %" in drawn[0]
-    assert "shared" in drawn[0]

@@ -60,15 +60,3 @@ def test_a_reference_map_follows_from_its_outcomes(
             two.lost,
         )
         assert (one.low, one.high) == pytest.approx((two.low, two.high), abs=1e-6)
-
-
-def test_the_prose_about_the_map_of_the_quadrotor_holds() -> None:
-    """Errors twice those of the main job turn the verdict, and those of the main job do not."""
-    folder = ROOT / "docs" / "reference" / "map-quadrotor"
-    record = MapRecord.model_validate_json((folder / "map.json").read_bytes())
-    assert record.question.against == ("reconstruction", "predictor")
-    assert (record.scenes, record.question.options) == (100, {"wind": "L3"})
-    signs = {point.errors: point.sign for point in record.points}
-    for size in (-0.2, 0.2):
-        assert (signs[size, 0.0], signs[size, size]) == (1, -1)
-        assert signs[size / 2, size / 2] == 0

@@ -7,14 +7,12 @@ import pytest
 
 from faultpath.errors import UserError
 from faultpath.execution import run_study
-from faultpath.faults import Fault, Scale, parse_fault
-from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.plane.asked import places
+from faultpath.faults import parse_fault
 from faultpath.plane.decide import conclude
 from faultpath.plane.lattice import COARSE, UNITS, lattice
 from faultpath.plane.study import MapPlan, plan_map
 from faultpath.planning import plan_audit
-from faultpath.trials import SystemSpec, Variant, library_of, load_system
+from faultpath.trials import SystemSpec, library_of, load_system
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SPEC = SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create")
@@ -108,23 +106,6 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
 
-def test_readers_that_get_it_without_error_are_named() -> None:
-    reads = ("planner.cost", "planner.limit", "observer.model", "logger.file")
-    interface = Interface(
-        name="paper",
-        sources=(Source(name="scale", unit="kg", provenance=Provenance.MEASURED),),
-        channels=(Channel(name="mass", sources=("scale",), consumers=reads),),
-    )
-    fault = Fault(channel="mass", intervention=Scale(factor=1.1))
-    logged = Variant("logged", "", frozenset(reads))
-    plain = Variant("plain", "", frozenset(reads[:3]))
-    two = ("planner", "observer")
-    assert places(interface, fault, two, (plain, logged)) == (two, ("logger",))
-    assert places(interface, fault, two, (plain, plain)) == (two, ())
-    with pytest.raises(UserError, match="neither 'plain' nor 'plain' has 'logger' read"):
-        places(interface, fault, ("planner", "logger"), (plain, plain))
-
-
 @pytest.mark.parametrize(
     ("given", "said"),
     [
@@ -157,9 +138,3 @@ def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
         plan(**given)
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)
-
-
-def test_one_number_serves_both_modules() -> None:
-    assert plan(spreads=(0.1,), means=(0.05,)).question.spreads == (0.1, 0.1)
-    assert plan(spreads=(0.1, 0.3)).question.spreads == (0.1, 0.3)
-    assert plan().question.spreads == (0.2, 0.2)

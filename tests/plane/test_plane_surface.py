@@ -1,10 +1,8 @@
 """The surface between the points, what is decided on it, and which points come next."""
 
-from itertools import pairwise
-
 import numpy as np
 import pytest
-from plane_toys import MODULES, alike, differences, grown, reversal
+from plane_toys import MODULES, differences, grown, reversal
 
 from faultpath.plane.grow import first_turn, next_points
 from faultpath.plane.lattice import (
@@ -33,14 +31,6 @@ def test_the_surface_is_what_was_measured_at_a_point_and_a_mean_elsewhere() -> N
     np.testing.assert_allclose(weights.sum(axis=1), 1)
     for column, point in enumerate(FINER):
         assert weights[PLACES.index(point), column] == 1
-
-
-def test_without_finer_points_the_surface_is_bilinear() -> None:
-    points = lattice(COARSE)
-    x, y = np.array(points, dtype=float).T
-    places = np.array(PLACES, dtype=float).T
-    found = surface_weights(points) @ (3 + x - 2 * y + 0.1 * x * y)
-    np.testing.assert_allclose(found, 3 + places[0] - 2 * places[1] + 0.1 * places[0] * places[1])
 
 
 @pytest.mark.parametrize("turned", [lambda x, y: (y, x), lambda x, y: (-x, y)])
@@ -87,21 +77,6 @@ def test_copies_of_a_seed_decide_nothing_more() -> None:
     weights = np.eye(25)
     assert simultaneous(weights, one, "toy") == simultaneous(weights, two, "toy")
     np.testing.assert_array_equal(*(Combined.of(weights, f).signs(2.5) for f in (one, two)))
-
-
-@pytest.mark.parametrize("scenes", [1, 2, 4, 5])
-def test_few_scenes_decide_nothing_however_they_agree(scenes: int) -> None:
-    found = differences(lambda x, y: (np.ones(scenes), np.zeros(scenes)), lattice(COARSE))
-    all_ = Combined.of(np.eye(25), found)
-    assert (all_.means == 100).all()
-    assert not all_.signs(1.96).any()
-    assert not all_.signs(1.96, tested=False).any()
-
-
-def test_ties_decide_nothing() -> None:
-    found = grown(alike(30))
-    weights = surface_weights(found.points)
-    assert not Combined.of(weights, found).signs(simultaneous(weights, found, "toy")).any()
 
 
 def test_many_places_need_more_than_one() -> None:
@@ -158,15 +133,3 @@ def test_the_first_turn_of_a_path_is_bisected_to_one_unit() -> None:
     assert turn[0] < 0.3 * UNITS <= turn[1]
     assert sizes((-1, 0), found.points) == (0, 16, 32)
     assert sizes((1, 1), found.points) == tuple(sorted({*known}))
-
-
-def test_a_tie_is_no_turn() -> None:
-    assert first_turn((0, 8, 16), (1.0, 0.0, 0.0)) is None
-    assert first_turn((0, 8, 16), (0.0, 1.0, -1.0)) is None
-    assert first_turn((0, 8, 16), (1.0, 0.0, -1.0)) == (8, 16)
-
-
-def test_the_same_outcomes_ask_for_the_same_points() -> None:
-    found = differences(reversal(50), lattice(COARSE))
-    assert next_points(found, MODULES, 81, "toy") == next_points(found, MODULES, 81, "toy")
-    assert all(a < b for a, b in pairwise(next_points(found, MODULES, 81, "toy")))

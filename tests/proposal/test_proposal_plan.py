@@ -112,12 +112,6 @@ def test_faults_are_as_large_as_what_is_declared():
     assert not {"unread", "goal", "truth"} & set(by_name)
 
 
-def test_consumers_are_those_that_either_variant_reads_once_each():
-    assert found(Sized())["calibration"].consumers == ("model.mass", "planner.mass")
-    alone = found(Sized(), variants=("less", "less"))["calibration"]
-    assert alone.consumers == ("model.mass",)
-
-
 def test_a_given_error_takes_the_place_of_a_declared_one():
     by_name = found(Sized(), "rate:scale=1.5", "silent:offset=3", "mass:scale=1.2")
     assert by_name["gyro"].fault == "rate:scale=1.5"
@@ -143,12 +137,6 @@ def test_wrong_errors_are_refused(text, said):
 def test_two_errors_of_one_source_are_refused():
     with pytest.raises(UserError, match="gyro has been given an error already"):
         found(Sized(), "rate:scale=1.5", "rate:offset=3")
-
-
-def test_a_channel_that_two_sources_feed_is_noted():
-    assert found(Sized(), variants=("all", "told"))["odometer"].note == (
-        "A fault on 'place' strikes odometer in all and truth in told, which feed it there."
-    )
 
 
 def candidate(name: str, readers: int, response: float | None = None, **more) -> Candidate:

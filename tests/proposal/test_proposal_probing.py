@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from declared_toy import Declared
 
-from faultpath.errors import Notice
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch
 from faultpath.proposal.probing import command_responses
@@ -47,11 +46,6 @@ def median(moved: np.ndarray, commands: np.ndarray) -> float:
     return float(np.median(np.abs(moved)) / np.sqrt(np.mean(commands**2)))
 
 
-def test_an_input_that_stays_what_it_is_moves_nothing():
-    found = responses("calibrated", gain="gain:scale=1", velocity="velocity:offset=0")
-    assert found == {"gain": 0.0, "velocity": 0.0}
-
-
 @pytest.mark.parametrize("variant", ["calibrated", "blind"])
 def test_the_controller_alone_divides_by_the_error(variant):
     commands, _ = flight(variant)
@@ -84,18 +78,3 @@ def test_probing_leaves_no_trace_and_repeats():
     assert one == two
     after, _ = flight("calibrated")
     np.testing.assert_array_equal(before, after)
-
-
-def test_modules_that_stop_at_an_input_have_no_response(monkeypatch):
-    controller = type(SYSTEM.modules("blind", 0)[1])
-    does = controller.step
-
-    def step(self, inputs, memory):
-        if (inputs["velocity", "feedback"] > 50.0).any():
-            raise ValueError("too fast")
-        return does(self, inputs, memory)
-
-    monkeypatch.setattr(controller, "step", step)
-    with pytest.warns(Notice, match="velocity.*blind: no probe response.*ValueError: too fast"):
-        found = responses("blind", velocity="velocity:offset=100", gain="gain:scale=1.1")
-    assert set(found) == {"gain"}

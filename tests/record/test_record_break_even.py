@@ -29,16 +29,3 @@ def test_equal_arms_and_too_few_scenes_have_no_range():
     assert ranges <= 2
     few = record({CORRECT: (0, 3, 0), SHARED: (0, 0, 3)}, 3)
     assert [wording.break_even(each.result) for each in few.break_even] == ["any"]
-
-
-def test_the_set_is_at_the_level_of_the_decisions_at_both_ends():
-    made = record({CORRECT: (40, 3, 14), "observer": (30, 30, 2), SHARED: (30, 30, 2)})
-    alone = {each.path: each.result.level for each in made.break_even}
-    assert all(level >= 0.95 for level in alone.values())
-    (shared,) = [each for each in made.break_even if each.path == SHARED]
-    assert shared.result.regions[-1].high == 1.0
-    # The band leaves out 0 exactly where a region says so.
-    for at, _, low, high in shared.curve:
-        inside = any(r.low < at < r.high for r in shared.result.regions)
-        if not any(abs(at - end) < 0.03 for r in shared.result.regions for end in (r.low, r.high)):
-            assert inside == (low > 0 or high < 0) or not inside

@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from statistics import NormalDist
 
 import numpy as np
 import pytest
@@ -22,9 +21,6 @@ from outcome_tables import (
 
 from faultpath.errors import UserError
 from faultpath.record import CORRECT, SHARED, decide
-from faultpath.record.family import decide_paths
-from faultpath.statistics import Resamples
-from faultpath.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
 
@@ -60,14 +56,6 @@ def test_cells_count_every_trial():
         altered = cell.path != CORRECT and cell.variant == REPAIR
         assert cell.altered_trials == (100 if altered else 0)
     assert cells[REPAIR, CORRECT].median_time_s == pytest.approx(5 + 0.01 * 29.5)
-
-
-def test_the_time_is_compared_where_both_arrived():
-    (effect,) = record({CORRECT: (40, 20, 5)}, slower_s=1.5).effects
-    assert effect.time_s is not None
-    assert effect.time_s.value == pytest.approx(1.5)
-    assert effect.metrics["terminal_distance_m"].value == pytest.approx(1.5)
-    assert effect.metrics["min_clearance_m"].value == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize(
@@ -207,17 +195,6 @@ def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
     }
 
 
-def test_paths_that_failed_in_different_scenes_do_not_void_each_other():
-    failed = [(REPAIR, "observer", i) for i in range(60)]
-    failed += [(REPAIR, "driver", i) for i in range(40, 100)] + [(REPAIR, "driver", 0)]
-    made = decide(question(), paths(CORRECT, "observer", "driver"), _with_failures(*failed))
-    assert [(effect.path, effect.scenes) for effect in made.effects] == [
-        (CORRECT, 40),
-        ("observer", 40),
-    ]
-    assert "driver" in made.findings[0]
-
-
 def test_trials_that_met_other_conditions_are_no_pair_and_the_record_says_so():
     good = table({CORRECT: (50, 16, 4)})
     odd = replace(good.rows[7], outcome=replace(good.rows[7].outcome, disturbance_hash="storm"))
@@ -314,45 +291,3 @@ def test_a_secondary_outcome_that_does_not_vary_has_no_interval():
         None,
     )
     assert "no interval" in effect.metrics["min_clearance_m"].method
-
-
-def aa_audits(n: int, n_seeds: int, audits: int, rate: float) -> float:
-    """Return the share of audits of equal methods on four paths that announce anything."""
-    stream = generator("test/aa", f"{n}/{n_seeds}/{rate}", 0)
-    resamples = Resamples.draw("test/aa", n, n_resamples=10)
-    said = 0
-    for _ in range(audits):
-        hard = stream.normal(size=(n, 1))
-        arms = [
-            hard + stream.normal(size=(n, n_seeds)) < NormalDist().inv_cdf(rate) * 2**0.5
-            for _ in range(8)
-        ]
-        success = {
-            p: (arms[2 * i], arms[2 * i + 1]) for i, p in enumerate(("correct", "a", "b", SHARED))
-        }
-        said += decide_paths(success, resamples=resamples, rule="unconditional").announces
-    return said / audits
-
-
-def test_a_reversal_is_rarely_announced_where_the_isolated_effect_is_zero():
-    """Shared effect -20 pp, isolated 0: at most 2.5 %; 200 audits may show 5 % by chance."""
-    stream = generator("test/no-reversal", "100", 0)
-    resamples = Resamples.draw("test/aa", 100, n_resamples=10)
-    said = 0
-    for _ in range(200):
-        hard = stream.random((6, 100, 1))
-        arms = [one < rate for one, rate in zip(hard, (0.6, 0.6, 0.6, 0.6, 0.5, 0.7), strict=True)]
-        success = dict(
-            zip((CORRECT, "a", SHARED), zip(arms[::2], arms[1::2], strict=True), strict=True)
-        )
-        said += (
-            decide_paths(success, resamples=resamples, rule="unconditional").turns["a"]
-            == "reversal"
-        )
-    assert said / 200 <= 0.05
-
-
-@pytest.mark.parametrize("n_seeds", [1, 3])
-def test_equal_methods_are_rarely_announced_to_differ(n_seeds):
-    """One in twenty at most; 200 audits may show 8 % by chance."""
-    assert aa_audits(50, n_seeds, 200, 0.5) <= 0.08

@@ -90,28 +90,6 @@ def test_trials_that_failed_in_both_arms_favour_neither():
     assert "10 trials of new failed and 10 of old" in made.findings[0]
 
 
-def test_swapping_the_arms_turns_what_is_open_round():
-    stream = np.random.default_rng(4)
-    repair, baseline = dies_in_hard_scenes(stream)
-    one, two = audit((repair, baseline)).effects[0], audit((baseline, repair)).effects[0]
-    assert one.failed is not None
-    assert two.failed is not None
-    assert (one.failed.against_pp, one.failed.favour_pp) == (
-        -two.failed.favour_pp,
-        -two.failed.against_pp,
-    )
-    assert (one.sign, one.unsettled, one.uneven) == (-two.sign, two.unsettled, two.uneven)
-
-
-def test_success_and_difference_are_of_the_same_scenes():
-    stream = np.random.default_rng(2)
-    made = audit(dies_in_hard_scenes(stream), (EVEN, EVEN))
-    for effect in made.effects:
-        shown = effect.repair_percent - effect.baseline_percent
-        assert effect.success.value == pytest.approx(shown)
-        assert effect.scenes == made.scenes < SCENES
-
-
 def test_a_failure_on_one_path_is_open_on_the_others_too():
     """The scenes that it leaves out are those of every path: there the others are known."""
     wins = np.arange(SCENES) < 9

@@ -16,7 +16,7 @@ from faultpath.statistics import (
     success_effect,
     with_test,
 )
-from faultpath.statistics.betting import fewest_scenes, log_capital, log_capitals, p_value
+from faultpath.statistics.betting import log_capital, log_capitals
 from faultpath.streams import generator
 
 
@@ -95,30 +95,6 @@ def test_swapping_the_arms_mirrors_and_copying_a_seed_changes_nothing(seed, seed
     assert mirrored.test.p_value == found.test.p_value
     assert copied.interval == pytest.approx(found.interval, abs=1e-9)
     assert copied.test.p_value == pytest.approx(found.test.p_value)
-
-
-def test_no_scene_that_differs_and_scenes_that_all_do_leave_room():
-    none = effect(*arms(0, 0, 100))
-    assert (none.test.p_value, none.test.leans) == (1.0, 0)
-    assert -6.0 < none.interval[0] < -3.0 < 3.0 < none.interval[1] < 6.0
-    assert 85.0 < effect(*arms(100, 0, 100)).interval[0] < 97.0
-    assert effect(*arms(100, 0, 100)).interval[1] == pytest.approx(100.0)
-
-
-@pytest.mark.parametrize("alpha", [0.05, 0.025, 0.005])
-def test_fewest_scenes_are_those_of_a_unanimous_win(alpha):
-    n = fewest_scenes(alpha)
-    assert p_value(np.ones(1), np.full(1, n), 1.0)[0] <= alpha
-    assert p_value(np.ones(1), np.full(1, n - 1.0), 1.0)[0] > alpha
-
-
-def test_intervals_are_wider_than_for_a_fixed_number_of_scenes():
-    stream = generator("betting", "wider", 0)
-    first, second = stream.random((80, 1)) < 0.6, stream.random((80, 1)) < 0.4
-    resamples = Resamples.draw("betting", 80, n_resamples=1)
-    low, high = success_effect(first, second, resamples).interval
-    wide = effect(first, second).interval
-    assert wide[0] < low < high < wide[1]
 
 
 def test_the_band_of_a_mixture_touches_0_exactly_where_it_is_undecided():

@@ -1,6 +1,5 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -12,14 +11,12 @@ from scipy.stats import sem
 from scipy.stats import t as student
 
 from faultpath.statistics import (
-    Estimate,
     Resamples,
     change,
     mean_effect,
     median_effect,
     percentile_interval,
     success_effect,
-    success_rate,
 )
 from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
 from faultpath.streams import generator
@@ -70,18 +67,6 @@ def test_counts_are_those_of_the_scenes_drawn_one_resample_after_another(n_resam
 
 
 @fewer
-@given(FLOATS)
-def test_draws_are_the_means_of_resampled_scenes(pair):
-    means = (pair[0] - pair[1]).mean(axis=1)
-    expected = [means[row].mean() for row in rows(RESAMPLES)]
-    effect = mean_effect(*pair, RESAMPLES, "m")
-    np.testing.assert_allclose(effect.draws, expected, atol=1e-10)
-    assert effect.value == pytest.approx(means.mean(), abs=1e-10)
-    low, high = effect.ends(0.9)
-    assert (low, high) == pytest.approx(np.percentile(expected, [5, 95]), abs=1e-9)
-
-
-@fewer
 @given(BINARY.filter(lambda pair: pair.shape[2] > 1))
 def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
     trained = success_effect(*pair, RESAMPLES, models=True)
@@ -117,15 +102,6 @@ def test_the_interval_for_new_trainings_holds_their_mean(seeds):
     assert held >= 0.92 * audits
 
 
-def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
-    """Resampled trainings alone printed [0.0, 0.0]."""
-    some = np.arange(60).reshape(N, 3) % 2
-    effect = success_effect(some, some, RESAMPLES, models=True)
-    assert effect.interval == success_effect(some, some, RESAMPLES).interval
-    low, high = change(effect, effect).interval
-    assert low == -high < -10
-
-
 @fewer
 @given(BINARY, st.booleans())
 def test_swapping_the_arms_flips_the_sign_and_mirrors_the_interval(pair, as_floats):
@@ -154,39 +130,6 @@ def test_permuting_scenes_with_their_resamples_changes_nothing(pair, order):
     resamples = replace(RESAMPLES, counts=RESAMPLES.counts[:, order])
     moved = success_effect(*pair[:, order], resamples)
     assert moved.estimate() == success_effect(*pair, RESAMPLES).estimate()
-
-
-@fewer
-@given(FLOATS)
-def test_identical_arms_give_zero_with_a_degenerate_interval(pair):
-    found = mean_effect(pair[0], pair[0], RESAMPLES, "m")
-    assert (found.value, found.interval, found.side) == (0.0, (0.0, 0.0), 0)
-
-
-def test_a_resampled_mean_of_zero_is_exactly_zero():
-    """Thirds do not cancel in floating point; an end at 0 must not come out beside it."""
-    first, second = np.zeros((2, N, 3))
-    first[:7, 0], second[7:14, 1] = 1, 1
-    draws = success_effect(first, second, RESAMPLES).draws
-    assert (draws == 0).sum() > 20
-    assert np.abs(draws[draws != 0]).min() > 1
-
-
-def test_per_seed_values_and_counts():
-    first = np.array([[1, 0], [1, 0], [0, 1], [0, 0]])
-    second = np.array([[0, 0], [0, 1], [0, 0], [0, 0]])
-    estimate = success_effect(first, second, Resamples.draw("four", 4)).estimate()
-    assert estimate.per_seed == (50.0, 0.0)
-    assert (estimate.value, str(estimate.counts)) == (25.0, "2:0/1:1")
-    assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
-    assert estimate.method == "score on scene means (Tango's, cluster-robust)"
-
-
-def test_one_arm():
-    outcomes = np.arange(N) < 13
-    assert success_rate(outcomes, RESAMPLES).estimate().value == 65.0
-    with pytest.raises(ValueError, match="only 0 and 1"):
-        success_rate(outcomes * 2.0, RESAMPLES)
 
 
 @fewer
@@ -250,53 +193,3 @@ def test_medians_are_those_of_the_resampled_joint_scenes(pair, data):
     np.testing.assert_allclose(effect.draws, expected, atol=1e-9)
     assert effect.value == pytest.approx(np.median([w for w in within if w is not None]))
     assert effect.n_scenes == joint.any(axis=1).sum()
-
-
-def test_medians_take_every_resample_in_order():
-    resamples = Resamples.draw("several blocks", 100, n_resamples=1501)
-    assert len(list(resamples.blocks())) > 1
-    first, second = np.random.default_rng(0).normal(size=(2, 100))
-    joint = np.arange(100) % 3 == 0
-    expected = [np.median((first - second)[row[joint[row]]]) for row in rows(resamples)]
-    draws = median_effect(first, second, joint, resamples).draws
-    np.testing.assert_array_equal(draws, expected, strict=True)
-
-
-def test_times_of_scenes_that_are_not_joint_are_not_read():
-    first, second = np.full(N, 3.0), np.full(N, 2.0)
-    joint = np.arange(N) < 15
-    first[15:] = np.nan
-    found = median_effect(first, second, joint, RESAMPLES)
-    assert (found.value, found.interval, found.n_scenes) == (1.0, (1.0, 1.0), 15)
-    with pytest.raises(ValueError, match="no scene is jointly successful"):
-        median_effect(first, second, np.zeros(N, dtype=bool), RESAMPLES)
-    with pytest.raises(ValueError, match="first has shape"):
-        median_effect(first[:3], second, joint, RESAMPLES)
-    with pytest.raises(ValueError, match="first holds NaN"):
-        median_effect(first, second, np.ones(N, dtype=bool), RESAMPLES)
-
-
-def test_ten_thousand_resamples_of_100_scenes_take_at_most_20_ms():
-    resamples = Resamples.draw("speed", 100)
-    rng = np.random.default_rng(0)
-    first, second = rng.random((2, 100, 3)) < 0.6
-
-    def seconds():
-        start = time.process_time()
-        success_effect(first, second, resamples).estimate()
-        return time.process_time() - start
-
-    assert min(seconds() for _ in range(10)) <= 0.020
-
-
-def test_an_estimate_refuses_nonsense():
-    base = {"method": "m", "estimand": SCENES, "n_scenes": 100, "n_seeds": 3, "unit": "pp"}
-    estimate = Estimate(value=-9.67, low=-16.0, high=-4.0, **base)
-    assert Estimate.model_validate_json(estimate.model_dump_json()) == estimate
-    for wrong in (
-        {"value": float("nan")},
-        {"value": 0.0, "low": 1.0},
-        {"value": 0.0, "low": 1.0, "high": -1.0},
-    ):
-        with pytest.raises(ValueError, match=r"finite|both ends|upside down"):
-            Estimate(**wrong, **base)

@@ -16,9 +16,7 @@ from faultpath.statistics import (
     change,
     decide_family,
     fewest_scenes,
-    mean_effect,
     success_effect,
-    success_rate,
     turn,
     with_test,
 )
@@ -74,13 +72,6 @@ def test_interval_and_test_have_to_point_the_same_way():
     assert contrary.side == -1
     assert contrary.detected == 0
     assert decide_family({"it": contrary})["it"].sign == 0
-
-
-def test_what_has_no_test_is_refused():
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(mean_effect(np.ones(N), np.zeros(N), RESAMPLES, "m"), "exact")
-    with pytest.raises(ValueError, match="has no test"):
-        with_test(success_rate(np.ones(N), RESAMPLES), "exact")
 
 
 @settings(deadline=None)
@@ -167,15 +158,6 @@ def test_fewest_scenes_is_where_a_unanimous_test_first_suffices(hypotheses):
     assert fewest_scenes() == 6
 
 
-@pytest.mark.parametrize("n", [1, 3, 5])
-def test_few_scenes_detect_nothing_however_one_sided(n):
-    resamples = Resamples.draw("few", n, n_resamples=100)
-    ones = np.ones(n)
-    found = with_test(success_effect(ones, 0 * ones, resamples), "exact")
-    assert found.detected == 0
-    assert decide_family({"only": found})["only"].sign == 0
-
-
 def test_newly_trained_models_are_tested_by_the_seeds_effects():
     rng = np.random.default_rng(3)
     first, second = rng.random((2, N, 4)) < [[[0.8]], [[0.4]]]
@@ -186,26 +168,3 @@ def test_newly_trained_models_are_tested_by_the_seeds_effects():
     assert found.test.leans == 1
     assert "Student's t over seeds" in found.method
     assert found.estimand.startswith("new scenes like these and models newly trained")
-
-
-def test_trainings_that_agree_to_the_digit_are_not_certain():
-    """Two trainings with the same rate: a share of 40 scenes is known to a fortieth only."""
-    difference = np.zeros((N, 2))
-    difference[:10] = 1
-    effect = success_effect(difference, 0 * difference, RESAMPLES, models=True)
-    assert 0.005 < with_test(effect, "exact").test.p_value < 0.05
-    none = success_effect(0 * difference, 0 * difference, RESAMPLES, models=True)
-    assert with_test(none, "exact").test.p_value == 1.0
-
-
-def test_newly_trained_models_are_not_told_apart_by_six_single_wins():
-    """Two scenes of a hundred won in each training, others in each: bootstrap and t test agreed."""
-    wins = np.zeros((100, 3))
-    wins[np.arange(6), np.arange(6) % 3] = 1
-    resamples = Resamples.draw("hundred", 100, n_resamples=2000)
-    found = with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact")
-    assert found.test.rejects()
-    assert found.test.leans == 1
-    assert found.detected == 0
-    wins[:12] = 1
-    assert with_test(success_effect(wins, 0 * wins, resamples, models=True), "exact").detected == 1

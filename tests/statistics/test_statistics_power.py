@@ -58,12 +58,6 @@ def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
     )
 
 
-@settings(deadline=None)
-@given(st.integers(6, 200), st.floats(0, 1))
-def test_the_rule_never_exceeds_its_level(n, rate):
-    assert rule_power(n, rate, 0.0, rule="exact") <= 0.05
-
-
 @settings(deadline=None, max_examples=30)
 @given(st.integers(0, 50), st.integers(0, 50), st.sampled_from([0.05, 0.05 / 7]))
 def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, second, alpha):
@@ -78,24 +72,12 @@ def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, 
     assert found((second, first), alpha=alpha) == least
 
 
-def test_more_scenes_detect_less_and_a_stricter_level_more():
-    assert found((4, 30, 200)) < found((2, 15))
-    assert found((20, 20)) > found((8, 9))
-    assert found((8, 9), alpha=0.01) > found((8, 9))
-
-
 def test_without_discordant_pairs_an_upper_bound_stands_in():
     least = found((0, 0))
     # Fewer than six discordants never reject, so at least six of 100 must be expected.
     assert least > 6
     # Twelve scenes: the bound, 26 %, is still below what one-sided discordance needs.
     assert found((0, 0, 12)) > 26
-
-
-def test_too_few_scenes_detect_nothing():
-    assert found((1, 1, 5)) is None
-    assert found((1, 1, 6)) is not None
-    assert found((1, 1, 6), alpha=0.05 / 7) is None
 
 
 @pytest.mark.parametrize("n_seeds", [1, 3])
@@ -117,13 +99,6 @@ def test_seeds_that_end_alike_are_told_from_seeds_that_do_not():
     few, many = detectable(*apart, rule="exact"), detectable(*together, rule="exact")
     assert few < many - 2
     assert detectable(*apart, rule="exact") == few
-
-
-def test_wrong_input_is_refused():
-    with pytest.raises(ValueError, match="need 0 <="):
-        rule_power(100, 0.1, 0.2, rule="exact")
-    with pytest.raises(ValueError, match="only 0 and 1"):
-        detectable(np.full((4, 2), 0.5), np.ones((4, 2)), rule="exact")
 
 
 @pytest.mark.parametrize("rule", ["exact", "unconditional"])

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import norm
 
 from faultpath.record.family import CORRECT, SHARED, decide_paths
-from faultpath.statistics import Resamples, change, score, signflip, success_effect, with_test
+from faultpath.statistics import Resamples, score, signflip, success_effect, with_test
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.power import detected
 from faultpath.statistics.score import reach, rejects
@@ -75,20 +75,6 @@ def test_many_small_gains_against_few_whole_losses_are_no_difference(gains):
             announced[rule] += decide_paths(arms, rule=rule).announces
     assert announced["exact"] > 0.07 * audits
     assert announced[RULE] <= 0.046 * audits + 3 * np.sqrt(0.05 * 0.95 * audits)
-
-
-def test_changes_of_one_seed_are_tested_alike():
-    rng = np.random.default_rng(3)
-    resamples = Resamples.draw("changes", 60, n_resamples=1)
-    before, after = (success_effect(*(rng.random((2, 60)) < p), resamples) for p in (0.3, 0.6))
-    found = with_test(change(before, after), RULE)
-    assert found.scenes is not None
-    assert "sign flips" in found.test.name
-    kinds = found.scenes.kinds()
-    assert found.test.p_value == max(
-        signflip.p_value(found.scenes.values, 1), score.p_value(*kinds, found.scenes.far)
-    )
-    assert "sign test" in with_test(change(before, after), "exact").test.name
 
 
 @pytest.mark.parametrize("alpha", [0.05, 0.005])

@@ -10,12 +10,8 @@ import pytest
 
 from faultpath.statistics import (
     Resamples,
-    break_even,
-    change,
-    decide_family,
     median_effect,
     success_effect,
-    turn,
     with_test,
 )
 
@@ -60,39 +56,6 @@ def test_type_one_error_of_the_exact_tests(population, n_seeds):
         with_test(success_effect(*arms, RESAMPLES), "exact").test.rejects() for arms in drawn
     ]
     assert 0.01 - noise(0.01) < np.mean(rejected) <= 0.05 + noise(0.05)
-
-
-@pytest.mark.parametrize("n_seeds", [1, 3])
-@pytest.mark.parametrize("population", [NO_EFFECT, NO_MEAN_EFFECT, LARGE_EFFECT, COST])
-def test_coverage_of_the_score_interval(population, n_seeds):
-    true = effect_pp(population)
-    intervals = [e.interval for e in effects(30 + n_seeds, population, n_seeds)]
-    covered = np.mean([low <= true <= high for low, high in intervals])
-    assert 0.94 - noise(0.95) <= covered <= 0.97 + noise(0.95)
-
-
-@pytest.mark.parametrize("n_seeds", [1, 3])
-def test_coverage_of_the_break_even_set_and_power_of_reversal(n_seeds):
-    """Cost -8 pp and gain +12 pp cross at 40 %; the three decisions are one family."""
-    covered, reversed_ = 0, 0
-    for first, second in zip(effects(40, COST, n_seeds), effects(50, GAIN, n_seeds), strict=True):
-        covered += any(low <= 0.4 <= high for low, high in break_even(first, second).pieces)
-        reversed_ += turned(first, second) == "reversal"
-    assert 0.94 - noise(0.95) <= covered / RUNS <= 0.97 + noise(0.95)
-    assert reversed_ / RUNS > {1: 0.1, 3: 0.3}[n_seeds]
-
-
-def test_reversal_is_rarely_claimed_where_there_is_none():
-    """Both effects are -8 pp; one of them would have to be detected on the wrong side."""
-    pairs = zip(effects(60, COST, 3), effects(70, COST, 3), strict=True)
-    assert sum(turned(a, b) == "reversal" for a, b in pairs) == 0
-
-
-def turned(isolated, shared):
-    found = {"isolated": isolated, "shared": shared, "change": change(isolated, shared)}
-    return turn(
-        **decide_family({name: with_test(effect, "exact") for name, effect in found.items()})
-    )
 
 
 def test_coverage_of_the_median_interval():

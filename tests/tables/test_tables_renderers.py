@@ -1,14 +1,11 @@
 """One table, four renderers: each shows every text, takes it literally and marks what is marked."""
 
 import io
-import re
 
-import pytest
 from rich.console import Console
 
 from faultpath.tables import Entry, Table, line
 from faultpath.tables.html import html
-from faultpath.tables.latex import booktabs
 from faultpath.tables.markdown import grid
 from faultpath.tables.terminal import drawn
 
@@ -43,14 +40,6 @@ def test_markdown_marks_names_detections_and_alarms() -> None:
     ]
 
 
-@pytest.mark.parametrize("name", ["a`b", "a|b", "a\\b", "a\nb"])
-def test_a_name_that_code_cannot_hold_is_escaped(name: str) -> None:
-    row = grid(Table(columns=("x",), lines=(line(name, "1", name=True),))).splitlines()[2:]
-    assert len(row) == 1
-    assert not row[0].startswith("| `")
-    assert len(re.findall(r"(?<!\\)\|", row[0])) == 3
-
-
 def test_html_has_a_cell_for_every_column_and_escapes() -> None:
     text = html(TABLE.model_copy(update={"title": "<b>"}))
     assert "<caption>&lt;b&gt;</caption>" in text
@@ -60,20 +49,6 @@ def test_html_has_a_cell_for_every_column_and_escapes() -> None:
     assert '<td class="alarm"><span class="ours">3</span></td>' in text
     short = Table(columns=("a", "b"), lines=(line("x", "<1>"),))
     assert '<td><span class="ours">&lt;1&gt;</span></td><td></td>' in html(short)
-
-
-def test_latex_sets_words_to_the_left_and_names_asides() -> None:
-    text = booktabs(TABLE)
-    assert r"\begin{tabular}{@{}lcl@{}}" in text
-    assert r"{wm-a (zero wind)} & 70.3 & a model \\" in text
-    assert r"{dob} & \textbf{+5.0} (floor) & an observer \\" in text
-    assert r"{gru} & \textbf{3} & ab12 \\" in text
-
-
-def test_the_legend_explains_the_marks_that_are_there() -> None:
-    both = "In parentheses: the paper's figures. Bold: a detected difference."
-    assert TABLE.legend() == (both,)
-    assert Table(columns=("a",), lines=(line("x", "1"),)).legend() == ()
 
 
 def test_terminal_shows_everything_and_takes_it_literally() -> None:

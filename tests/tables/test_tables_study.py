@@ -7,7 +7,7 @@ import pytest
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
 from faultpath.tables import Entry, Line, Table
-from faultpath.tables.latex import booktabs, document
+from faultpath.tables.latex import booktabs
 from faultpath.tables.markdown import block as markdown
 from faultpath.trials import OutcomeTable
 
@@ -102,47 +102,11 @@ def test_latex_puts_the_papers_figures_in_a_row_of_their_own() -> None:
     ]
 
 
-def test_latex_names_title_label_and_notes() -> None:
-    tex = booktabs(SMALL)
-    assert r"\caption{A title.}" in tex
-    assert r"\label{tab:table-9}" in tex
-    assert "First note.\n\nSecond\\_note." in tex
-
-
 def test_no_text_ends_an_environment_or_starts_a_comment() -> None:
     tex = booktabs(ODD)
     assert tex.count(r"\end{tabular}") == 1
     assert r"\textbackslash{}end\{tabular\}" in tex
     assert r"100\% of a\_b \& c\#d" in tex
-
-
-def test_a_glyph_without_a_font_is_shown_by_its_number() -> None:
-    assert "[U+4E2D]" in booktabs(SMALL.model_copy(update={"title": "中"}))
-
-
-def test_wide_tables_span_both_columns() -> None:
-    narrow, wide = booktabs(SMALL), booktabs(REAL[0])
-    assert r"\begin{table}[t]" in narrow
-    assert len(REAL[0].columns) > len(SMALL.columns)
-    assert r"\begin{table*}[t]" in wide
-
-
-def test_the_document_holds_every_table_once_and_a_page_for_each() -> None:
-    tex = document((SMALL, *REAL))
-    _check_balance(tex)
-    assert tex.startswith("\\documentclass{article}\n")
-    assert r"\usepackage{booktabs}" in tex.partition(r"\begin{document}")[0]
-    assert tex.count(r"\clearpage") == len(REAL) + 1
-    assert tex.endswith("\\end{document}\n")
-    assert [table.name for table in (SMALL, *REAL)] == re.findall(r"\\label\{tab:([\w-]+)\}", tex)
-
-
-@pytest.mark.parametrize("table", [SMALL, ODD, *REAL], ids=lambda table: table.name)
-def test_markdown_rows_have_every_column(table: Table) -> None:
-    rows = [row for row in markdown(table).splitlines() if row.startswith("|")]
-    assert len(rows) == 2 + len(table.lines)
-    for row in rows:
-        assert len(re.findall(r"(?<!\\)\|", row)) == len(table.columns) + 2
 
 
 def test_markdown_puts_the_papers_figure_in_parentheses() -> None:

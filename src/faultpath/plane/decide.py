@@ -9,13 +9,10 @@ from faultpath.plane.asked import MapQuestion
 from faultpath.plane.grow import first_turn
 from faultpath.plane.joint import Errors, Expected
 from faultpath.plane.lattice import (
-    COARSE,
-    FINE,
     SHOWN,
     UNITS,
     Point,
     along,
-    lattice,
     rays,
     sizes,
     surface_weights,
@@ -61,7 +58,6 @@ def decided(
     """Return the record of differences, which may be simulated ones."""
     label, up_to = question.library_hash, question.up_to
     flips, z = turns(found, question.against, up_to, label)
-    foretold, missed = _foretold(found)
     record = MapRecord(
         question=question,
         scenes=found.values.shape[1],
@@ -71,8 +67,6 @@ def decided(
         joint=_joint(question, found),
         critical=z,
         failed=failed,
-        foretold=foretold,
-        missed_pp=missed,
         estimand=words.estimand(question),
         headline="",
         sentences=(),
@@ -211,20 +205,6 @@ def _expectations(expected: Expected, correlations: Sequence[float]) -> tuple[Ex
         )
         for at, value, low, high, sign in zip(correlations, *columns, strict=True)
     )
-
-
-def _foretold(found: Differences) -> tuple[int, float | None]:
-    missed: list[float] = []
-    means = found.values.mean(axis=1)
-    spacing = COARSE // 2
-    while spacing >= FINE:
-        coarser = [p for p in found.points if p in set(lattice(2 * spacing))]
-        finer = [p for p in found.points if p in set(lattice(spacing)) and p not in coarser]
-        foretold = surface_weights(coarser) @ [found.mean(p) for p in coarser]
-        at = dict(zip(lattice(SHOWN), foretold.tolist(), strict=True))
-        missed += [abs(at[p] - float(means[found.points.index(p)])) for p in finer]
-        spacing //= 2
-    return len(missed), float(np.mean(missed)) if missed else None
 
 
 def _size(units: float, up_to: float) -> float:

@@ -100,10 +100,6 @@ class MapRecord(Result, allow_inf_nan=False):
     """Critical value of a standard normal that holds over the whole map."""
     failed: int
     """Trials in which the program raised an error; each voids its scene at every point."""
-    foretold: int
-    """Points that coarser ones foretold."""
-    missed_pp: float | None
-    """By how much these were foretold wrongly, on average."""
     estimand: str
     headline: str
     sentences: tuple[str, ...]

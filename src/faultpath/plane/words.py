@@ -59,12 +59,6 @@ def sentences(record: MapRecord) -> tuple[str, ...]:
     said += [_expected(record.question, each) for each in record.joint.asked]
     said += [_decided(record), *_reversals(record)]
     said += [_flipped(record.question, each) for each in record.flips]
-    if record.missed_pp is not None:
-        said.append(
-            "Between the points the map is drawn straight. Where points were added, the difference "
-            f"was on average {record.missed_pp:.1f} pp from what the points around foretold; the "
-            "intervals do not hold this."
-        )
     return tuple(said)
 
 

@@ -54,7 +54,6 @@ def break_even(correct: Contrast, faulty: Contrast, level: float = 0.95) -> Brea
         kind=_kind(pieces),
         regions=regions,
         level=level,
-        words=_words(regions),
         method=f"inverted {correct.method}, mixture of both conditions",
         estimand=correct.estimand,
     )
@@ -71,7 +70,6 @@ def only(found: BreakEven, regions: Sequence[Region]) -> BreakEven:
             "pieces": pieces,
             "kind": _kind(pieces),
             "regions": tuple(regions),
-            "words": _words(tuple(regions)),
         }
     )
 
@@ -201,15 +199,6 @@ def _regions(pieces: tuple[Piece, ...], mixture: _Mixture) -> tuple[Region, ...]
         Region(low=low, high=high, sign=1 if mixture.value(0.5 * (low + high)) > 0 else -1)
         for low, high in spans
     )
-
-
-def _words(regions: tuple[Region, ...]) -> str:
-    if not regions:
-        return "is neither ahead nor behind at any fault frequency, as far as can be decided"
-    if len(regions) == 1 and (regions[0].low, regions[0].high) == (0.0, 1.0):
-        return f"is {_side(regions[0])} at every fault frequency"
-    clauses = [f"{_side(region)} {_span(region)}" for region in regions]
-    return f"is {' and '.join(clauses)} fault frequency; elsewhere it is not decided"
 
 
 def _side(region: Region) -> str:

@@ -127,7 +127,5 @@ class BreakEven(FrozenResult):
     kind: Literal["interval", "empty", "whole", "two pieces"]
     regions: tuple[Region, ...]
     level: float = Field(default=0.95, gt=0.0, lt=1.0)
-    words: str
-    """What is decided, from the regions alone; it goes on after the name of the first arm."""
     method: str
     estimand: str
