@@ -153,7 +153,6 @@ VERBS: dict[str, tuple[list[str], dict[str, tuple[str | None, ...]]]] = {
             "--json": (None,),
         },
     ),
-    "probe": ([TOY], {"--variants": ("a,b",), "--seeds": ("0",), "--out": ("probe",)}),
     "init": (["my_rover"], {"--with": ("numpy", "gymnasium", "jax")}),
     "reproduce": (
         ["table-99"],

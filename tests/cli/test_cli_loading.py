@@ -24,7 +24,6 @@ MAY_LOAD = {
     "no such map": (["map", TOY, *MAP], {"numpy"}),
     "nothing to check": (["check", TOY, "--variants", "a"], {"numpy", "pyarrow", "scipy"}),
     "nothing to trace": (["trace", TOY, "--variant", "a"], {"numpy", "pyarrow", "jinja2", "scipy"}),
-    "nothing to probe": (["probe", TOY, "--variants", "a"], {"numpy"}),
     "claims": (["reproduce", "--judge"], {"numpy", "pyarrow"}),
 }
 

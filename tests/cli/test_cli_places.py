@@ -8,6 +8,7 @@ from typing import get_args, get_type_hints
 import pytest
 import typer
 from cli_runs import ROOT, TOY, audit, faultpath
+from faultpath.store.outputs import PAGE
 from typer.models import OptionInfo
 
 from faultpath.cli.app import build
@@ -101,7 +102,6 @@ COMMANDS = {
     "audit": ["audit", TOY, *AUDIT.split(), "--workers", 0],
     "map": ["map", TOY, *MAP.split(), "--workers", 0],
     "reproduce": ["reproduce", "table-1", "--workers", 0],
-    "probe": ["probe", "quadrotor", "--variants", "wm-a,wm-a+dcc", "--scenes", 1],
     "train": ["train", "quadrotor", "wm-a"],
 }
 

@@ -47,7 +47,7 @@ def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):
     assert "Possible" not in said
 
 
-@pytest.mark.parametrize("verb", ["audit", "trace", "probe"])
+@pytest.mark.parametrize("verb", ["audit", "trace"])
 def test_help_shows_the_options_of_the_system_that_is_named(verb):
     shown = faultpath(verb, "quadrotor", "--help").out
     assert "Options of quadrotor" in shown

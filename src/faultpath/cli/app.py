@@ -53,11 +53,6 @@ _PANELS = {
             "--library carts",
             of_a_system=True,
         ),
-        _entry(
-            "probe",
-            "quadrotor --variants wm-a,wm-a+dcc --perturb calibration=+0.1",
-            of_a_system=True,
-        ),
         _entry("log", "flight.ulg --columns px4 --mass 1.5"),
     ),
     "Finished runs": (

@@ -12,9 +12,9 @@ from faultpath.work.executor import (
     Returned,
     WorkerLost,
     elsewhere,
+    one_thread,
     run_all,
     run_each,
     tell,
 )
 from faultpath.work.processes import Processes, local
-from faultpath.work.threads import one_thread

@@ -1,14 +1,44 @@
 """What an executor is, and how a list of calls runs on one."""
 
+import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Self, TypeVar
 
 from faultpath.errors import UserError
-from faultpath.work.threads import one_thread
+
+ONE_THREAD = dict.fromkeys(
+    (
+        "OMP_NUM_THREADS",
+        "MKL_NUM_THREADS",
+        "OPENBLAS_NUM_THREADS",
+        "NUMEXPR_NUM_THREADS",
+        "VECLIB_MAXIMUM_THREADS",
+    ),
+    "1",
+)
+"""Environment of a process in which numpy and torch, once imported, keep to one thread: workers
+share the processors, and a sum over several threads may differ in its last bits."""
+
+
+@contextmanager
+def one_thread() -> Generator[None]:
+    """Keep torch, where it is loaded, to one thread, and put back what was before."""
+    torch = sys.modules.get("torch")
+    before = 1 if torch is None else torch.get_num_threads()
+    if torch is None or before == 1:
+        yield
+        return
+    torch.set_num_threads(1)
+    try:
+        yield
+    finally:
+        torch.set_num_threads(before)
+
 
 T = TypeVar("T")
 

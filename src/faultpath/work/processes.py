@@ -13,8 +13,18 @@ from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from faultpath.errors import Notice, UserError
-from faultpath.work.executor import Call, End, Executor, Failed, Here, Lost, Returned, Told, ignore
-from faultpath.work.threads import ONE_THREAD
+from faultpath.work.executor import (
+    ONE_THREAD,
+    Call,
+    End,
+    Executor,
+    Failed,
+    Here,
+    Lost,
+    Returned,
+    Told,
+    ignore,
+)
 
 KEEP_MEMORY = {
     "MALLOC_MMAP_THRESHOLD_": str(1 << 28),

@@ -2,12 +2,10 @@
 
 import os
 import pickle
-import re
 import signal
 import socket
 import sys
 import threading
-import time
 import warnings
 from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,16 +16,14 @@ from typing import Any
 from faultpath.errors import Notice, UserError
 from faultpath.text import extra
 from faultpath.version import __version__
-from faultpath.work.executor import Call, End, Executor, Lost, Told, ignore
+from faultpath.work.executor import ONE_THREAD, Call, End, Executor, Lost, Told, ignore
 from faultpath.work.processes import KEEP_MEMORY
-from faultpath.work.threads import ONE_THREAD
 
 _QUIET = {"logging_level": "ERROR", "log_to_driver": False}
 _STORE_BYTES = 256 * 2**20
 """Of shared memory for a cluster of our own: what comes back is small, and fetched at once."""
 _FALSE_STARTS = 4
 """So many workers in a row may end before they have begun."""
-_SAY_AFTER_S = 30.0
 _REPORTS = "RAY_USAGE_STATS_ENABLED"
 _TICK_S = 0.5
 _REACH_S = 10.0
@@ -76,7 +72,14 @@ class RayWorkers(Executor):
                 f"the number of workers is {count}: on Ray use 1 or more, or leave it out for one "
                 "a CPU"
             )
-        self._ray = _ray()
+        try:
+            import ray
+        except ModuleNotFoundError as error:
+            raise UserError(
+                f"--executor ray needs the package {error.name!r}, not installed here: "
+                f"{extra('ray')}"
+            ) from None
+        self._ray: Any = ray
         self._ours = _connect(self._ray, address, count)
         from faultpath.work.on_node import OnNode  # it imports ray
 
@@ -100,14 +103,10 @@ class RayWorkers(Executor):
 
     def free(self) -> Sequence[int]:
         """Return the workers that run and have no call; wait for one where none has a call."""
-        since, said = time.monotonic(), False
         while True:
             free = [number for number, each in self._workers.items() if each.awaited is None]
             if free or any(each.stream is not None for each in self._workers.values()):
                 return free
-            if not said and time.monotonic() - since > _SAY_AFTER_S:
-                warnings.warn(Notice("waiting for a free CPU of the Ray cluster."), stacklevel=1)
-                said = True
             for number in self._heard(_TICK_S):
                 self._welcome(number)
 
@@ -210,18 +209,12 @@ class RayWorkers(Executor):
         return message
 
 
-def _ray() -> Any:
-    try:
-        import ray
-    except ModuleNotFoundError as error:
-        raise UserError(
-            f"--executor ray needs the package {error.name!r}, not installed here: {extra('ray')}"
-        ) from None
-    return ray
-
-
 def _connect(ray: Any, address: str, count: int | None) -> bool:
-    """Connect this process; return whether it was not before."""
+    """Connect this process; return whether it was not before.
+
+    Without an address, and where nothing runs here, a cluster of this machine alone starts, and
+    ends with this process.
+    """
     asked = address or os.environ.get("RAY_ADDRESS", "")
     if ray.is_initialized():
         now = ray.get_runtime_context().gcs_address
@@ -236,44 +229,32 @@ def _connect(ray: Any, address: str, count: int | None) -> bool:
     with _as_before():
         try:
             ray.init(address=asked or "auto", **_QUIET)
-        except RuntimeError as error:  # other versions of Ray or Python
-            said = " ".join(str(error).split())
-            where = asked or "on this machine"
-            raise UserError(f"cannot use the Ray cluster {where}: {said[:300]}") from error
-        except ConnectionError as error:
-            if asked:
+        except (RuntimeError, ConnectionError) as error:  # other versions of Ray, or none there
+            if asked or isinstance(error, RuntimeError):
+                where = asked or "on this machine"
                 raise UserError(
-                    f"there is no Ray cluster at {asked!r} ({_last_line(error)}): start one with "
-                    "`ray start --head`, or leave the address out"
+                    f"cannot use the Ray cluster {where}: {' '.join(str(error).split())[:300]}"
                 ) from error
-            _start_here(ray, count)
+            store = {"object_store_memory": _STORE_BYTES, "include_dashboard": False}
+            try:
+                ray.init(address="local", num_cpus=count, **store, **_QUIET)
+            except Exception as late:  # of no narrower kind, when it does not come up in time
+                raise UserError(f"Ray does not start on this machine: {_last_line(late)}") from late
     return True
-
-
-def _start_here(ray: Any, count: int | None) -> None:
-    """Start a cluster of this machine alone, which ends with this process."""
-    store = {"object_store_memory": _STORE_BYTES, "include_dashboard": False}
-    try:
-        ray.init(address="local", num_cpus=count, **store, **_QUIET)
-    except Exception as error:  # of no narrower kind, when it does not come up in time
-        raise UserError(f"Ray does not start on this machine: {_last_line(error)}") from error
 
 
 def _reach(address: str) -> None:
     """Raise `UserError` for an address at which nothing answers; Ray itself waits for minutes."""
     host, _, port = address.rpartition(":")
-    if not re.fullmatch(r"[^/\s]+:[0-9]{1,5}", address):
-        raise UserError(
-            f"{address!r} is no address of a Ray cluster: give HOST:PORT of its head, as in "
-            "ray:10.0.0.1:6379, on a machine that belongs to it; from any other send the command "
-            "with `ray job submit`"
-        )
     try:
+        if "/" in address:
+            raise OSError("it is no HOST:PORT")
         socket.create_connection((host.strip("[]"), int(port)), _REACH_S).close()
-    except (OSError, OverflowError) as error:
+    except (OSError, OverflowError, ValueError) as error:
         raise UserError(
-            f"no Ray cluster answers at {address} ({error}): check the address, or start one there "
-            "with `ray start --head`"
+            f"no Ray cluster answers at {address!r} ({error}): give HOST:PORT of its head, as in "
+            "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command with "
+            "`ray job submit` from a machine that does not belong to it"
         ) from error
 
 
