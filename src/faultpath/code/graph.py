@@ -72,7 +72,8 @@ class Graph:
         self.packages: dict[str, str] = {}
         """Versions of what is installed, by top-level package."""
         self._entered: set[str] = set()
-        self._seen: set[str] = set()
+        self.seen: set[str] = set()
+        """Names of all modules that were asked for, whether they are there or not."""
         self._paths: set[Path] = set()
 
     def add(self, root: Root) -> None:
@@ -88,9 +89,9 @@ class Graph:
         """Take in the packages that a module lies in, as an import does, and the module."""
         parts = name.split(".")
         for each in (".".join(parts[:end]) for end in range(1, len(parts) + 1)):
-            if each in self._seen or each == _OURS:  # its front door decides no result
+            if each in self.seen or each == _OURS:  # its front door decides no result
                 continue
-            self._seen.add(each)
+            self.seen.add(each)
             spec = locate(each)
             path = file_of(spec)
             if spec is None or path is None:

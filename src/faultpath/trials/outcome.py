@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from numbers import Real
 from typing import Any
@@ -54,9 +54,20 @@ class Outcome:
         return self.status is Status.FAILED
 
 
-def failed_outcome(scene: str, error: str) -> Outcome:
+_LONGEST_ERROR = 2000
+
+
+def failed_outcome(scene: str, error: object) -> Outcome:
     """Return the outcome of a trial in which the program failed."""
     return Outcome(scene, Status.FAILED, 0.0, "", "", "", error=_text(error))
+
+
+def _text(error: object) -> str:
+    return str(error).encode(errors="backslashreplace").decode()[:_LONGEST_ERROR]
+
+
+class _Malformed(Exception):
+    pass
 
 
 def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
@@ -66,43 +77,38 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
     metric that is not among the declared `metrics`, a trace that is no `[T, 3]`), the trial is
     failed and its error says what.
     """
+    status: Any = outcome.status
+    if status is Status.FAILED:
+        return failed_outcome(outcome.scene, outcome.error or "the system said that it failed")
     try:
-        if outcome.status is Status.FAILED:
-            said = outcome.error or "the system said that it failed"
-            return failed_outcome(outcome.scene, str(said))
-        return _sound(outcome, metrics)
+        if not isinstance(status, Status):
+            raise _Malformed(f"status is {_shown(status)}: give a faultpath.trials.Status")
+        time_s = _number("time_s", outcome.time_s)
+        if time_s <= 0:
+            raise _Malformed(f"time_s is {time_s}: a trial takes at least one control step")
+        if odd := [name for name in outcome.metrics if name not in metrics]:
+            raise _Malformed(
+                f"metric {_shown(odd[0])} is not declared: name it in the system's `metrics`"
+            )
+        for name in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
+            value: Any = getattr(outcome, name)
+            if not isinstance(value, str) or _text(value) != value[:_LONGEST_ERROR]:
+                raise _Malformed(f"{name} is {_shown(value)}: give text")
+            if not value:
+                raise _Malformed(
+                    f"{name} is empty and proves no pairing: give a hash, or the word none"
+                )
+        return replace(
+            outcome,
+            time_s=time_s,
+            metrics={k: _number(k, v) for k, v in outcome.metrics.items() if v is not None},
+            struck_steps=0,
+            altered_steps=0,
+            error=None if outcome.error is None else _text(outcome.error),
+            trace=None if outcome.trace is None else _path(outcome.trace),
+        )
     except _Malformed as error:
         return failed_outcome(outcome.scene, f"malformed outcome: {error}")
-
-
-_LONGEST_ERROR = 2000
-
-
-class _Malformed(Exception):
-    pass
-
-
-def _sound(outcome: Outcome, metrics: Collection[str]) -> Outcome:
-    if not isinstance(outcome.status, Status):  # pyright: ignore[reportUnnecessaryIsInstance]
-        raise _Malformed(f"status is {_shown(outcome.status)}: give a faultpath.trials.Status")
-    time_s = _number("time_s", outcome.time_s)
-    if time_s <= 0:
-        raise _Malformed(f"time_s is {time_s}: a trial takes at least one control step")
-    return Outcome(
-        scene=outcome.scene,
-        status=outcome.status,
-        time_s=time_s,
-        initial_hash=_hash("initial_hash", outcome.initial_hash),
-        disturbance_hash=_hash("disturbance_hash", outcome.disturbance_hash),
-        planner_noise_hash=_hash("planner_noise_hash", outcome.planner_noise_hash),
-        metrics=_measured(outcome.metrics, metrics),
-        error=None if outcome.error is None else _text(outcome.error),
-        trace=None if outcome.trace is None else _path(outcome.trace),
-    )
-
-
-def _text(error: object) -> str:
-    return str(error).encode(errors="backslashreplace").decode()[:_LONGEST_ERROR]
 
 
 def _number(name: str, value: Any) -> float:
@@ -115,27 +121,6 @@ def _number(name: str, value: Any) -> float:
     if not math.isfinite(number):
         raise _Malformed(f"{name} is {number}: only a finite number says how the trial ended")
     return number
-
-
-def _measured(given: Mapping[str, Any], declared: Collection[str]) -> dict[str, float | None]:
-    for name in given:
-        if name not in declared:
-            raise _Malformed(
-                f"metric {_shown(name)} is not declared: name it in the system's `metrics`"
-            )
-    return {name: _number(name, value) for name, value in given.items() if value is not None}
-
-
-def _hash(name: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise _Malformed(f"{name} is {_shown(value)}: give text")
-    if not value:
-        raise _Malformed(f"{name} is empty and proves no pairing: give a hash, or the word none")
-    try:
-        value.encode()
-    except UnicodeEncodeError:
-        raise _Malformed(f"{name} is {value!a}, which is no text") from None
-    return value
 
 
 def _path(trace: Any) -> NDArray[np.float32]:

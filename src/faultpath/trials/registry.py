@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.blame import described, note_system
 from faultpath.blame import place as where
-from faultpath.code import Kind, Root, kind_of
+from faultpath.code import Graph, Kind, Root, file_of, kind_of, locate
 from faultpath.errors import SystemMistake, UserError
 from faultpath.text import extra
 from faultpath.trials.arm import SystemSpec
@@ -54,7 +54,8 @@ def load_system(spec: SystemSpec) -> System:
     The name is that of an entry point in the group `faultpath.systems`, `module:attribute`, or
     `path/to/file.py:attribute`, the attribute being `create` where a file is named alone. The
     attribute is called with the options, read as `trials.options` says, and returns a `System`.
-    `UserError` for a name, attribute or option that does not exist, or a missing package.
+    `UserError` for a name, attribute or option that does not exist, a missing package, or a
+    module of the system's own of which this process would run another one of that name.
 
     The caller's process stays as it was, but for two things that the system needs as long as it
     flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
@@ -101,11 +102,6 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
     return found
 
 
-def _factory(name: str) -> Factory:
-    place, attribute = _target(name)
-    return _attribute(_module(place, name), place, attribute)
-
-
 def _module(place: str, name: str) -> ModuleType:
     module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
     if (file := getattr(module, "__file__", None)) and module.__name__.split(".")[0] != "faultpath":
@@ -120,12 +116,17 @@ def _attribute(module: ModuleType, place: str, attribute: str) -> Factory:
     return factory
 
 
+def _factory(name: str) -> Factory:
+    place, attribute = _target(name)
+    return _attribute(_module(place, name), place, attribute)
+
+
 def factory_root(spec: SystemSpec) -> Root:
     """Return the module that builds the system; `UserError` where `load_system` raises one."""
     place, _ = _target(spec.name)
     if not place.endswith(".py"):
         if not _installed(spec.name):
-            _look_here()
+            _look_in(os.getcwd())
         return Root(place)
     path = _file(place)
     _look_beside(path)
@@ -183,7 +184,8 @@ def _split(name: str) -> tuple[str, str]:
 
 def _load_module(name: str, system: str) -> ModuleType:
     if not _installed(system):
-        _look_here()
+        _look_in(os.getcwd())  # where a console script does not look
+        _check_own(Root(name), Path.cwd())
     try:
         return importlib.import_module(name)
     except ModuleNotFoundError as error:
@@ -205,6 +207,7 @@ def _load_file(place: str) -> ModuleType:
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
     _compile(place, loader)
+    _check_own(Root(name, path), path.parent)
     sys.modules[name] = module  # dataclasses look their module up by name
     loader.exec_module(module)
     return module
@@ -243,6 +246,24 @@ def _module_name(path: Path) -> str:
     return f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}"
 
 
+def _check_own(root: Root, folder: Path) -> None:
+    """Refuse a system that would run another system's module in place of its own."""
+    graph = Graph()
+    graph.add(root)
+    for name in sorted(graph.seen):
+        place, found = folder.joinpath(*name.split(".")), file_of(locate(name))
+        files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
+        own = next((file for file in files if os.path.isfile(file)), None)
+        if own is None or found is None or name.partition(".")[0] == "faultpath":
+            continue
+        if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) is Kind.LOCAL:
+            raise UserError(
+                f"{root.file or root.module} imports {name!r}, which is {found} in this process "
+                f"and not its own {own}: rename one of the two, or load them in processes of "
+                "their own"
+            )
+
+
 @contextmanager
 def _undone_on_failure() -> Generator[None]:
     """Put back what loading a system changed when it comes to nothing; modules of its own go too,
@@ -252,33 +273,26 @@ def _undone_on_failure() -> Generator[None]:
         yield
     except BaseException:
         sys.path[:] = path
-        for name in [name for name in sys.modules if _came(name, modules)]:
-            del sys.modules[name]
-            if name in modules:
-                sys.modules[name] = modules[name]
+        for name, module in tuple(sys.modules.items()):
+            file = getattr(module, "__file__", None)
+            if module is modules.get(name) or not file or name.partition(".")[0] == "faultpath":
+                continue
+            if kind_of(Path(file)) is Kind.LOCAL:
+                del sys.modules[name]
+                if name in modules:
+                    sys.modules[name] = modules[name]
         raise
 
 
-def _came(name: str, before: dict[str, ModuleType]) -> bool:
-    module = sys.modules[name]
-    file = getattr(module, "__file__", None)
-    if module is before.get(name) or file is None or name.partition(".")[0] == "faultpath":
-        return False
-    return kind_of(Path(file)) is Kind.LOCAL
-
-
-def _look_here() -> None:
-    """Find modules in the working directory, where a console script does not look."""
-    here = os.getcwd()
-    if here not in sys.path:
-        sys.path.append(here)
+def _look_in(folder: str) -> None:
+    if folder not in sys.path:
+        sys.path.append(folder)
 
 
 def _look_beside(path: Path) -> None:
     """Find the files beside one, which it may import."""
     folder = str(path.parent)
-    if folder not in sys.path:
-        sys.path.append(folder)
+    _look_in(folder)
     fresh = (_FromSource, SOURCE_SUFFIXES)
     compiled = (ExtensionFileLoader, EXTENSION_SUFFIXES)
     sys.path_importer_cache[folder] = FileFinder(folder, compiled, fresh)
