@@ -8,7 +8,6 @@ from typing import get_args, get_type_hints
 import pytest
 import typer
 from cli_runs import ROOT, TOY, audit, faultpath
-from faultpath.store.outputs import PAGE
 from typer.models import OptionInfo
 
 from faultpath.cli.app import build
