@@ -27,10 +27,8 @@ ONE_THREAD = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
-    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
-    "JAX_PLATFORMS": "cpu",
 }
-PACKAGES = ["numpy", "scipy", "torch", "jax", "mujoco", "pytorch-mppi", "rotorpy"]
+PACKAGES = ["numpy", "scipy", "torch", "mujoco", "pytorch-mppi", "rotorpy"]
 
 
 class NotMeasured(Exception):

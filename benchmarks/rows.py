@@ -11,7 +11,6 @@ _PORTABLE = {library.VARIABLE: library.PORTABLE}
 SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "fused rollout": ("benchmarks.planning:rollout", {}),
     "portable": ("benchmarks.planning:rollout", _PORTABLE),
-    "JAX scan": ("benchmarks.peers.jax_scan:scan", {}),
     "torch.mm": ("benchmarks.planning:network_product", {}),
     "fused replan": ("benchmarks.planning:replan", {}),
     "portable replan": ("benchmarks.planning:replan", _PORTABLE),
@@ -50,7 +49,6 @@ def _at_most(value: float) -> Target:
 
 _STEPS = "vehicle-steps/s"
 ROWS = (
-    Row("Fused rollout, JAX scan", "replans/s", "fused rollout", "JAX scan", _ratio(1.4)),
     Row("Fused rollout, portable", "replans/s", "fused rollout", "portable"),
     Row("Fused rollout, torch.mm", "replans/s", "fused rollout", "torch.mm", _ratio(0.75)),
     Row("Fused replan, pytorch_mppi", "replans/s", "fused replan", "pytorch_mppi", _ratio(5.0)),

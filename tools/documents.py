@@ -54,7 +54,6 @@ MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 PAGES: tuple[Callable[[], Mapping[Path, str]], ...] = (
     map_blocks.pictures,
     paper_blocks.pictures,
-    performance.files,
 )
 """What makes whole files, by their path."""
 

@@ -9,7 +9,6 @@ from faultpath.quadrotor.flight_settings import (
     FlightSettings,
     PerturbationSettings,
 )
-from faultpath.quadrotor.platform import Platform
 from faultpath.quadrotor.training import flight, perturbation
 from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
 from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
@@ -107,7 +106,7 @@ def test_nearly_all_episodes_last_and_what_is_kept_had_not_diverged(flights):
 def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     shorten(monkeypatch, 40)
     tight = FlightSettings(tilt_limit_deg=35.0)
-    flights = fly("nominal", range(64), 0, Platform(collection=tight))
+    flights = fly("nominal", range(64), 0, tight)
     short = np.flatnonzero(flights.steps < 40)
     assert len(short) > 10
     up = signal(flights, "rotation")[8]
@@ -153,7 +152,7 @@ def test_perturbations_are_correlated_as_the_planner_s_noise_and_stationary():
 def test_an_undisturbed_vehicle_comes_to_rest_at_its_last_waypoint_on_its_hover_thrust():
     calm = PerturbationSettings(clean_share=1.0, clean_strength=0.0, pulses_per_s=0.0)
     settings = FlightSettings(controller=ControllerSettings(waypoints=1), perturbation=calm)
-    flights = fly("nominal", range(64), 0, Platform(collection=settings))
+    flights = fly("nominal", range(64), 0, settings)
     hover = np.array([v.mass_kg * GRAVITY_MPS2 / v.thrust_scale for v in flights.vehicles])
     assert (flights.steps == EPISODE_STEPS).all()
     at_rest = np.linalg.norm(signal(flights, "velocity")[:, -1], axis=0) < 0.3

@@ -7,7 +7,6 @@ import pytest
 import torch
 
 from faultpath.errors import UserError
-from faultpath.faults import Fault, Scale
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.training.corruption import Corruption, dcc
 from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
@@ -152,21 +151,15 @@ def test_fitting_lowers_the_error():
     assert after["wind_rmse_mps"] < 0.5 * before["wind_rmse_mps"]
 
 
-def test_validation_metrics_are_lengths_of_error_vectors():
+def test_the_validation_metric_is_the_length_of_the_error_vector():
     made = task("gru")
     module = made.module()
-    truth = windows(seed=1).wind_mps[:, 12]
     with torch.no_grad():
         module.head.weight.zero_()
         module.head.bias.zero_()
-    found = metrics(made, module)
-    error = (truth - module.wind_mean).norm(dim=0)
-    slow = error[truth.norm(dim=0) < 3]
-    for name, lengths in (("wind_rmse_mps", error), ("wind_rmse_mps_from_0", slow)):
-        assert found[name] == pytest.approx(float(lengths.square().mean().sqrt()), rel=1e-5)
-    assert found["calibration_shift_mps"] == 0
-    withheld = task("gru-withheld")
-    assert "calibration_shift_mps" not in metrics(withheld, withheld.module())
+    error = (windows(seed=1).wind_mps[:, 12] - module.wind_mean).norm(dim=0)
+    expected = float(error.square().mean().sqrt())
+    assert metrics(made, module)["wind_rmse_mps"] == pytest.approx(expected, rel=1e-5)
 
 
 def test_unknown_model_is_a_users_mistake():
@@ -179,14 +172,6 @@ def corrupted(faults, consumers=(HEAD,), epoch=0, seed=0, count=COUNT):
     corruption = Corruption(faults, consumers, few.ids, seed)
     readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}
     return readings, corruption.deliver(epoch, readings)
-
-
-def test_corruption_without_noise_delivers_the_same_bits():
-    readings, delivered = corrupted([dcc([HEAD], half_range=0.0)])
-    assert set(delivered) == {("mass", HEAD), ("thrust_scale", HEAD)}
-    assert all(torch.equal(delivered[c, HEAD], readings[c]) for c in readings)
-    readings, delivered = corrupted([])
-    assert all(delivered[c, HEAD] is readings[c] for c in readings)
 
 
 def test_mass_and_thrust_scale_err_independently_within_the_half_range():
@@ -207,24 +192,10 @@ def test_consumers_of_one_channel_share_the_draw_and_others_are_left_alone():
     assert ("thrust_scale", places[2]) not in delivered  # the wind map reads the mass alone
 
 
-def test_a_window_keeps_its_draw_whatever_windows_are_beside_it():
-    _, few = corrupted([dcc([HEAD])], count=5)
-    _, many = corrupted([dcc([HEAD])], count=50)
-    five = windows(count=5).mass_kg
-    fifty = windows(count=50).mass_kg
-    torch.testing.assert_close(few["mass", HEAD] / five, many["mass", HEAD][:5] / fifty[:5])
-
-
 def test_epochs_and_seeds_draw_anew():
     draws = [corrupted([dcc([HEAD])], epoch=e, seed=s)[1] for e, s in ((0, 0), (1, 0), (0, 1))]
     firsts = {float(each["mass", HEAD][0]) for each in draws}
     assert len(firsts) == 3
-
-
-def test_any_fault_of_an_audit_can_corrupt_training():
-    fault = Fault(channel="mass", consumers=(HEAD,), intervention=Scale(factor=2.0))
-    readings, delivered = corrupted([fault])
-    assert torch.equal(delivered["mass", HEAD], 2 * readings["mass"])
 
 
 def test_a_fault_that_strikes_nobody_is_refused():

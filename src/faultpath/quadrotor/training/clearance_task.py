@@ -1,4 +1,4 @@
-"""Fitting the clearance model: its images, its loss, and how good it is."""
+"""Fitting the clearance model: its images and its loss."""
 
 import hashlib
 from collections.abc import Mapping
@@ -11,10 +11,8 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.quadrotor.perception.clearance import ClearanceModel
-from faultpath.quadrotor.perception.evaluation import summarise
 from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath.quadrotor.platform import CLEARANCE, PLATFORM
-from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
 from faultpath.quadrotor.training.fitting import ModelTask
@@ -87,22 +85,22 @@ class ClearanceTask(ModelTask):
         self._chosen = torch.from_numpy(random.integers(0, self._recipe.points, shape))
 
     @override
-    def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
-        assert isinstance(module, ClearanceModel)
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        assert isinstance(net, ClearanceModel)
         batch, chosen = self._training.take(index), self._chosen[index]
         depth, points = _mirror(
             batch.depth_m(),
             batch.points.gather(2, chosen[:, None].expand(-1, 3, -1)),
             self._mirrored[index],
         )
-        estimate = module.estimate(module.encode_batch(depth), points)
+        estimate = net.estimate(net.encode_batch(depth), points)
         return censored_loss(estimate, batch.clearance.gather(1, chosen))
 
-    def validate(self, module: nn.Module) -> Mapping[str, float]:
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
         """Return errors on scenes that were never trained on, those between the bounds first."""
-        assert isinstance(module, ClearanceModel)
+        assert isinstance(net, ClearanceModel)
         truth = self._validation.clearance
-        error = predict(module, self._validation).sub_(truth)
+        error = predict(net, self._validation).sub_(truth)
         between = error[(truth > LOWEST_M) & (truth < HIGHEST_M)].abs()
         wrong = (error + truth > 0) != (truth > 0)
         return {
@@ -140,24 +138,6 @@ def predict(model: ClearanceModel, samples: Samples) -> Tensor:
         part = samples.take(torch.arange(first, min(first + _CHUNK, len(samples))))
         found.append(model.query(model.encode(part.depth_m()), part.points.movedim(1, 0)))
     return torch.cat(found)
-
-
-def evaluate(
-    model: ClearanceModel, library: str = "selection", images: int = 20, seed: int = 0
-) -> dict[str, Any]:
-    """Return how good a model is on scenes of another library, as `summarise` puts it.
-
-    Args:
-        model: What is judged.
-        library: Name of the library; `images` are drawn in each of its scenes, as for training.
-        images: Images a scene.
-        seed: Seed of the poses and points.
-    """
-    recipe = Recipe(library=library, images=images, seed=seed)
-    drawn = [clearance_data.draw(recipe, scene) for scene in load_library(library)]
-    samples = clearance_data.join(drawn)
-    found = summarise(predict(model, samples), samples.clearance, samples.points)
-    return {"library": library, "seed": seed} | found
 
 
 def _mirror(depth: Tensor, points: Tensor, mirrored: Tensor) -> tuple[Tensor, Tensor]:

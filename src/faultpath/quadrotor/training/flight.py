@@ -1,41 +1,24 @@
-"""Training episodes: what is drawn for each, and how a batch of them flies in the loop."""
+"""Training episodes: what is drawn for each, and how a batch of them flies."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import torch
 from torch import Tensor
-from typing_extensions import override
 
-from faultpath.loop import (
-    Batch,
-    Inputs,
-    Loop,
-    Memory,
-    Module,
-    Outputs,
-    Plant,
-    Progress,
-    consumers,
-    graph,
-)
 from faultpath.quadrotor import native, so3
 from faultpath.quadrotor.flight_settings import FlightSettings
-from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.plant import Plant as VehiclePlant
 from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.state import State, padded_lanes
 from faultpath.quadrotor.training import perturbation
 from faultpath.quadrotor.training.controller import Course, WaypointController
-from faultpath.quadrotor.training.recorded import ACTION, Flights, record
+from faultpath.quadrotor.training.recorded import Flights, blank_values, record
 from faultpath.quadrotor.vehicle import (
-    CONTROL_DT_S,
     CONTROL_RATE_HZ,
     PLANT_RATE_HZ,
     STEPS_PER_CONTROL,
@@ -43,7 +26,6 @@ from faultpath.quadrotor.vehicle import (
     draw,
 )
 from faultpath.streams import generator
-from faultpath.taps import Taps
 
 EPISODE_S = 6.0  # paper, Section IV-A
 EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)
@@ -60,134 +42,47 @@ class _Start:
     """[T, 3] at the plant's steps, m/s; `None` is still air."""
 
 
-class Airspace:
-    """A batch of training flights in free air, padded to whole vectors; it moves itself."""
-
-    def __init__(
-        self, plant: VehiclePlant, starts: Sequence[_Start], lanes: Tensor, settings: FlightSettings
-    ) -> None:
-        self.lanes = lanes
-        self.plant_state = plant.start(_stack([start.state for start in starts]).take(lanes))
-        self.running = torch.ones(len(lanes), dtype=torch.bool)
-        self.steps = torch.zeros(len(lanes), dtype=torch.long)
-        """Control steps that ended in bounds."""
-        self._plant = plant
-        self._winds = _winds(starts)
-        self._settings = settings
-        self._step = 0
-
-    @property
-    def wind_mps(self) -> Tensor:
-        """Wind at this moment, `[3, L]`, m/s, world frame."""
-        return self._blown(1)[0]
-
-    def advance(self, command: Tensor) -> None:
-        """Fly one control interval under `command` `[4, L]` and see which flights diverged."""
-        self.plant_state = self._plant.advance(
-            self.plant_state, command, self._blown(STEPS_PER_CONTROL)
-        )
-        self._step += 1
-        self.running &= _in_bounds(self.plant_state.state, self._settings)
-        self.steps += self.running
-
-    def _blown(self, count: int) -> Tensor:
-        first = self._step * STEPS_PER_CONTROL
-        return self._winds[first : first + count].double()[..., self.lanes]
-
-
-class TrainingFlights(Plant):
-    """Training flights as the plant of the loop; all last as long, diverged or not."""
-
-    name = "vehicle"
-    reads = frozenset({ACTION})
-    shows = ("airspace",)
-
-    def __init__(self, airspace: Airspace) -> None:
-        self.steps = EPISODE_STEPS
-        self._airspace = airspace
-
-    def start(self, batch: Batch) -> Airspace:
-        """Return the flights, which have just begun."""
-        del batch
-        return self._airspace
-
-    def sense(self, state: Airspace) -> Outputs:
-        """Return the whole truth: nobody else senses here."""
-        return {"airspace": state}
-
-    def advance(self, state: Airspace, inputs: Inputs) -> Airspace:
-        """Fly one control interval under the command that reaches the actuators."""
-        state.advance(inputs[ACTION].T[:, state.lanes])
-        return state
-
-    @override
-    def over(self, state: Airspace, step: int) -> bool:
-        return False
-
-    def progress(self, state: Airspace) -> Progress:
-        """Return which flights are in bounds so far; none arrives anywhere."""
-        running = state.running[: int(state.lanes.max()) + 1]
-        none = torch.zeros_like(running)
-        return Progress(running, none, ~running, state.steps[: len(running)] / CONTROL_RATE_HZ)
-
-    def conditions(self, state: Airspace) -> tuple[Sequence[str], Sequence[str]]:
-        """Return nothing: episodes are no pairs."""
-        return (), ()
-
-
-class Collecting(Module):
-    """The waypoint controller in the planner's place; it knows the truth past all taps."""
-
-    name, writes = "planner", ("commanded_action",)
-    truths = ("airspace",)
-
-    def __init__(self, vehicle: Vehicle, course: Course, arrival_m: float) -> None:
-        self._controller = partial(WaypointController, vehicle, course, arrival_m)
-
-    @override
-    def begin(self, batch: Batch) -> Memory:
-        return self._controller()
-
-    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Return the perturbed command, `[B, 4]`, N and rad/s."""
-        controller: WaypointController = memory
-        now: Airspace = inputs.truth("airspace")
-        command = controller.command(inputs.step, now.plant_state.state, now.wind_mps)
-        return {"commanded_action": command[:, : len(inputs.running)].T}, controller
-
-
 @torch.inference_mode()
 @native.using(native.PORTABLE)
 def fly(
     pool: str,
     episodes: Sequence[int],
     seed: int,
-    build: Callable[[Vehicle], VehiclePlant] = TorchPlant,
+    settings: FlightSettings = PLATFORM.collection,
 ) -> Flights:
     """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
-    vectors.
+    vectors. All fly in free air for as long, diverged or not; nothing passes a tap.
     """
-    settings = PLATFORM.collection
-    starts = [_draw(pool, episode, seed) for episode in episodes]
+    starts = [_draw(pool, episode, seed, settings) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
     course = Course.stack([start.course for start in starts]).take(lanes)
-    airspace = Airspace(build(vehicle), starts, lanes, settings)
-    interface = quadrotor_interface()
-    modules = [Collecting(vehicle, course, settings.controller.arrival_m)]
-    parts = graph(interface, TrainingFlights(airspace), modules)
-    batch = Batch(tuple(f"{pool}/{episode}" for episode in episodes), seed, CONTROL_DT_S)
-    taps = Taps(interface, scenes=batch.scenes, dt_s=batch.dt_s, consumers=consumers(parts.parts))
-    instants = Loop(interface, parts).execute(batch, taps)
-    values, _ = record(((now, now.state) for now in instants), len(starts), EPISODE_STEPS)
-    steps = airspace.steps[: len(starts)].numpy()
-    return Flights(values, steps, tuple(start.vehicle for start in starts))
+    plant, winds = TorchPlant(vehicle), _winds(starts)
+    controller = WaypointController(vehicle, course, settings.controller.arrival_m)
+    now = plant.start(_stack([start.state for start in starts]).take(lanes))
+    running = torch.ones(len(lanes), dtype=torch.bool)
+    steps = torch.zeros(len(lanes), dtype=torch.long)
+    values = blank_values(EPISODE_STEPS, len(starts))
+
+    def blown(step: int, count: int) -> Tensor:
+        first = step * STEPS_PER_CONTROL
+        return winds[first : first + count].double()[..., lanes]
+
+    for step in range(EPISODE_STEPS):
+        wind_mps = blown(step, 1)[0]
+        command = controller.command(step, now.state, wind_mps)
+        record(values, step, now, wind_mps, command)
+        now = plant.advance(now, command, blown(step, STEPS_PER_CONTROL))
+        running &= _in_bounds(now.state, settings)
+        steps += running
+    record(values, EPISODE_STEPS, now, blown(EPISODE_STEPS, 1)[0])
+    vehicles = tuple(start.vehicle for start in starts)
+    return Flights(values, steps[: len(starts)].numpy(), vehicles)
 
 
-def _draw(pool: str, episode: int, seed: int) -> _Start:
-    settings = PLATFORM.collection
+def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Start:
 
     def stream(what: str) -> np.random.Generator:
         return generator(f"collection/{pool}/{what}", str(episode), seed)

@@ -123,15 +123,15 @@ class PredictorTask(ModelTask):
         self._delivered = self._corruption.deliver(epoch, self._train.calibration)
 
     @override
-    def loss(self, module: nn.Module, index: LongTensor) -> Tensor:
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
         batch = self._train.take(index)
         delivered = {tap: value[index] for tap, value in self._delivered.items()}
-        predicted = list(predict(self._predictor(module), batch, delivered))
+        predicted = list(predict(self._predictor(net), batch, delivered))
         return error(predicted, batch, self._scales)
 
-    def validate(self, module: nn.Module) -> Mapping[str, float]:
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
         """Return the median 20-step position error under correct calibration, and the loss."""
-        predictor = self._predictor(module)
+        predictor = self._predictor(net)
         windows = self._validation
         predicted = list(predict(predictor, windows, correct(predictor, windows)))
         missed = (predicted[-1].position[..., 0] - windows.position[:, -1]).norm(dim=0)

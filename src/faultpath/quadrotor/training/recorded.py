@@ -1,20 +1,16 @@
 """What a flight leaves behind at every control instant, whoever flew it."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Protocol, TypeVar
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from faultpath.loop import Instant, Port
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.plant import PlantState
 from faultpath.quadrotor.vehicle import VehicleParameters
 
-ACTION = Port("action", "actuators")
 SIGNALS = {
     "position": ("x_m", "y_m", "z_m"),
     "velocity": ("vx_mps", "vy_mps", "vz_mps"),
@@ -41,45 +37,30 @@ class Flights:
     vehicles: tuple[VehicleParameters, ...]
 
 
-class Recordable(Protocol):
-    """A batch in flight, lanes last."""
-
-    lanes: Tensor
-    plant_state: PlantState
-
-    @property
-    def wind_mps(self) -> Tensor:
-        """Wind at this moment, `[3, L]`."""
-        ...
-
-
-Flown = TypeVar("Flown", bound=Recordable)
+def blank_values(steps: int, count: int) -> NDArray[np.float32]:
+    """Return `Flights.values` of flights of at most so many steps, all not a number yet."""
+    return np.full((len(COMPONENTS), steps + 1, count), np.nan, np.float32)
 
 
 def record(
-    instants: Iterable[tuple[Instant, Flown]], count: int, steps: int
-) -> tuple[NDArray[np.float32], Flown]:
-    """Return the `Flights.values` of `count` flights of at most so many steps, and their end.
+    values: NDArray[np.float32],
+    step: int,
+    now: PlantState,
+    wind_mps: Tensor,
+    command: Tensor | None = None,
+) -> None:
+    """Fill in one control instant from lanes of which the first are the flights.
 
-    Each instant comes with what flies at it. Where all flights end earlier, what would come after
-    is not a number.
+    `wind_mps` is `[3, L]`, `command` `[4, L]`; `None` where none acts any more.
     """
-    now = None
-    values = np.full((len(COMPONENTS), steps + 1, count), np.nan, np.float32)
-    for instant, now in instants:
-        state = now.plant_state.state
-        command = state.position.new_full((4, len(now.lanes)), torch.nan)
-        if ACTION in instant.inputs:
-            command = instant.inputs[ACTION].T[:, now.lanes]
-        parts = (
-            state.position,
-            state.velocity,
-            state.rotation.flatten(0, 1),
-            state.rate,
-            command,
-            now.wind_mps,
-            now.plant_state.thrusts.sum(0, keepdim=True),
-        )
-        values[:, instant.step] = torch.cat(parts).float()[:, :count].to(CPU).numpy()
-    assert now is not None
-    return values, now
+    state = now.state
+    parts = (
+        state.position,
+        state.velocity,
+        state.rotation.flatten(0, 1),
+        state.rate,
+        torch.full_like(wind_mps[:1], torch.nan).expand(4, -1) if command is None else command,
+        wind_mps,
+        now.thrusts.sum(0, keepdim=True),
+    )
+    values[:, step] = torch.cat(parts).float()[:, : values.shape[2]].to(CPU).numpy()
