@@ -10,9 +10,8 @@ from faultpath.record.model import PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs
-from faultpath.report.story import fork_panels, forks
 from faultpath.report.svg import Axis, Svg, covering, number, shortened, text_width, wrapped
-from faultpath.report.taps import tap_table
+from faultpath.report.taps import fork_panels, forks, tap_table
 from faultpath.statistics import BreakEven, Region
 
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.record import wording
+from faultpath.record.fault_words import fault_words
 from faultpath.record.model import DecisionRecord
 from faultpath.record.phrases import change
 from faultpath.record.summary import answers, in_short
-from faultpath.report import story
 from faultpath.report.adding import adding, adding_panels, line_key
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.frame import fragment, render
@@ -25,7 +25,7 @@ from faultpath.report.tables import (
     markdown_table,
     secondary,
 )
-from faultpath.report.taps import tap_table
+from faultpath.report.taps import fork_panels, forks, tap_table
 from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
 from faultpath.report.viewer import viewer_data
 from faultpath.store import make_folder, write_text
@@ -66,11 +66,10 @@ def report_page(source: ReportInput) -> str:
         pairs=pairs,
         forest=Markup(forest(record)),
         effects=Markup(html(by_path(record, SHOWN, "Effects; bold is decided"))),
-        fault=story.fault_story(source),
+        fault=fault_words(asked, source.interface, source.traces.dt_s)
+        or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
-        meaning=story.isolation_words(source),
-        out_of_reach=story.out_of_reach(source),
-        forks=list(map(Markup, story.fork_panels(story.forks(source)))),
+        forks=list(map(Markup, fork_panels(forks(source)))),
         taps=Markup(html(tap_table(source), "taps")),
         frequency=list(map(Markup, frequency_panels(record))),
         grids=[

@@ -1,13 +1,28 @@
-"""The taps that a fault concerns, and where receipts show it in force, as a table."""
+"""Who gets the fault: the taps that it concerns, as a picture of each path and as a table.
+
+Which taps had the fault in force comes from receipts, who reads from the wiring of the variants.
+"""
+
+from dataclasses import dataclass
 
 from faultpath.interface import Channel, module_of
+from faultpath.record import CORRECT
+from faultpath.record.fault_words import spelled_out
 from faultpath.record.model import DecisionRecord, Path
+from faultpath.record.wording import series
 from faultpath.report.inputs import ReportInput
+from faultpath.report.svg import Svg, shortened
 from faultpath.tables import Entry, Line, Table, line
 from faultpath.trials import VariantShown
 
 Tap = tuple[str, str]
 """A channel and the consumer that reads it."""
+
+_WIDTH, _ARM, _EDGE = 308.0, 147.0, 1.0
+_PITCH, _MODULES = 46.0, 102.0
+_TRUNK, _TAP, _BOX = 12.0, 27.0, 38.0
+_SHORT = 9
+"""Letters of a channel's name that still fit into the box of a module."""
 
 
 def struck_taps(path: Path) -> tuple[frozenset[Tap], frozenset[Tap]]:
@@ -17,6 +32,141 @@ def struck_taps(path: Path) -> tuple[frozenset[Tap], frozenset[Tap]]:
         for struck in (path.baseline_struck, path.struck)
     )
     return baseline, repair
+
+
+@dataclass(frozen=True)
+class Reader:
+    """A module that may read what the fault is on, in one arm."""
+
+    module: str
+    taps: frozenset[Tap]
+    """At which its variant reads it; empty where it does not."""
+    struck: frozenset[Tap]
+    """Of these, where receipts show the fault in force."""
+    changed: bool
+    """Whether the fault changed a reading at one of them."""
+
+    @property
+    def state(self) -> str:
+        """Say what reaches the module."""
+        names = {channel for channel, _ in self.taps}
+        what = "readings" if len(names) > 1 else "reading"
+        if len(names) == 1 and len(min(names)) <= _SHORT:
+            what = _named(min(names))
+        if not self.taps:
+            return "does not read it"
+        if not self.struck:
+            return f"correct {what}"
+        if not self.changed:
+            return "gets it unchanged"
+        return f"wrong {what}" if self.struck == self.taps else "partly wrong"
+
+
+@dataclass(frozen=True)
+class Fork:
+    """One path of the fault: a source, and the modules that it splits to."""
+
+    title: str
+    channels: tuple[str, ...]
+    everywhere: bool
+    """Whether the fault was at every tap at which either variant reads, as from a faulty source."""
+    arms: tuple[tuple[str, str, tuple[Reader, ...]], ...]
+    """Role and name of each arm, with its modules."""
+
+
+def forks(source: ReportInput) -> tuple[Fork, ...]:
+    """Return every path of the fault, isolated ones first; none where no tap is known."""
+    record, asked = source.record, source.record.question
+    faults = spelled_out(asked, source.interface, source.traces.dt_s)
+    struck = (tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck))
+    names = tuple(dict.fromkeys([fault.channel for fault in faults] or struck))
+    reads = [
+        frozenset(
+            (name, consumer)
+            for name in names
+            for consumer in source.interface.channel(name).consumers
+            if consumer in variant.consumers
+        )
+        for variant in source.variants
+    ]
+    every = frozenset[Tap]().union(*reads)
+    modules = sorted({module_of(consumer) for _, consumer in every})
+    found: list[Fork] = []
+    for path in record.paths if every else ():
+        if path.name == CORRECT:
+            continue
+        arms: list[tuple[str, str, tuple[Reader, ...]]] = []
+        sides = (
+            ("baseline", asked.baseline, path.baseline_struck),
+            ("repair", asked.repair, path.struck),
+        )
+        for (role, name, taps), hit, read in zip(sides, struck_taps(path), reads, strict=True):
+            readers: list[Reader] = []
+            for module in modules:
+                # Receipts come before the wiring: a tap that was struck was read.
+                here = frozenset(tap for tap in hit | read if module_of(tap[1]) == module)
+                changed = any(t.altered_steps for t in taps if module_of(t.consumer) == module)
+                readers.append(Reader(module, here, here & hit, changed))
+            arms.append((role, name, tuple(readers)))
+        everywhere = every <= frozenset[Tap]().union(*struck_taps(path))
+        found.append(Fork(path.title, names, everywhere, tuple(arms)))
+    return tuple(found)
+
+
+def fork_panels(forks: tuple[Fork, ...]) -> list[str]:
+    """Return a picture of each path."""
+    return [_panel(fork) for fork in forks]
+
+
+def _panel(fork: Fork) -> str:
+    told = " ".join(
+        f"{role.capitalize()} {name}: "
+        + series([f"{_named(reader.module)} {reader.state}" for reader in readers])
+        + "."
+        for role, name, readers in fork.arms
+    )
+    bottom = _MODULES + _PITCH * len(fork.arms[0][2])
+    svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", told)
+    svg.text(0, 14, shortened(fork.title, _WIDTH, 13), "head", tip=fork.title)
+    names = ", ".join(map(_named, fork.channels))
+    wrong = " wrong" if fork.everywhere else ""
+    state = "wrong for all" if fork.everywhere else "correct at the source"
+    for x, (role, name, readers) in zip((_EDGE, _WIDTH - _ARM - _EDGE), fork.arms, strict=True):
+        svg.text(x, 34, role, "small soft")
+        svg.text(x, 49, shortened(name, _ARM, 12), f"bold {role}", tip=name)
+        svg.rect(x, 57, _ARM, 36, f"source{wrong}", 4)
+        svg.text(x + 8, 72, shortened(names, _ARM - 16, 12), tip=names)
+        svg.text(x + 8, 87, state, f"small {'struck' if wrong else 'soft'}")
+        for i, reader in enumerate(readers):
+            _branch(svg, x, _MODULES + _PITCH * (i + 0.5), reader, fork.everywhere)
+    return svg.render()
+
+
+def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> None:
+    """Draw one module with its way from the source, and the tap on it."""
+    above, cls = max(93.0, y - _PITCH), "wire hit" if reader.struck else "wire"
+    if not reader.taps:
+        svg.path(f"M{x + _TRUNK} {above}V{y}H{x + _BOX}", "wire other")
+        svg.rect(x + _BOX, y - 19, _ARM - _BOX, 38, "absent", 4)
+    else:
+        trunk = "wire hit" if everywhere else "wire"
+        svg.line((x + _TRUNK, above), (x + _TRUNK, y), trunk)
+        svg.line((x + _TRUNK, y), (x + _TAP, y), trunk)
+        svg.line((x + _TAP, y), (x + _BOX, y), cls)
+        svg.rect(x + _BOX, y - 19, _ARM - _BOX, 38, "module", 4)
+        svg.circle((x + _TAP, y), 6, "tap hit" if reader.struck else "tap")
+        if reader.struck:
+            svg.path(f"M{x + _TAP + 2} {y - 4}l-4 4.5h4l-4 4.5", "bolt")
+    room = _ARM - _BOX - 12
+    soft = "" if reader.taps else "soft"
+    name = _named(reader.module)
+    svg.text(x + _BOX + 6, y - 3, shortened(name, room, 12), f"bold {soft}".strip(), tip=name)
+    state = "small struck" if reader.struck else "small soft"
+    svg.text(x + _BOX + 6, y + 12, shortened(reader.state, room, 11), state)
+
+
+def _named(module: str) -> str:
+    return module.replace("_", " ")
 
 
 def tap_table(source: ReportInput) -> Table:
