@@ -18,6 +18,7 @@ from faultpath.plane.decide import conclude as decide
 from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
+from faultpath.question import MapQuestion
 from faultpath.record import RunProvenance
 from faultpath.report.plane import shown, table_markdown, tables
 from faultpath.report.plane_pictures import correlation_picture, map_picture
@@ -65,22 +66,20 @@ def conclude(folder: Path) -> MapRecord:
     place = str(ROOT / asked.system) if ".py:" in asked.system else asked.system
     spec = SystemSpec(name=place, options=asked.options)
     system = load_system(spec)
-    plan = plan_map(
-        system,
-        spec,
+    request = MapQuestion(
         baseline=asked.baseline,
         repair=asked.repair,
         fault=asked.fault,
         against=asked.against,
-        library=library_of(system, asked.library),
         up_to=asked.up_to,
         points=asked.points,
-        means=asked.means,
-        spreads=asked.spreads,
+        mean=asked.means,
+        spread=asked.spreads,
         correlation=asked.correlation,
         scenes=asked.n_scenes,
         seeds=asked.seeds,
     )
+    plan = plan_map(system, spec, request, library_of(system, asked.library))
     plan = replace(plan, question=asked)
     flown = [
         [round(error / asked.up_to * UNITS) for error in each.errors] for each in before.points

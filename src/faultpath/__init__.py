@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 from faultpath.version import __version__
 
 if TYPE_CHECKING:
-    from faultpath.door.audit import audit
+    from faultpath.door.audit import audit, audits
     from faultpath.door.comparing import compare
     from faultpath.door.mapping import reversal_map
     from faultpath.door.planned import plan
     from faultpath.door.reproduced import ReproductionRun
     from faultpath.door.reproduction import reproduce
     from faultpath.door.run import Run, open_run
-    from faultpath.door.sizes import audits
     from faultpath.door.systems import load_system
     from faultpath.errors import Stopped, UserError
     from faultpath.trials.system import System
@@ -47,7 +46,7 @@ _HOMES = {
     "System": "faultpath.trials.system",
     "UserError": "faultpath.errors",
     "audit": "faultpath.door.audit",
-    "audits": "faultpath.door.sizes",
+    "audits": "faultpath.door.audit",
     "compare": "faultpath.door.comparing",
     "load_system": "faultpath.door.systems",
     "open_run": "faultpath.door.run",

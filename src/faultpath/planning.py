@@ -3,22 +3,20 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from faultpath import question as asking
 from faultpath.errors import UserError
-from faultpath.faults import AnyFault
 from faultpath.paths import arm_struck, path_struck, strikes_of
+from faultpath.question import AuditQuestion, StopWhen
 from faultpath.record import (
     DecisionRecord,
-    Generalise,
     Path,
     Question,
     StopRule,
-    StopWhen,
     StruckTap,
     decide,
     primary_path,
     stops,
 )
-from faultpath.statistics import IN_FORCE, RuleName
 from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
@@ -81,48 +79,22 @@ def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
     )
 
 
-def plan_audit(
-    system: System,
-    spec: SystemSpec,
-    *,
-    baseline: str,
-    repair: str,
-    fault: AnyFault,
-    fault_text: str,
-    library: Library,
-    scenes: int | None = None,
-    seeds: Sequence[int] = (0,),
-    primary: str | None = None,
-    generalise: Generalise = "scenes",
-    metric: str = "",
-    thresholds: Sequence[float] = (),
-    stop_when: StopWhen | None = None,
-    margin_pp: float | None = None,
-    rule: RuleName = IN_FORCE,
-) -> Audit:
+def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: Library) -> Audit:
     """Lay out the arms: both variants under correct inputs, under the fault at each module that
     reads it alone, and under the fault shared by all of them.
 
-    `scenes` takes the first N of the library. `primary` is the path that leads the headline;
-    by default the shared one, or the only isolated one. `generalise` to `models` speaks of newly
-    trained models too. `metric` is told beside success, and success anew at `thresholds` of it.
-    `stop_when` makes the audit sequential: scenes come in a random order, and `scenes` is the most
-    that it takes; `margin_pp` is what counts as no difference then. `rule` decides; another than
-    that in force is for scenes that were seen under it.
+    The primary path, which leads the headline, is by default the shared one, or the only isolated
+    one.
 
     Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
-    of scenes that the library does not have, no seed, a fault that reaches neither variant, a
-    primary path that does not exist, newly trained models of a system that trains none, from one
-    seed or in a sequential audit, or a margin that is none.
+    of scenes that the library does not have, a fault that reaches neither variant, a primary path
+    that does not exist, newly trained models of a system that trains none, from one seed or in a
+    sequential audit, or a margin that is none.
     """
-    variants = [variant_of(system, name) for name in (baseline, repair)]
-    if baseline == repair:
-        raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
-    if primary is not None and not primary:
-        raise UserError("the primary path is empty: name a module or shared, or leave it out.")
-    chosen = scenes_of(library, scenes, in_order=stop_when is None)
-    if not seeds or len(set(seeds)) < len(seeds):
-        raise UserError("give at least one seed, each of them once.")
+    variants = two_variants(system, asked)
+    sequential = asked.stop_when is not None
+    chosen = scenes_of(library, asked.scenes, in_order=not sequential)
+    fault = system.fault(asked.fault)
     strikes = strikes_of(system.interface, fault, variants)
     paths = [
         path_struck(name, system.interface, struck, variants) for name, struck in strikes.items()
@@ -136,38 +108,38 @@ def plan_audit(
         )
         for path, struck in strikes.items()
         for variant in variants
-        for seed in seeds
+        for seed in asked.seeds
     ]
-    if generalise == "models":
-        _check_trainings(system, seeds, stop_when)
+    if asked.generalise == "models":
+        _check_trainings(system, asked.seeds, asked.stop_when)
     study = Study(
-        name=f"{spec.name}-{repair}-vs-{baseline}",
+        name=f"{spec.name}-{asked.repair}-vs-{asked.baseline}",
         system=spec,
         library=library.name,
         scenes=chosen,
         rows=tuple(rows),
-        look=min(LOOK, system.block_size) if stop_when else 0,
+        look=min(LOOK, system.block_size) if sequential else 0,
     )
     question = Question(
         system=spec.name,
         options=spec.options,
-        baseline=baseline,
-        repair=repair,
-        fault=fault_text,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
         faults=fault.resolved(system.interface),
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=tuple(seeds),
-        primary=primary_path(primary or "", paths),
-        generalise=generalise,
+        seeds=asked.seeds,
+        primary=primary_path(asked.primary or "", paths),
+        generalise=asked.generalise,
         trained=system.trained,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        metric=_metric(system, metric, thresholds),
-        thresholds=tuple(sorted(set(thresholds))),
-        stop=_stop_rule(stop_when, margin_pp, study),
-        rule=rule,
+        metric=_metric(system, asked.metric, asked.thresholds),
+        thresholds=tuple(sorted(set(asked.thresholds))),
+        stop=_stop_rule(asked.stop_when, asked.margin_pp, study),
+        rule=asked.rule,
     )
     return Audit(question, tuple(paths), study)
 
@@ -177,8 +149,6 @@ def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
         raise UserError("thresholds of what? Name a metric of the system beside them.")
     if name and name not in system.metrics:
         raise UserError(f"{system.name}: {unknown('metric', name, system.metrics)}")
-    if any(each - each != 0 for each in thresholds):
-        raise UserError("a threshold is not finite: give numbers.")
     return name
 
 
@@ -216,6 +186,16 @@ def _check_trainings(system: System, seeds: Sequence[int], stop_when: StopWhen |
             "--seeds 0,1,2, "
             "or leave --generalise models out."
         )
+
+
+def two_variants(system: System, asked: asking.Question) -> tuple[Variant, Variant]:
+    """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
+    found = variant_of(system, asked.baseline), variant_of(system, asked.repair)
+    if asked.baseline == asked.repair:
+        raise UserError(
+            f"baseline and repair are both '{asked.repair}': name two different variants."
+        )
+    return found
 
 
 def variant_of(system: System, name: str) -> Variant:

@@ -1,9 +1,10 @@
 """A system with three modules that only lays out arms and never runs."""
 
-from faultpath.faults import Coupled, Fault, parse_fault
+from faultpath.faults import Coupled, Fault
 from faultpath.faults.values import Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.planning import Audit, plan_audit
+from faultpath.question import AuditQuestion
 from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
 
 INTERFACE = Interface(
@@ -60,10 +61,6 @@ def planned(baseline: str, repair: str, text: str, **changes) -> Audit:
     return plan_audit(
         system,
         SystemSpec(name="paper"),
-        baseline=baseline,
-        repair=repair,
-        fault=parse_fault(text, INTERFACE, system.fault_presets, 0.1),
-        fault_text=text,
-        library=system.library("five"),
-        **changes,
+        AuditQuestion(baseline=baseline, repair=repair, fault=text, **changes),
+        system.library("five"),
     )

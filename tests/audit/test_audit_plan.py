@@ -127,12 +127,6 @@ def test_scenes_that_the_library_does_not_have(count):
         planned("plain", "observed", "mass:scale=2", scenes=count)
 
 
-@pytest.mark.parametrize("seeds", [(), (1, 1)])
-def test_seeds_that_say_nothing_or_twice_the_same(seeds):
-    with pytest.raises(UserError, match="at least one seed, each of them once"):
-        planned("plain", "observed", "mass:scale=2", seeds=seeds)
-
-
 def test_a_module_may_not_be_called_like_a_path(monkeypatch):
     document = interface_yaml(INTERFACE).replace("observer.model", "shared.model")
     monkeypatch.setattr(Paper, "interface", read_interface(document))

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from faultpath.execution import run_study
-from faultpath.faults import parse_fault
 from faultpath.planning import Audit, plan_audit
+from faultpath.question import AuditQuestion
 from faultpath.record import DecisionRecord, StruckTap
 from faultpath.store import read_outcomes
 from faultpath.trials import Deliveries, SystemSpec, load_system
@@ -21,12 +21,8 @@ def asked(text: str) -> Audit:
     return plan_audit(
         system,
         spec,
-        baseline="calibrated",
-        repair="blind",
-        fault=parse_fault(text, system.interface, system.fault_presets, system.control_dt_s),
-        fault_text=text,
-        library=system.library("carts"),
-        scenes=4,
+        AuditQuestion(baseline="calibrated", repair="blind", fault=text, scenes=4),
+        system.library("carts"),
     )
 
 

@@ -51,7 +51,7 @@ def test_help_shows_every_text_as_it_is_written(verb: str, tmp_path, monkeypatch
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine.py").write_text(WRITTEN)
     command = typer.main.get_command(build()).commands[verb]
-    system = {"system", "set_"} <= {param.name for param in command.params}
+    system = {"system", "options"} <= {param.name for param in command.params}
     lines = [(verb,), *((verb, each) for each in getattr(command, "commands", ()))]
     lines += [(verb, "quadrotor"), (verb, "mine.py:create")] if system else []
     for line in lines:

@@ -1,9 +1,10 @@
 """Where commands write: nothing but files is replaced, and no path is empty."""
 
+import inspect
 import os
 import stat
 from pathlib import Path
-from typing import get_args, get_type_hints
+from typing import get_args
 
 import pytest
 import typer
@@ -25,11 +26,12 @@ def _paths(verbs: typer.Typer, before: tuple[str, ...] = ()) -> list[tuple[str, 
     for group in verbs.registered_groups:
         found += _paths(group.typer_instance, (*before, group.name))
     for verb in verbs.registered_commands:
-        for name, hint in get_type_hints(verb.callback, include_extras=True).items():
-            kind, *how = get_args(hint) or (hint,)
+        for name, parameter in inspect.signature(verb.callback).parameters.items():
+            kind, *how = get_args(parameter.annotation) or (parameter.annotation,)
             if Path in (kind, *get_args(kind)):
                 assert how[0].parser is path, f"{verb.name}: {name} needs parser=path"
-                option = f"--{name}" if isinstance(how[0], OptionInfo) else name
+                named = how[0].default if isinstance(how[0].default, str) else f"--{name}"
+                option = named if isinstance(how[0], OptionInfo) else name
                 found.append((*before, verb.name, option))
     return found
 

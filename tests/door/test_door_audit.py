@@ -69,7 +69,7 @@ def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_
     assert all(effect.mcnemar_p_value is not None for effect in run.record.effects)
     with pytest.raises(faultpath.UserError, match="--rule unconditional"):
         faultpath.audit(TOY, folder=run.folder, workers=0, rule="exact", **ASKED)
-    with pytest.raises(faultpath.UserError, match="exact or unconditional"):
+    with pytest.raises(faultpath.UserError, match="'exact' or 'unconditional'"):
         faultpath.audit(TOY, folder=tmp_path / "no", workers=0, rule="sign", **ASKED)
     old = run.record.question.model_dump()
     del old["rule"]
@@ -186,10 +186,11 @@ def test_an_object_says_that_it_runs_here(toy):
         ("nowhere.py", {}, "there is no file 'nowhere.py'"),
         (TOY, {"options": {"wind": "L3"}}, "'wind': it takes none"),
         (TOY, {"options": {"wind": ["L3"]}}, "the option 'wind' is a list"),
-        (TOY, {"baseline": None}, "baseline is None: give it as text"),
+        (TOY, {"baseline": None}, "baseline: is empty, and must be text"),
         (TOY, {"repair": "octopus"}, "unknown variant 'octopus'"),
-        (TOY, {"scenes": "12"}, "scenes is '12': give a whole number"),
-        (TOY, {"seeds": "0,1"}, "'0,1' is not a seed"),
+        (TOY, {"scenes": "12"}, "scenes: is '12', and must be a whole number"),
+        (TOY, {"seeds": "0,a"}, "'0,a' is not a list of whole numbers"),
+        (TOY, {"sceens": 3}, "did you mean 'scenes'"),
         (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
         (TOY, {"seeds": 2**63}, "is not a seed"),
         (TOY, {"workers": -1}, "the number of workers is -1"),
@@ -298,8 +299,8 @@ def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     [
         ({"stop_when": None, "margin_pp": 5.0}, "give it with --stop-when"),
         ({"margin_pp": 0.0}, "between 0 and 100"),
-        ({"margin_pp": "5"}, "give a number of percentage points"),
-        ({"stop_when": "soon"}, "choose decided or all-decided"),
+        ({"margin_pp": "5"}, "margin_pp: .*must be a number"),
+        ({"stop_when": "soon"}, "'decided' or 'all-decided'"),
         ({"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
     ],
 )

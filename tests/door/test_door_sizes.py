@@ -75,7 +75,7 @@ def test_the_arms_that_sizes_share_fly_once_and_the_others_as_if_alone(tmp_path)
 
 
 def test_one_audit_takes_one_size():
-    with pytest.raises(UserError, match=r"several sizes: audit each with faultpath\.audits"):
+    with pytest.raises(UserError, match=r"several sizes: use faultpath\.audits"):
         faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)
 
 

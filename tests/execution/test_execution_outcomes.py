@@ -74,8 +74,8 @@ def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
 
 def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
     """Dividing by an erased gain gives no number; the trials fail, and the rest stands."""
-    from faultpath.faults import parse_fault
     from faultpath.planning import plan_audit
+    from faultpath.question import AuditQuestion
     from faultpath.trials import SystemSpec
 
     spec = SystemSpec(name=f"{HERE.parents[2] / 'examples' / 'toy.py'}:create")
@@ -83,12 +83,8 @@ def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
     audit = plan_audit(
         system,
         spec,
-        baseline="calibrated",
-        repair="blind",
-        fault=parse_fault("gain:erase", system.interface, system.fault_presets, 0.1),
-        fault_text="gain:erase",
-        library=system.library("carts"),
-        scenes=4,
+        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:erase", scenes=4),
+        system.library("carts"),
     )
     with np.errstate(all="ignore"):
         result = run_study(audit.study, tmp_path, workers=0)

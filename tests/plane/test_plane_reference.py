@@ -8,6 +8,7 @@ from faultpath.plane.decide import conclude
 from faultpath.plane.lattice import UNITS
 from faultpath.plane.model import MapRecord
 from faultpath.plane.study import plan_map
+from faultpath.question import MapQuestion
 from faultpath.store import read_outcomes
 from faultpath.trials import SystemSpec, library_of, load_system
 
@@ -27,18 +28,20 @@ def test_a_reference_map_follows_from_its_outcomes(
     plan = plan_map(
         system,
         spec,
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=asked.fault,
-        against=asked.against,
-        library=library_of(system, asked.library),
-        up_to=asked.up_to,
-        points=asked.points,
-        means=asked.means,
-        spreads=asked.spreads,
-        correlation=asked.correlation,
-        scenes=asked.n_scenes,
-        seeds=asked.seeds,
+        MapQuestion(
+            baseline=asked.baseline,
+            repair=asked.repair,
+            fault=asked.fault,
+            against=asked.against,
+            up_to=asked.up_to,
+            points=asked.points,
+            mean=asked.means,
+            spread=asked.spreads,
+            correlation=asked.correlation,
+            scenes=asked.n_scenes,
+            seeds=asked.seeds,
+        ),
+        library_of(system, asked.library),
     )
     assert plan.question == asked
     points = [

@@ -7,11 +7,11 @@ import pytest
 
 from faultpath.errors import UserError
 from faultpath.execution import run_study
-from faultpath.faults import parse_fault
 from faultpath.plane.decide import conclude
 from faultpath.plane.lattice import COARSE, UNITS, lattice
 from faultpath.plane.study import MapPlan, plan_map
 from faultpath.planning import plan_audit
+from faultpath.question import AuditQuestion, MapQuestion, ask
 from faultpath.trials import SystemSpec, library_of, load_system
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
@@ -28,21 +28,16 @@ ASKED: dict[str, Any] = {
 
 
 def plan(**given: Any) -> MapPlan:
-    return plan_map(TOY, SPEC, library=library_of(TOY, "carts"), **(ASKED | given))
+    return plan_map(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
 
 
 def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
     """To the arm, so that both would be the same trials."""
-    fault = parse_fault("gain:scale=0.6", TOY.interface, {}, TOY.control_dt_s)
     audit = plan_audit(
         TOY,
         SPEC,
-        baseline="calibrated",
-        repair="blind",
-        fault=fault,
-        fault_text="",
-        library=library_of(TOY, "carts"),
-        scenes=8,
+        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=8),
+        library_of(TOY, "carts"),
     )
     points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
     names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
@@ -92,13 +87,15 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     made = plan_map(
         system,
         dock,
-        baseline="wheels",
-        repair="ranges",
-        fault="range:offset,onset=5",
-        against=("approach", "speedometer"),
-        library=library_of(system, "floors"),
-        up_to=0.5,
-        scenes=4,
+        MapQuestion(
+            baseline="wheels",
+            repair="ranges",
+            fault="range:offset,onset=5",
+            against=("approach", "speedometer"),
+            up_to=0.5,
+            scenes=4,
+        ),
+        library_of(system, "floors"),
     )
     assert not made.question.relative
     assert made.question.said(-0.25) == "−0.25 m"
@@ -122,13 +119,12 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
         ({"up_to": None}, "say how large errors may be"),
         ({"up_to": 1.0}, "less than 1"),
         ({"up_to": 0.0}, "above 0"),
-        ({"up_to": float("nan")}, "above 0"),
+        ({"up_to": float("nan")}, "finite number"),
         ({"points": 24}, "begins with 25"),
-        ({"spreads": (0.0,)}, "above 0"),
-        ({"spreads": (0.1, 0.1, 0.1)}, "one for each module"),
-        ({"means": (0.5,)}, "beyond the map"),
+        ({"spread": (0.0,)}, "above 0"),
+        ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
+        ({"mean": (0.5,)}, "beyond the map"),
         ({"correlation": 1.5}, "between -1 and 1"),
-        ({"seeds": ()}, "at least one seed"),
         ({"scenes": 1000}, "choose 1 to 100"),
         ({"repair": "other"}, "unknown variant"),
     ],

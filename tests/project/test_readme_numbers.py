@@ -11,8 +11,8 @@ import pytest
 
 from faultpath.execution import run_study
 from faultpath.execution.provenance import packages, processor
-from faultpath.faults import parse_fault
 from faultpath.planning import Audit, plan_audit
+from faultpath.question import AuditQuestion
 from faultpath.record import DecisionRecord, RunProvenance, decide
 from faultpath.store import read_outcomes
 from faultpath.store.tables import encode_outcomes
@@ -113,13 +113,14 @@ def plan(record: DecisionRecord, scenes: int | None = None) -> Audit:
     return plan_audit(
         system,
         spec,
-        baseline=asked.baseline,
-        repair=asked.repair,
-        fault=parse_fault(asked.fault, system.interface, system.fault_presets, system.control_dt_s),
-        fault_text=asked.fault,
-        library=system.library(asked.library),
-        scenes=scenes or asked.n_scenes,
-        seeds=asked.seeds,
+        AuditQuestion(
+            baseline=asked.baseline,
+            repair=asked.repair,
+            fault=asked.fault,
+            scenes=scenes or asked.n_scenes,
+            seeds=asked.seeds,
+        ),
+        system.library(asked.library),
     )
 
 

@@ -7,6 +7,7 @@ from outcome_tables import paths, question, record, table
 
 from faultpath.errors import UserError
 from faultpath.planning import plan_audit
+from faultpath.question import AuditQuestion, ask
 from faultpath.record import decide
 from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
 
@@ -81,24 +82,13 @@ def test_where_success_is_saturated_the_metric_is_told():
         ({"thresholds": (0.1,)}, "thresholds of what"),
         (
             {"metric": "terminal_distance_m", "thresholds": (float("nan"),)},
-            "a threshold is not finite",
+            "thresholds.*finite number",
         ),
     ],
 )
 def test_what_the_system_does_not_measure_is_refused(asked, said, monkeypatch, request):
     monkeypatch.chdir(request.config.rootpath)
     system = load_system(TOY)
-    fault = system.interface.channel("gain")
-    from faultpath.faults import Fault, Scale
-
+    arms = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
     with pytest.raises(UserError, match=said):
-        plan_audit(
-            system,
-            TOY,
-            baseline="calibrated",
-            repair="blind",
-            fault=Fault(channel=fault.name, intervention=Scale(factor=0.6)),
-            fault_text="gain:scale=0.6",
-            library=system.library("carts"),
-            **asked,
-        )
+        plan_audit(system, TOY, ask(AuditQuestion, arms | asked), system.library("carts"))

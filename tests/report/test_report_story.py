@@ -9,6 +9,7 @@ import pytest
 
 from faultpath.faults import parse_fault
 from faultpath.planning import plan_audit
+from faultpath.question import AuditQuestion
 from faultpath.record import DecisionRecord, Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
@@ -127,12 +128,8 @@ def test_an_audit_keeps_its_fault_spelled_out() -> None:
     asked = plan_audit(
         toy,
         SystemSpec(name="toy"),
-        baseline="calibrated",
-        repair="blind",
-        fault=fault,
-        fault_text="gain:scale=0.6",
-        library=library_of(toy, "carts"),
-        scenes=4,
+        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=4),
+        library_of(toy, "carts"),
     ).question
     assert asked.faults == fault.resolved(toy.interface)
     assert type(asked).model_validate_json(asked.model_dump_json()) == asked

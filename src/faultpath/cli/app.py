@@ -99,9 +99,9 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
 def _command(entry: Entry, rest: Sequence[str] | None) -> Callable[..., int | None] | typer.Typer:
     module, attribute = entry.home.split(":")
     if entry.name == "audit" and any(part.partition("=")[0] == "--study" for part in rest or ()):
-        from faultpath.cli import study
-
-        return study.command  # the file says all that the verb takes otherwise
+        return import_module(
+            "faultpath.cli.audit"
+        ).study  # the file says all that the verb takes otherwise
     found = getattr(import_module(module), attribute)
     if rest is not None and entry.of_a_system:
         return with_system_flags(entry.name, found, rest)

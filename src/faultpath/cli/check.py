@@ -5,7 +5,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from faultpath.cli.options import LARGEST, SET, TimeLimit, names, settings
+from faultpath.cli.options import SET, TimeLimit, read
+from faultpath.question import LARGEST, names, settings
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -26,7 +27,7 @@ def command(
     library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
     scenes: Annotated[int, typer.Option(help="Fly the first N scenes.")] = 4,
     seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the trials.")] = 0,
-    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    options: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of lines.")] = False,
     workers: Annotated[
         int | None,
@@ -44,11 +45,11 @@ def command(
 
     report = check(
         system,
-        variants=() if variants is None else names(variants, "--variants"),
+        variants=() if variants is None else read(names, variants, "--variants"),
         library=library,
         scenes=scenes,
         seed=seed,
-        options=settings(set_ or []),
+        options=settings(options or []),
         workers=workers,
         time_limit_s=time_limit,
         progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),

@@ -1,10 +1,10 @@
 """What several verbs take, and how they end."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 import typer
 
@@ -13,8 +13,6 @@ from faultpath.text import one_line, steers
 
 _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""
-LARGEST = 2**63 - 1
-"""What the tables hold."""
 FAILED_TRIALS = 1
 """Exit status of a verb that finished although trials failed."""
 
@@ -38,7 +36,12 @@ Executor = Annotated[
 """`--executor` of the verbs that fly."""
 
 
-SET = "System option, key=value; for scripts, and where a flag above has the same name."
+SYSTEM = (
+    "`quadrotor`, `module:attribute` or `file.py:attribute`; --help after it shows its own options "
+    "too."
+)
+"""Help of the argument `system`."""
+SET = "System option, key=value; where a flag has the same name, or in scripts."
 """Help of `--set`."""
 
 
@@ -76,57 +79,15 @@ def _foreign_number(text: str) -> bool:
     return True
 
 
-def settings(pairs: Sequence[str], named: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Read `key=value` pairs, beside options that have a name of their own.
-
-    `UserError` for a pair without `=`, and for what is given twice.
-    """
-    found = dict(named or {})
-    for pair in pairs:
-        key, separator, value = pair.partition("=")
-        if not separator or not key:
-            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
-        if key in found:
-            raise UserError(f"the options name '{key}' twice: give it once.")
-        found[key] = value
-    return found
+_Read = TypeVar("_Read")
 
 
-def names(text: str, what: str) -> tuple[str, ...]:
-    """Read comma-separated names; `UserError` for an empty one, and for one given twice."""
-    found = tuple(part.strip() for part in text.split(","))
-    if not all(found):
-        raise UserError(f"{what} '{text}' holds an empty name: part names by one comma each.")
-    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
-        raise UserError(f"{what} '{text}' names '{twice[0]}' twice: name each once.")
-    return found
-
-
-def numbers(text: str, what: str) -> tuple[int, ...]:
-    """Read comma-separated seeds such as `0,1,2`; `UserError` for what is none."""
-    return tuple(_seed(part, f"{what} {text!r}") for part in text.split(","))
-
-
-def _seed(text: str, said: str) -> int:
-    if not re.fullmatch(r"-?[0-9]+", text.strip()):
-        raise UserError(f"{said} is not a list of whole numbers, for example 0,1,2.")
-    if len(text.strip()) > 19 or not 0 <= int(text) <= LARGEST:
-        raise UserError(f"{said}: a seed lies between 0 and 2^63 - 1.")
-    return int(text)
-
-
-def sizes(text: str, what: str) -> tuple[float, ...]:
-    """Read comma-separated numbers such as `0.1,0.2`; `UserError` for what is none."""
+def read(how: Callable[[str], _Read], text: str, flag: str) -> _Read:
+    """Read the text of a flag; `UserError` with its name for what `how` refuses."""
     try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise UserError(f"{what} {text!r} is not a list of numbers, for example 0.1,0.2.") from None
-
-
-def refuse_unless(needed: str, **given: object) -> None:
-    """Raise `UserError` for options that were given and only go with another one."""
-    if idle := _named(given):
-        raise UserError(f"{idle} would do nothing here: give it with {needed}, or leave it out.")
+        return how(text)
+    except ValueError as error:
+        raise UserError(f"{flag}: {error}.") from None
 
 
 def refuse_with(other: str, **given: object) -> None:
@@ -155,13 +116,3 @@ def path(text: str | Path) -> Path:
     except RuntimeError:  # what `resolve` raises for a link that leads back to itself
         raise typer.BadParameter(f"the link {str(text)!r} leads back to itself") from None
     return Path(text)
-
-
-Share = Annotated[
-    Path | None,
-    typer.Option(
-        parser=path,
-        help="Folder in which runs share trials, with --out; without it runs/.shared.",
-    ),
-]
-"""`--share` of the verbs whose runs do."""

@@ -1,66 +1,37 @@
-"""`faultpath plan`: what to audit first, as a study file that `faultpath audit --study` flies."""
+"""`faultpath plan`: what to audit first, as a study file that `faultpath audit --study` runs."""
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli.options import SET, numbers, path, settings
+from faultpath.cli.flags import takes
+from faultpath.cli.options import SYSTEM, path
+from faultpath.question import PlanQuestion
 
 
+@takes(PlanQuestion)
 def command(
-    system: Annotated[
-        str, typer.Argument(help="As for `audit`; --help after it shows its own options too.")
-    ],
-    baseline: Annotated[str, typer.Option(help="Variant to compare with.")],
-    repair: Annotated[str, typer.Option(help="Variant that is meant to help.")],
-    fault: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Expected error of a source that declares none, or another one: "
-            "`gain:scale=1.1`; repeat the option for more."
-        ),
-    ] = None,
-    module: Annotated[
-        list[str] | None,
-        typer.Option(help="Module that the repair changes, where its reads do not tell."),
-    ] = None,
-    library: Annotated[str, typer.Option(help="Library of scenes.")] = "held-out",
-    scenes: Annotated[int | None, typer.Option(help="Plan for only the first N scenes.")] = None,
-    seeds: Annotated[
-        str, typer.Option(help="Seeds of the noise, and of trained models where there are any.")
-    ] = "0",
-    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    system: Annotated[str, typer.Argument(help=SYSTEM)],
     out: Annotated[Path, typer.Option(parser=path, help="Study file to write.")] = Path(
         "study.yaml"
     ),
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    **given: Any,
 ) -> None:
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
-    drawn, options = numbers(seeds, "--seeds"), settings(set_ or [])
-
     from faultpath.door.display import Display, SafeConsole
     from faultpath.door.planned import check_new, plan
 
     check_new(out)
-    found = plan(
-        system,
-        baseline=baseline,
-        repair=repair,
-        fault=tuple(fault or ()),
-        module=tuple(module or ()),
-        library=library,
-        scenes=scenes,
-        seeds=drawn,
-        options=options,
-        progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),
-    )
+    display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
+    found = plan(system, **given, progress=display)
     written = found.write(out)
 
     from faultpath.report.proposal import by_audit, by_rank, by_response
-    from faultpath.tables.terminal import drawn as in_terminal
+    from faultpath.tables.terminal import drawn
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))
@@ -69,7 +40,7 @@ def command(
     moved = any(each.response is not None for each in found.plan.candidates)
     told = (by_rank, by_response, by_audit) if moved else (by_rank, by_audit)
     for table in (each(found.plan) for each in told):
-        console.print(in_terminal(table))
+        console.print(drawn(table))
         for note in table.notes:
             console.print(note, markup=False)
         console.print()

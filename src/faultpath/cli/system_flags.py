@@ -40,7 +40,7 @@ def with_system_flags(
 ) -> Callable[..., Any]:
     """Return the verb `name` with the flags of the system that its arguments name.
 
-    The verb has an argument `system` and an option `set_`, which takes what the flags say.
+    The verb has an argument `system` and an option `options`, which takes what the flags say.
     `UserError` for a flag that neither of the two has, and for a system that cannot be asked.
     """
     own = _flags(verb)
@@ -124,11 +124,11 @@ def _extended(
 ) -> Callable[..., Any]:
     @wraps(verb)
     def extended(**given: Any) -> Any:
-        pairs = list(given.pop("set_") or ())
+        pairs = list(given.pop("options") or ())
         for option in options:
             value = given.pop(_DEST + option.name)
             pairs += [] if value is None else [f"{option.name}={value}"]
-        return verb(**given, set_=pairs)
+        return verb(**given, options=pairs)
 
     added = [
         inspect.Parameter(

@@ -4,7 +4,8 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import LARGEST, SET, settings
+from faultpath.cli.options import SET
+from faultpath.question import LARGEST, settings
 
 FOUND = 1
 
@@ -21,7 +22,7 @@ def command(
     fault: Annotated[
         str | None, typer.Option(help="A fault, as in `audit`, to see whom it reaches.")
     ] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    options: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
 ) -> int:
     """Print the information interface of a system and who read what, when.
@@ -36,7 +37,7 @@ def command(
     from faultpath.tables.terminal import STYLES, Parted
 
     with setup_limit(system, None):
-        chosen = choose(system, settings(set_ or []), None, (variant,) if variant else ())
+        chosen = choose(system, settings(options or []), None, (variant,) if variant else ())
     trace = traced(chosen, variant, library, scene, steps, seed, fault)
     console = SafeConsole()
     if as_json:

@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import LARGEST, path, refuse_with
+from faultpath.cli.options import path, refuse_with
 from faultpath.cli.verbs import Verbs
+from faultpath.question import LARGEST
 
 FAILED_MODELS = 1
 

@@ -13,6 +13,7 @@ from faultpath.execution.dispatch import Dispatch, block_limit_s
 from faultpath.execution.provenance import amend
 from faultpath.execution.worker import Job
 from faultpath.planning import plan_audit
+from faultpath.question import AuditQuestion
 from faultpath.record import DecisionRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
@@ -91,17 +92,13 @@ def replay(
         raise UserError(
             f"library '{asked.library}' has other scenes than the run flew: bring its file back."
         )
-    fault = system.fault(asked.fault)
-    study = plan_audit(
-        system,
-        chosen.spec,
+    request = AuditQuestion(
         baseline=asked.baseline,
         repair=asked.repair,
-        fault=fault,
-        fault_text=asked.fault,
-        library=library,
+        fault=asked.fault,
         seeds=asked.seeds,
-    ).study
+    )
+    study = plan_audit(system, chosen.spec, request, library).study
     before = as_flown(held.outcomes, held.traces)
     wanted = [
         at

@@ -5,12 +5,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from faultpath import question as asking
 from faultpath.errors import UserError
 from faultpath.faults import Fault
 from faultpath.plane.asked import MapQuestion, SizedFault, check_up_to, places, sized_fault
 from faultpath.plane.lattice import COARSE, UNITS, Point, lattice
 from faultpath.plane.surface import Differences
-from faultpath.planning import scenes_of, variant_of
+from faultpath.planning import scenes_of, two_variants
 from faultpath.record import CORRECT
 from faultpath.record.compared import Compared, compared
 from faultpath.trials import (
@@ -113,46 +114,28 @@ class MapPlan:
 
 
 def plan_map(
-    system: System,
-    spec: SystemSpec,
-    *,
-    baseline: str,
-    repair: str,
-    fault: str,
-    against: tuple[str, ...],
-    library: Library,
-    up_to: float | None = None,
-    points: int = 81,
-    means: Sequence[float] = (0.0, 0.0),
-    spreads: Sequence[float] | None = None,
-    correlation: float | None = None,
-    scenes: int | None = None,
-    seeds: Sequence[int] = (0,),
+    system: System, spec: SystemSpec, asked: asking.MapQuestion, library: Library
 ) -> MapPlan:
-    """Lay out a map. `UserError` for anything that cannot be flown or means nothing."""
-    variants = variant_of(system, baseline), variant_of(system, repair)
-    if baseline == repair:
-        raise UserError(f"baseline and repair are both '{repair}': name two different variants.")
-    if not seeds or len(set(seeds)) < len(seeds):
-        raise UserError("give at least one seed, each of them once.")
-    sized = sized_fault(system, fault)
-    largest = check_up_to(sized, up_to)
+    """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
+    variants = two_variants(system, asked)
+    sized = sized_fault(system, asked.fault)
+    largest = check_up_to(sized, asked.up_to)
     for end in (-largest, largest):
         sized.at(end)
-    modules, others = places(system.interface, sized.at(largest), against, variants)
-    if not COARSE_POINTS <= points <= _MOST_POINTS:
+    modules, others = places(system.interface, sized.at(largest), asked.against, variants)
+    if not COARSE_POINTS <= asked.points <= _MOST_POINTS:
         raise UserError(
-            f"--points {points}: a map begins with {COARSE_POINTS} and takes at most "
+            f"--points {asked.points}: a map begins with {COARSE_POINTS} and takes at most "
             f"{_MOST_POINTS}, give a number between them."
         )
-    chosen = scenes_of(library, scenes)
-    middle, spread = _distribution(means, spreads, correlation, largest, sized)
+    chosen = scenes_of(library, asked.scenes)
+    middle, spread = _distribution(asked.mean, asked.spread, asked.correlation, largest, sized)
     question = MapQuestion(
         system=spec.name,
         options=spec.options,
-        baseline=baseline,
-        repair=repair,
-        fault=fault,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
         against=modules,
         others=others,
         up_to=largest,
@@ -160,12 +143,12 @@ def plan_map(
         unit=sized.unit,
         means=middle,
         spreads=spread,
-        correlation=correlation,
-        points=points,
+        correlation=asked.correlation,
+        points=asked.points,
         library=library.name,
         library_hash=library.content_hash,
         n_scenes=len(chosen),
-        seeds=tuple(seeds),
+        seeds=asked.seeds,
         trained=system.trained,
     )
     return MapPlan(question, system, spec, sized, chosen)
@@ -173,7 +156,7 @@ def plan_map(
 
 def _distribution(
     means: Sequence[float],
-    spreads: Sequence[float] | None,
+    spreads: Sequence[float],
     correlation: float | None,
     largest: float,
     fault: SizedFault,

@@ -4,11 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from faultpath.errors import UserError
-from faultpath.planning import Audit, plan_audit, variant_of
+from faultpath.planning import Audit, plan_audit, two_variants
 from faultpath.proposal.order import makers, ranked, recursion, repaired_modules
 from faultpath.proposal.probing import command_responses
-from faultpath.proposal.sources import Candidate, candidates, parsed
+from faultpath.proposal.sources import Candidate, candidates
 from faultpath.proposal.study import StudyAudit, StudyFile, arms_of
+from faultpath.question import PlanQuestion
 from faultpath.results import Result
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
 
@@ -41,20 +42,12 @@ class Proposal:
 
     system: System
     spec: SystemSpec
-    baseline: str
-    repair: str
+    asked: PlanQuestion
     library: Library
-    scenes: int | None = None
-    seeds: tuple[int, ...] = (0,)
-    faults: tuple[str, ...] = ()
-    """In place of declared sizes."""
-    repaired: tuple[str, ...] = ()
-    """Modules; empty for what can be seen."""
     variants: tuple[Variant, Variant] = field(init=False)
 
     def __post_init__(self) -> None:
-        pair = variant_of(self.system, self.baseline), variant_of(self.system, self.repair)
-        object.__setattr__(self, "variants", pair)
+        object.__setattr__(self, "variants", two_variants(self.system, self.asked))
 
     def make(self, note: Note = lambda done, total: None) -> Plan:
         """Rank, probe and lay the audits out.
@@ -62,10 +55,10 @@ class Proposal:
         `UserError` for anything that `plan_audit` refuses, where no source has a fault, and for a
         variant that does not run.
         """
-        found = candidates(self.system, self.variants, self.faults)
+        found = candidates(self.system, self.variants, self.asked.fault)
         if not any(each.fault for each in found):
             raise UserError(_nothing_sized(self.system, found))
-        repaired = repaired_modules(self.system, *self.variants, self.repaired)
+        repaired = repaired_modules(self.system, *self.variants, self.asked.module)
         chosen = self._audit(next(each for each in found if each.fault)).study.scenes
         probes = isinstance(self.system, LoopSystem) and sum(bool(c.fault) for c in found) > 1
         if isinstance(self.system, LoopSystem) and probes:
@@ -82,12 +75,12 @@ class Proposal:
             study=StudyFile(
                 system=self.spec.name,
                 options=self.spec.options,
-                baseline=self.baseline,
-                repair=self.repair,
+                baseline=self.asked.baseline,
+                repair=self.asked.repair,
                 library=self.library.name,
                 library_hash=self.library.content_hash,
                 scenes=len(chosen),
-                seeds=self.seeds,
+                seeds=self.asked.seeds,
                 audits=tuple(
                     StudyAudit(
                         name=each.name,
@@ -106,17 +99,8 @@ class Proposal:
         )
 
     def _audit(self, each: Candidate) -> Audit:
-        return plan_audit(
-            self.system,
-            self.spec,
-            baseline=self.baseline,
-            repair=self.repair,
-            fault=parsed(self.system, each.fault),
-            fault_text=each.fault,
-            library=self.library,
-            scenes=self.scenes,
-            seeds=self.seeds,
-        )
+        asked = self.asked.audit_of(each.fault)
+        return plan_audit(self.system, self.spec, asked, self.library)
 
     def _probed(
         self,
@@ -132,7 +116,7 @@ class Proposal:
             for row in self._audit(each).study.rows
             if row.variant == variant and row.arm.faults
         }
-        moved = command_responses(system, variant, arms, scenes, self.seeds[0])
+        moved = command_responses(system, variant, arms, scenes, self.asked.seeds[0])
 
         def responses(name: str) -> dict[str, float]:
             return {path: value for (source, path), value in moved.items() if source == name}

@@ -12,6 +12,7 @@ from faultpath.files.opening import contents
 from faultpath.files.plain import Misread, read_yaml, yaml_text
 from faultpath.frozen import Frozen
 from faultpath.planning import Audit
+from faultpath.question import Question
 from faultpath.record import CORRECT, SHARED
 
 _MOST = 200
@@ -54,20 +55,14 @@ class StudyAudit(Frozen):
         return self
 
 
-class StudyFile(Frozen):
+class StudyFile(Question, strict=False):
     """What `faultpath plan` writes and `faultpath audit --study` carries out."""
 
     faultpath_study: Literal[1] = 1
     """Version of the form."""
     system: str
-    options: dict[str, str] = Field(default_factory=dict[str, str])
-    baseline: str
-    repair: str
-    library: str
     library_hash: str
-    scenes: int = Field(ge=1)
-    """The first so many of the library."""
-    seeds: tuple[Annotated[int, Field(ge=0, lt=2**63)], ...] = Field(min_length=1)
+    scenes: int | None = Field(ge=1)
     audits: tuple[StudyAudit, ...] = Field(min_length=1, max_length=_MOST)
 
     @model_validator(mode="after")
@@ -77,7 +72,7 @@ class StudyFile(Frozen):
 
     def yaml(self) -> str:
         """Return the file's text."""
-        data = self.model_dump(mode="json")
+        data = {"faultpath_study": 1, "system": self.system, **self.model_dump(mode="json")}
         return yaml_text(data, width=100, default_flow_style=None)
 
 

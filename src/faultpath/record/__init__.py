@@ -3,7 +3,7 @@
 from faultpath.record.decide import decide, primary_path, stops
 from faultpath.record.model import CORRECT, SHARED, DecisionRecord, Path, StruckTap
 from faultpath.record.provenance import RunProvenance
-from faultpath.record.question import Generalise, Question, StopRule, StopWhen
+from faultpath.record.question import Question, StopRule
 from faultpath.record.reproduction import (
     Answer,
     ClaimVerdict,
@@ -23,7 +23,6 @@ __all__ = [
     "ClaimVerdict",
     "Configuration",
     "DecisionRecord",
-    "Generalise",
     "Ledger",
     "Part",
     "Path",
@@ -33,7 +32,6 @@ __all__ = [
     "RunProvenance",
     "Series",
     "StopRule",
-    "StopWhen",
     "StruckTap",
     "Sweep",
     "decide",

@@ -1,16 +1,12 @@
 """What an audit asks, and by which rule it is answered."""
 
-from typing import Literal
-
 from pydantic import Field
 
 from faultpath.faults import Fault
+from faultpath.question import Generalise, StopWhen
 from faultpath.results import Result
 from faultpath.statistics import RULES, RuleName
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
-
-Generalise = Literal["scenes", "models"]
-StopWhen = Literal["decided", "all-decided"]
 
 
 class StopRule(Result):
