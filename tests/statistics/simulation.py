@@ -13,11 +13,11 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import multinomial
 
 from faultpath.record.family import ALPHA, CORRECT, SHARED, Arms, alpha_shares, decide_paths
 from faultpath.statistics import IN_FORCE, Resamples, detectable, success_effect
 from faultpath.statistics.betting import log_capitals
-from faultpath.statistics.distributions import multinomial_pmf
 from faultpath.statistics.power import detected
 from faultpath.statistics.rules import RULES
 from faultpath.statistics.score import quantile, reach, rejects
@@ -124,7 +124,7 @@ def interval_coverage(scenes: int, truth: Population, runs: int = 4000) -> float
     """Return how often the 95 % interval of an effect covers the truth; exact for one seed."""
     if truth.seeds == 1:
         counts = tables(scenes)
-        weight = multinomial_pmf(counts, truth.chances())
+        weight = multinomial(int(counts[0].sum()), truth.chances()).pmf(counts)
     else:
         stream = generator("statistics", f"interval {scenes} {truth}", 0)
         drawn = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)

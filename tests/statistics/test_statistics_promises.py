@@ -109,5 +109,5 @@ def test_a_p_divided_by_four_breaks_a_promise(monkeypatch):
     """The simulations take the code that decides."""
     real = unconditional.p_value
     monkeypatch.setattr(unconditional, "p_value", lambda *given: real(*given) / 4)
-    found = simulated.equal_arms(100, Population(0.3, 0.0), 0.0, 150)
-    assert not kept(found, 150, most=ALPHA)
+    found = simulated.equal_arms(100, Population(0.3, 0.0), 0.0, 400)
+    assert not kept(found, 400, most=ALPHA)

@@ -29,8 +29,6 @@ class Voids:
     """Failed trials of the repair and of the baseline."""
     alone: tuple[int, int]
     """Pairs in which only that of the repair failed, or only that of the baseline."""
-    as_failures: Arms
-    """Success, where what failed counts as no success."""
     against: Arms
     """Success, where what is open goes against the repair."""
     favour: Arms
@@ -126,7 +124,6 @@ def _voids(pairs: Mapping[str, Pairs], seeds: Sequence[int]) -> dict[str, Voids]
         found[name] = Voids(
             failed=(int(first.failed.sum()), int(second.failed.sum())),
             alone=(int(alone[0].sum()), int(alone[1].sum())),
-            as_failures=(repair, baseline),
             against=(repair, baseline | theirs),
             favour=(repair | ours, baseline),
         )

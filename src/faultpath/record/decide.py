@@ -224,7 +224,6 @@ def _effect(
         failed = FailedTrials(
             repair=voids.failed[0],
             baseline=voids.failed[1],
-            as_failures=fills.as_failures.estimate(),
             against_pp=fills.against.value,
             favour_pp=fills.favour.value,
             uneven=voids.uneven,

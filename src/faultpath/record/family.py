@@ -28,7 +28,6 @@ ALPHA = 0.05
 class Fills(NamedTuple):
     """The effect of one path with what failed trials leave open filled in."""
 
-    as_failures: Contrast
     against: Contrast
     favour: Contrast
 
@@ -98,11 +97,9 @@ def decide_paths(
     made = decide_family(family, alpha, shares, weights)
     fills, unsettled = dict[str, Fills](), list[str]()
     if voids:
-        low, high, as_failures = (
-            shown({path: getattr(each, which) for path, each in voids.items()})
-            for which in ("against", "favour", "as_failures")
-        )
-        fills = {path: Fills(as_failures[path], low[path], high[path]) for path in voids}
+        low = shown({path: each.against for path, each in voids.items()})
+        high = shown({path: each.favour for path, each in voids.items()})
+        fills = {path: Fills(low[path], high[path]) for path in voids}
         # What is open is taken each time as it is nearest to showing nothing, or the contrary.
         ends = {_effect(path): (low[path], high[path]) for path in tested}
         ends |= {

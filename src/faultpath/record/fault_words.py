@@ -4,8 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from faultpath.errors import UserError
-from faultpath.faults import Fault, parse_fault
+from faultpath.faults import Fault
 from faultpath.faults.base import number as plain_number
 from faultpath.interface import Interface
 from faultpath.record.question import Question
@@ -50,11 +49,11 @@ def number(value: Any) -> str:
 
 
 def fault_words(question: Question, interface: Interface, dt_s: float) -> str:
-    """Return what the fault of an audit does, channel by channel; empty where no record says.
+    """Return what the fault of an audit does, channel by channel; nothing without any.
 
     `dt_s` is the length of a control step.
     """
-    faults = spelled_out(question, interface, dt_s)
+    faults = question.faults
     if not faults:
         return ""
     times = [_when(fault, dt_s) for fault in faults]
@@ -66,20 +65,6 @@ def fault_words(question: Question, interface: Interface, dt_s: float) -> str:
     ]
     said = [capital("; ".join(clauses)), _together(faults), capital(times[0]) if alike else ""]
     return " ".join(f"{each}." for each in said if each)
-
-
-def spelled_out(question: Question, interface: Interface, dt_s: float) -> tuple[Fault, ...]:
-    """Return the fault of each channel: as recorded, or read from the question's text.
-
-    Records of before do not spell it out, and only the system knows what its presets do: then
-    there is none.
-    """
-    if question.faults:
-        return question.faults
-    try:
-        return parse_fault(question.fault, interface, {}, dt_s).resolved(interface)
-    except UserError:
-        return ()
 
 
 def _done(fault: Fault, interface: Interface, dt_s: float) -> str:

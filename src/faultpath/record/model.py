@@ -63,8 +63,6 @@ class FailedTrials(Result):
     repair: int
     """Failed trials of the repair on this path."""
     baseline: int
-    as_failures: Estimate
-    """The difference over all scenes, where what failed counts as no success."""
     against_pp: float
     """The difference where the trials of pairs of which one failed go against the repair."""
     favour_pp: float

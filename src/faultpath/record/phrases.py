@@ -295,12 +295,11 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
         found = each.failed
         if found is None or not (found.repair or found.baseline or found.unsettled):
             continue
-        every = f"{signed(found.as_failures.value)} pp {interval(found.as_failures)}".rstrip()
         yield (
             f"{capital(where(each.path))}, {found.repair} trials of {asked.repair} failed and "
-            f"{found.baseline} of {asked.baseline}: counted as no success, the difference over all "
-            f"scenes is {every}; depending on how they would have ended, it lies anywhere from "
-            f"{signed(found.against_pp)} to {signed(found.favour_pp)} pp."
+            f"{found.baseline} of {asked.baseline}: depending on how they would have ended, the "
+            f"difference over all scenes lies anywhere from {signed(found.against_pp)} to "
+            f"{signed(found.favour_pp)} pp."
         )
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from faultpath.interface import Channel, module_of
 from faultpath.record import CORRECT
-from faultpath.record.fault_words import spelled_out
 from faultpath.record.model import DecisionRecord, Path
 from faultpath.record.wording import series
 from faultpath.report.inputs import ReportInput
@@ -77,7 +76,7 @@ class Fork:
 def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every path of the fault, isolated ones first; none where no tap is known."""
     record, asked = source.record, source.record.question
-    faults = spelled_out(asked, source.interface, source.traces.dt_s)
+    faults = asked.faults
     struck = (tap.channel for path in record.paths for tap in (*path.struck, *path.baseline_struck))
     names = tuple(dict.fromkeys([fault.channel for fault in faults] or struck))
     reads = [

@@ -199,21 +199,3 @@ def _regions(pieces: tuple[Piece, ...], mixture: _Mixture) -> tuple[Region, ...]
         Region(low=low, high=high, sign=1 if mixture.value(0.5 * (low + high)) > 0 else -1)
         for low, high in spans
     )
-
-
-def _side(region: Region) -> str:
-    return "ahead" if region.sign > 0 else "behind"
-
-
-def _span(region: Region) -> str:
-    low, high = _percent(region.low), _percent(region.high)
-    if region.low == 0.0:
-        return f"below {high}"
-    return f"above {low}" if region.high == 1.0 else f"between {low} and {high}"
-
-
-def _percent(share: float) -> str:
-    percent = 100.0 * share
-    if 0.0 < percent < 0.5:
-        return f"{percent:.1g} %"
-    return f"{percent:.1f} %" if 99.5 <= percent < 100.0 else f"{percent:.0f} %"

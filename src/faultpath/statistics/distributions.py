@@ -38,25 +38,6 @@ def binomial_pmf(successes: ArrayLike, trials: int, probability: ArrayLike) -> F
     return np.asarray(np.exp(choose + chance), dtype=np.float64)
 
 
-def multinomial_ways(counts: Floats) -> Floats:
-    """Return [tables]: the logarithm of how many orders make each of ``counts`` [tables, kinds]."""
-    from scipy import special
-
-    ways = special.gammaln(counts.sum(axis=1) + 1.0) - special.gammaln(counts + 1.0).sum(axis=1)
-    return np.asarray(ways, dtype=np.float64)
-
-
-def multinomial_pmf(counts: Floats, chances: Floats, ways: Floats | None = None) -> Floats:
-    """Return [tables]: the chance of each of ``counts`` [tables, kinds].
-
-    Pass their ``multinomial_ways`` where the same tables are asked for with many ``chances``.
-    """
-    from scipy import special
-
-    ways = multinomial_ways(counts) if ways is None else ways
-    return np.asarray(np.exp(ways + special.xlogy(counts, chances).sum(axis=1)), dtype=np.float64)
-
-
 def sign_p_value(first: int, second: int) -> float:
     """Return the exact two-sided binomial p of ``first`` against ``second`` at even odds."""
     return min(1.0, 2.0 * float(binomial_cdf(min(first, second), first + second, 0.5)))
