@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,11 +23,16 @@ from faultpath.report.svg import (
 from faultpath.report.viewer_choice import choose
 from faultpath.store import TrialAddress
 from faultpath.store.signals import TOGETHER, Signal
-from faultpath.trials import Status
+from faultpath.trials import Outcome, Status
 
 _SQUEEZED = 2.5
 _MOST_PATHS = 4
 """The last ones, among them the shared fault."""
+_WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
+_TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
+_LINES = ("term one", "term two", "term both")
+_SIGN = {Status.SUCCESS: "M-5 0l3 4l7 -9", Status.CRASH: "M-5 -5l10 10M5 -5l-10 10"}
+_OTHER = "M-4 -4h8v8h-8Z"
 
 
 @dataclass(frozen=True)
@@ -39,9 +43,8 @@ class Lines:
     name: str
     values: NDArray[np.float64]
     """`[3, T]`: the errors and their sum, a number a control step, not a number where unknown."""
-    status: Status
+    trial: Outcome
     ended: str
-    time_s: float
 
     @property
     def sizes(self) -> tuple[float, ...]:
@@ -53,49 +56,20 @@ class Lines:
 class Adding:
     """One scene: on every path of the fault the errors of both arms."""
 
-    scene: str
     words: str
     """What they are errors of."""
     unit: str
     names: tuple[str, ...]
     """Of the two errors and of their sum."""
+    paths: tuple[tuple[str, tuple[Lines, ...]], ...]
+    """Title of a path, with the baseline's lines and the repair's."""
+    caption: str
+    """What the last path shows, in numbers of this scene alone."""
+    span: tuple[float, float]
+    """The range of the values; where a few would squeeze the others, that of the others."""
+    cut: bool
+    """Whether some values lie outside that range."""
     dt_s: float
-    paths: tuple[tuple[str, str, tuple[Lines, ...]], ...]
-    """Name and title of a path, with the baseline's lines and the repair's."""
-
-    @property
-    def span(self) -> tuple[float, float]:
-        """The range of the values; where a few would squeeze the others, that of the others."""
-        values = self._every
-        low, high = (float(end) for end in np.quantile(values, (0.03, 0.97)))
-        few = values.max() - values.min() > _SQUEEZED * max(high - low, 1e-9)
-        return (low, high) if few else (float(values.min()), float(values.max()))
-
-    @property
-    def cut(self) -> bool:
-        """Whether some values lie outside that range."""
-        low, high = self.span
-        return bool(self._every.min() < low or self._every.max() > high)
-
-    @property
-    def _every(self) -> NDArray[np.float64]:
-        arms = (arm.values for _, _, both in self.paths for arm in both)
-        return np.concatenate([values[np.isfinite(values)] for values in arms])
-
-    @property
-    def caption(self) -> str:
-        """Say what is to be seen on the last path, in numbers of this scene alone."""
-        path, _, arms = self.paths[-1]
-        digits = 2 if min(max(arm.sizes) for arm in arms) < 1 else 1
-        told = "; ".join(self._said(arm, digits) for arm in arms)
-        return f"In scene {self.scene}, {where(path)}, {told}."
-
-    def _said(self, arm: Lines, digits: int) -> str:
-        one, other, both = (f"{wording.plain(size, digits)} {self.unit}" for size in arm.sizes)
-        return (
-            f"the errors of {arm.name} are {one.removesuffix(f' {self.unit}')} and {other} on "
-            f"average and their sum {both} ({arm.ended} after {arm.time_s:.1f} s)"
-        )
 
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
@@ -105,43 +79,55 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
     """
     groups = by_scene(pairs)
     for at in choose(source.record, source.traces, pairs) if source.signals else ():
-        found = _of(source, groups[at])
+        found = _of(source, at[0], groups[at])
         if found is not None:
             return found
     return None
 
 
-def _of(source: ReportInput, pairs: Mapping[str, Pair]) -> Adding | None:
+def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | None:
     asked = source.record.question
-    arms = (("baseline", asked.baseline), ("repair", asked.repair))
-    paths: list[tuple[str, str, tuple[Lines, ...]]] = []
-    terms: list[Signal] = []
+    found: list[tuple[str, str, tuple[Lines, ...]]] = []
+    terms: tuple[Signal, ...] = ()
     for path in source.record.paths:
         if path.name == CORRECT or path.name not in pairs:
             continue
-        lines: list[Lines] = []
-        for role, name in arms:
-            pair = pairs[path.name]
-            trial = pair.baseline if role == "baseline" else pair.repair
-            at = TrialAddress(name, path.name, pair.seed, pair.scene)
-            found = _terms(source.signals.get(at, ()))
-            if trial is not None and found:
-                terms = [*found]
-                values = np.array([each.values[:, 0] for each in found], np.float64)
-                ended = wording.ended(asked, trial.status)
-                lines.append(Lines(role, name, values, trial.status, ended, trial.time_s))
-        if len(lines) == len(arms):
-            paths.append((path.name, path.title, tuple(lines)))
-    if not paths:
+        pair, lines = pairs[path.name], list[Lines]()
+        for role, name, trial in (
+            ("baseline", asked.baseline, pair.baseline),
+            ("repair", asked.repair, pair.repair),
+        ):
+            known = _terms(source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ()))
+            if trial is not None and known:
+                terms = known
+                values = np.array([each.values[:, 0] for each in known], np.float64)
+                ended = f"{wording.ended(asked, trial.status)}, {trial.time_s:.1f} s"
+                lines.append(Lines(role, name, values, trial, ended))
+        if len(lines) == 2:
+            found.append((path.name, path.title, tuple(lines)))
+    if not found:
         return None
-    names = tuple(each.name for each in terms)
+    every = np.concatenate([arm.values.ravel() for *_, arms in found for arm in arms])
+    every = every[np.isfinite(every)]
+    low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
+    whole = float(every.min()), float(every.max())
+    cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
+    unit = wording.unit(terms[0].unit)
+    last, _, arms = found[-1]
+    digits = 2 if min(max(arm.sizes) for arm in arms) < 1 else 1
+    told: list[str] = []
+    for arm in arms:
+        one, other, both = (wording.plain(size, digits) for size in arm.sizes)
+        told.append(f"{arm.name}: {one} and {other} {unit}, together {both} {unit} ({arm.ended})")
     return Adding(
-        next(iter(pairs.values())).scene,
-        terms[0].topic,
-        wording.unit(terms[0].unit),
-        names,
-        source.traces.dt_s,
-        tuple(paths[-_MOST_PATHS:]),
+        words=terms[0].topic,
+        unit=unit,
+        names=tuple(each.name for each in terms),
+        paths=tuple((title, arms) for _, title, arms in found[-_MOST_PATHS:]),
+        caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(told)}.",
+        span=(low, high) if cut else whole,
+        cut=cut,
+        dt_s=source.traces.dt_s,
     )
 
 
@@ -152,19 +138,32 @@ def _terms(named: Sequence[Signal]) -> tuple[Signal, ...]:
     return (*found,) if len(found) == 3 and found[-1].name == TOGETHER and known else ()
 
 
-_WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
-_TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
-_LINES = ("term one", "term two", "term both")
-_SIGN = {Status.SUCCESS: "M-5 0l3 4l7 -9", Status.CRASH: "M-5 -5l10 10M5 -5l-10 10"}
-_OTHER = "M-4 -4h8v8h-8Z"
-
-
 def adding_panels(shown: Adding) -> list[str]:
     """Return a picture of each path, the baseline above the repair, all on the same axes."""
-    arms = [arm for _, _, both in shown.paths for arm in both]
     upward = covering(shown.span, least=1e-9)
-    clock = Axis(0.0, max(arm.time_s for arm in arms), _LEFT, _WIDTH - _RIGHT)
-    return [_panel(shown, title, both, upward, clock) for _, title, both in shown.paths]
+    longest = max(arm.trial.time_s for _, arms in shown.paths for arm in arms)
+    clock = Axis(0.0, longest, _LEFT, _WIDTH - _RIGHT)
+    panels: list[str] = []
+    for title, arms in shown.paths:
+        told = "; ".join(
+            f"{arm.name}, mean sizes "
+            + ", ".join(f"{n} {s:.2g}" for n, s in zip(shown.names, arm.sizes, strict=True))
+            + f" {shown.unit}, {arm.ended}"
+            for arm in arms
+        )
+        svg = Svg(
+            _WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told
+        )
+        svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
+        for place, arm in enumerate(arms):
+            top = _TOP + _PITCH * place
+            _arm(svg, arm, clock, upward.at(top + _PLOT, top), shown)
+        bottom = _TOP + _PITCH * (len(arms) - 1) + _PLOT
+        for tick in clock.ticks(4):
+            draw_tick(svg, clock, Axis(0, 1, bottom, 0), tick, tick_label(tick))
+        svg.text(_WIDTH, bottom + 17, "s", "small soft", "end")
+        panels.append(svg.render())
+    return panels
 
 
 def line_key(shown: Adding) -> list[tuple[str, str]]:
@@ -177,47 +176,22 @@ def line_key(shown: Adding) -> list[tuple[str, str]]:
     return found
 
 
-def _panel(shown: Adding, title: str, arms: tuple[Lines, ...], upward: Axis, clock: Axis) -> str:
-    told = " ".join(
-        f"{arm.role.capitalize()} {arm.name}: mean size "
-        + ", ".join(f"{name} {size:.2g}" for name, size in zip(shown.names, arm.sizes, strict=True))
-        + f" {shown.unit}; {arm.ended} after {arm.time_s:.1f} s."
-        for arm in arms
-    )
-    name = f"{title}: {shown.words} over time, scene {shown.scene}"
-    svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, name, told)
-    svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
-    for place, arm in enumerate(arms):
-        top = _TOP + _PITCH * place
-        y = upward.at(top + _PLOT, top)
-        _arm(svg, arm, clock, y, shown)
-    bottom = _TOP + _PITCH * (len(arms) - 1) + _PLOT
-    for tick in clock.ticks(4):
-        draw_tick(svg, clock, Axis(0, 1, bottom, 0), tick, tick_label(tick))
-    svg.text(_WIDTH, bottom + 17, "s", "small soft", "end")
-    return svg.render()
-
-
 def _arm(svg: Svg, arm: Lines, x: Axis, y: Axis, shown: Adding) -> None:
     svg.text(0, y.end - 10, arm.role, "small soft")
-    room = 130.0
-    svg.text(54, y.end - 10, shortened(arm.name, room, 12), f"bold {arm.role}", tip=arm.name)
-    ended = f"{arm.ended}, {arm.time_s:.1f} s"
-    svg.text(_WIDTH, y.end - 10, ended, "small soft", "end")
+    svg.text(54, y.end - 10, shortened(arm.name, 130, 12), f"bold {arm.role}", tip=arm.name)
+    svg.text(_WIDTH, y.end - 10, arm.ended, "small soft", "end")
     draw_levels(svg, x, y, 4, zero="zero")
     svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-    inside: list[list[float]] = np.clip(arm.values, y.low, y.high).tolist()
-
-    def points(values: list[float]) -> list[Point]:
-        steps = enumerate(values)
-        return [(x(step * shown.dt_s), y(value)) for step, value in steps if isfinite(value)]
-
-    both = points(inside[-1])
-    if both:
+    steps = shown.dt_s * np.arange(arm.values.shape[1])
+    lines: list[list[Point]] = []
+    for values in np.clip(arm.values, y.low, y.high):
+        known = np.isfinite(values)
+        lines.append([(x(t), y(v)) for t, v in zip(steps[known], values[known], strict=True)])
+    if both := lines[-1]:
         svg.polygon([(both[0][0], y(0)), *both, (both[-1][0], y(0))], f"left-over {arm.role}")
-    for values, cls in zip(inside, _LINES, strict=True):
-        svg.polyline(points(values), f"{cls} {arm.role}" if cls == _LINES[-1] else cls)
-    end = x(arm.time_s)
+    for points, cls in zip(lines, _LINES, strict=True):
+        svg.polyline(points, f"{cls} {arm.role}" if cls == _LINES[-1] else cls)
+    end = x(arm.trial.time_s)
     svg.line((end, y.start), (end, y.end), "ended")
     with svg.group(transform=f"translate({end:.1f} {y.end + 8:.1f})"):
-        svg.path(_SIGN.get(arm.status, _OTHER), f"end-sign {arm.role}")
+        svg.path(_SIGN.get(arm.trial.status, _OTHER), f"end-sign {arm.role}")
