@@ -151,9 +151,7 @@ def adding_panels(shown: Adding) -> list[str]:
             + f" {shown.unit}, {arm.ended}"
             for arm in arms
         )
-        svg = Svg(
-            _WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told
-        )
+        svg = Svg(_WIDTH, _TOP + _PITCH * len(arms) - 16, f"{title}: {shown.words} over time", told)
         svg.text(0, 14, shortened(title, _WIDTH, 13), "head", tip=title)
         for place, arm in enumerate(arms):
             top = _TOP + _PITCH * place

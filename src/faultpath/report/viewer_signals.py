@@ -6,7 +6,7 @@ or differs is left out, unless it is an error, which exists only where a fault m
 zero throughout is left out too.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -19,13 +19,15 @@ from faultpath.store import TrialAddress
 from faultpath.store.signals import IN_FORCE, Signal, Signals
 
 _MOST_COMPONENTS = 4
-"""A rotation matrix or an image says little as lines, where nobody named its components."""
+"""A rotation matrix or an image says little as lines."""
 _LEVELS = 4095
 _GAP = -1
 """In place of a level, where nothing was read."""
 
 _Line: TypeAlias = tuple[str, int]
 """A signal and its component."""
+_Trials: TypeAlias = Mapping[TrialAddress, NDArray[Any]]
+_Lines: TypeAlias = dict[_Line, dict[TrialAddress, NDArray[Any]]]
 
 
 @dataclass(frozen=True)
@@ -52,25 +54,46 @@ class Plot:
 
 def plots(signals: Signals) -> tuple[Plot, ...]:
     """Return what is plotted of the signals: first errors, then what differs within its topic."""
-    topics: dict[tuple[str, str, int], dict[_Line, dict[TrialAddress, NDArray[Any]]]] = {}
-    parts: dict[tuple[str, str], tuple[str, ...]] = {}
+    topics: dict[tuple[str, str, int], _Lines] = {}
     for address, named in signals.items():
         for each in named:
-            if each.name == IN_FORCE:
+            if each.name == IN_FORCE or each.values.shape[1] > _MOST_COMPONENTS:
                 continue
-            if each.values.shape[1] > _MOST_COMPONENTS and not each.parts:
-                continue
-            parts[each.topic, each.unit] = each.parts or parts.get((each.topic, each.unit), ())
             for part, values in enumerate(each.values.T):
                 lines = topics.setdefault((each.topic, each.unit, part), {})
                 lines.setdefault((each.name, part), {})[address] = values
     many = {(topic, unit): part + 1 for topic, unit, part in topics}
-    made = [
-        Plot(*_called(topic, unit, part, many[topic, unit], parts[topic, unit]), _told(lines))
-        for (topic, unit, part), lines in topics.items()
-        if ("error" in topic and _differs(lines.values())) or _varies(lines.values())
-    ]
+    made: list[Plot] = []
+    for (topic, unit, part), lines in topics.items():
+        if not _worth_it(topic, lines):
+            continue
+        title, units = topic.replace("_", " "), unit.split(", ")
+        if (count := many[topic, unit]) > 1:
+            title, unit = f"{title}, {part + 1}", units[part] if len(units) == count else unit
+        same: dict[_Line, list[str]] = {}
+        for line, trials in lines.items():
+            twin = next((other for other in same if _alike(trials, lines[other])), line)
+            same.setdefault(twin, []).append(line[0])
+        made.append(Plot(title, unit, tuple((ln, ", ".join(names)) for ln, names in same.items())))
     return tuple(sorted(made, key=lambda plot: (not plot.of_errors, len(plot.lines) < 2)))
+
+
+def _worth_it(topic: str, lines: _Lines) -> bool:
+    """Return whether anything changes in a trial, or an error is not zero throughout."""
+    for at in {at for trials in lines.values() for at in trials}:
+        values = np.concatenate([trials[at] for trials in lines.values() if at in trials])
+        values = values[np.isfinite(values)]
+        if values.size and (("error" in topic and values.any()) or values.min() < values.max()):
+            return True
+    return False
+
+
+def _alike(one: _Trials, other: _Trials) -> bool:
+    # What the loop ends with may be missing in one of two signals.
+    return one.keys() == other.keys() and all(
+        abs(len(a) - len(b)) < 2 and np.array_equal(a[: len(b)], b[: len(a)], equal_nan=True)
+        for a, b in ((one[at], other[at]) for at in one)
+    )
 
 
 def drawn(
@@ -100,57 +123,3 @@ def in_force(named: Mapping[str, Signal]) -> list[list[int]]:
         return []
     edges = np.flatnonzero(np.diff(named[IN_FORCE].values[:, 0] > 0, prepend=False, append=False))
     return edges.reshape(-1, 2).tolist()
-
-
-def _called(topic: str, unit: str, part: int, many: int, names: Sequence[str]) -> tuple[str, str]:
-    topic = topic.replace("_", " ")
-    if many == 1:
-        return topic, unit
-    units = unit.split(", ")
-    name = names[part] if len(names) == many else part + 1
-    return f"{topic}, {name}", units[part] if len(units) == many else unit
-
-
-def _varies(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
-    trials: dict[TrialAddress, list[NDArray[Any]]] = {}
-    for line in lines:
-        for at, values in line.items():
-            trials.setdefault(at, []).append(values[np.isfinite(values)])
-    joined = (np.concatenate(parts) for parts in trials.values())
-    return any(values.size and values.min() < values.max() for values in joined)
-
-
-def _differs(lines: Iterable[Mapping[TrialAddress, NDArray[Any]]]) -> bool:
-    return any(np.nan_to_num(values).any() for line in lines for values in line.values())
-
-
-def _told(
-    lines: Mapping[_Line, Mapping[TrialAddress, NDArray[Any]]],
-) -> tuple[tuple[_Line, str], ...]:
-    kept: list[tuple[_Line, list[str]]] = []
-    for line, trials in lines.items():
-        for other, names in kept:
-            if _alike(trials, lines[other]):
-                names.append(line[0])
-                break
-        else:
-            kept.append((line, [line[0]]))
-    return tuple((line, _names(names)) for line, names in kept)
-
-
-def _alike(
-    one: Mapping[TrialAddress, NDArray[Any]], other: Mapping[TrialAddress, NDArray[Any]]
-) -> bool:
-    return one.keys() == other.keys() and all(
-        np.array_equal(*_cut(one[at], other[at]), equal_nan=True) for at in one
-    )
-
-
-def _cut(one: NDArray[Any], other: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    steps = min(len(one), len(other))
-    return (one[:steps], other[:steps]) if abs(len(one) - len(other)) < 2 else (one, other)
-
-
-def _names(names: list[str]) -> str:
-    more = len(names) - 2
-    return ", ".join(names[:2]) + (f" and {more} more" if more > 0 else "")
