@@ -2,7 +2,6 @@
 An error of faultpath's own code keeps its traceback."""
 
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -12,7 +11,6 @@ from unittest.mock import Mock
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath import setup_limit
 from faultpath.blame import described
 from faultpath.loop.module import Progress
 from faultpath.trials import Outcome
@@ -235,18 +233,3 @@ def test_traceback_goes_before_and_after_the_verb(before):
     assert told.status == 2
     assert re.search(r"^Traceback.*\nfaultpath: there is no system", told.err, re.DOTALL)
     assert "--traceback" in faultpath("--help").out
-
-
-@pytest.mark.parametrize("place", ["factory", "file"])
-def test_a_system_that_is_never_built_is_not_waited_for(place, tmp_path, monkeypatch):
-    monkeypatch.setattr(setup_limit, "LEAST_S", 0.5)
-    nap = "    try:\n        time.sleep(60)\n    except Exception:\n        pass"
-    waits = f"import time\nwhile True:\n{nap}"
-    lines = waits if place == "file" else "def create():\n    " + waits.replace("\n", "\n    ")
-    (tmp_path / "slow.py").write_text(f"{lines}\n")
-    before = signal.getsignal(signal.SIGALRM)
-    name = f"{tmp_path / 'slow.py'}:create"
-    ended = audit("--time-limit", "1", system=name, workers=1, out=tmp_path / "run")
-    assert f"system '{name}' was not built within 1 s: look for what" in ended.refused()
-    assert signal.getsignal(signal.SIGALRM) is before
-    assert signal.getitimer(signal.ITIMER_REAL)[0] == 0

@@ -9,9 +9,8 @@ import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
 
-from faultpath import setup_limit
 from faultpath.errors import UserError
-from faultpath.execution import run_study
+from faultpath.execution import dispatch, run_study
 from faultpath.execution.state import FEW
 
 
@@ -110,7 +109,7 @@ def test_a_limit_that_is_none_is_refused(tmp_path, wrong):
 
 
 def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
-    monkeypatch.setattr(setup_limit, "LEAST_S", 1.0)
+    monkeypatch.setattr(dispatch, "LEAST_S", 1.0)
     asked = study(parent=str(os.getpid()))
     system = asked.system.model_copy(update={"name": f"{__file__}:slow_worker"})
     asked = asked.model_copy(update={"system": system})

@@ -16,14 +16,13 @@ from contextlib import suppress
 from types import FrameType
 from typing import NoReturn
 
-from faultpath import setup_limit
 from faultpath.text import one_line
 
 _SENT = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 _LAST_S = 5.0
 """For what a system has registered to be done at the end."""
-_OVER, _STATUS, _TEXT, _SIZE = 0, 1, 2, 4096
-"""Where the parent reads whether the child was done, with which status, and else at what it was."""
+_OVER, _STATUS, _SIZE = 0, 1, 2
+"""Where the parent reads whether the child was done, and with which status."""
 _FATAL = 2
 _UNREAD = 141
 
@@ -59,13 +58,12 @@ def run(command: Callable[[], object]) -> NoReturn:
     if -code in _SENT:
         signal.signal(-code, signal.SIG_DFL)
         os.kill(parent, -code)
-    doing = shared[_TEXT:].rstrip(b"\0").decode(errors="replace")
-    sys.stderr.write(f"faultpath: {one_line(_obituary(code, doing))}\n")
+    sys.stderr.write(f"faultpath: {one_line(_obituary(code))}\n")
     sys.exit(_FATAL)
 
 
-def _obituary(code: int, doing: str) -> str:
-    what = doing or "what the command ran"
+def _obituary(code: int) -> str:
+    what = "what the command ran"
     if code >= 0:
         return (
             f"{what} ended the process with status {code} before the command was done: let the "
@@ -83,11 +81,6 @@ def _obituary(code: int, doing: str) -> str:
 
 
 def _work(command: Callable[[], object], shared: mmap.mmap) -> NoReturn:
-    def note(doing: str) -> None:
-        text = doing.encode(errors="replace")[: _SIZE - _TEXT]
-        shared[_TEXT:] = text.ljust(_SIZE - _TEXT, b"\0")
-
-    setup_limit.observe(note)
     try:
         command()
         status = 0

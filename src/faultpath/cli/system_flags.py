@@ -78,12 +78,10 @@ def _flag(option: _Option) -> str:
 
 
 def _options(system: str, forgiving: bool) -> Sequence[_Option]:
-    from faultpath.setup_limit import setup_limit
     from faultpath.trials import system_options
 
     try:
-        with setup_limit(system, None):
-            return system_options(system)
+        return system_options(system)
     except (Exception, SystemExit):
         if forgiving:
             return ()

@@ -33,11 +33,9 @@ def command(
     from faultpath.door.systems import choose
     from faultpath.report.terminal import interface_table
     from faultpath.report.trace import trace_table
-    from faultpath.setup_limit import setup_limit
     from faultpath.tables.terminal import STYLES, Parted
 
-    with setup_limit(system, None):
-        chosen = choose(system, settings(options or []), None, (variant,) if variant else ())
+    chosen = choose(system, settings(options or []), None, (variant,) if variant else ())
     trace = traced(chosen, variant, library, scene, steps, seed, fault)
     console = SafeConsole()
     if as_json:

@@ -3,7 +3,6 @@
 import inspect
 import textwrap
 from collections.abc import Callable, Mapping
-from contextlib import nullcontext
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, TypeVar
@@ -11,7 +10,6 @@ from typing import Any, TypeVar
 from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose
 from faultpath.question import Question, Running, ask
-from faultpath.setup_limit import setup_limit
 from faultpath.trials import Library, System, library_of
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
@@ -72,13 +70,12 @@ def begin(
 
     Raises as `choose`, and for a library that does not exist. `call` is the name of the function.
     """
-    limit, workers, executor = None, None, "local"
+    workers, executor = None, "local"
     if isinstance(asked, Running):
-        limit, workers, executor = asked.time_limit_s, asked.workers, asked.executor
-    with setup_limit(str(system), limit) if commanded(progress) else nullcontext():
-        arms = (asked.baseline, asked.repair)
-        chosen = choose(system, asked.options, workers, arms, executor)
-        library = library_of(chosen.system, asked.library)
+        workers, executor = asked.workers, asked.executor
+    arms = (asked.baseline, asked.repair)
+    chosen = choose(system, asked.options, workers, arms, executor)
+    library = library_of(chosen.system, asked.library)
     said = {"system": chosen.spec.name, **asked.model_dump(exclude_unset=True)}
     told = display(progress, call, said | {"options": chosen.spec.options})
     return Begun(chosen, library, told)

@@ -1,7 +1,6 @@
 """`check` and `trace` from Python: what `faultpath check` and `faultpath trace` print, as data."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
 from os import PathLike
 from typing import TYPE_CHECKING
 
@@ -46,16 +45,13 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.door.display import Display, display
+    from faultpath.door.display import display
     from faultpath.door.systems import choose
     from faultpath.review.check import Asked, check_system
-    from faultpath.setup_limit import setup_limit
     from faultpath.work import Progress
 
     given = dict(locals())
-    called = isinstance(progress, Display) and progress.is_command
-    with setup_limit(str(system), time_limit_s) if called else nullcontext():
-        chosen = choose(system, options or {}, workers, variants)
+    chosen = choose(system, options or {}, workers, variants)
     helpful = 2 if chosen.system.parallel else 1
     count = helpful if chosen.workers is None else chosen.workers
     told = display(progress, "check", given | {"system": chosen.spec.name})

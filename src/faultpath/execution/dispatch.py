@@ -1,12 +1,13 @@
 """The tasks of a study on the workers of an executor."""
 
+import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
+from faultpath.errors import UserError
 from faultpath.execution.worker import Started
-from faultpath.setup_limit import LONGEST_S, check_limit, setup_s, too_late
 from faultpath.trials.attempt import Died, Wrong
 from faultpath.trials.system import System
 from faultpath.work import Call, Executor, Failed, Lost, WorkerLost
@@ -16,9 +17,16 @@ _FALSE_STARTS = 4
 """So many workers in a row may die before they have built the system."""
 
 
+LONGEST_S = 3600.0
+"""For a block, unless the user or the system says otherwise."""
+LEAST_S = 300.0
+"""For building a system, whatever is said of a block: imports wait for a busy machine."""
+
+
 def block_limit_s(system: System, asked_s: float | None) -> float:
     """Return the seconds that a block may take: as asked, as the system says, or an hour."""
-    check_limit(asked_s)
+    if asked_s is not None and not (math.isfinite(asked_s) and asked_s > 0):
+        raise UserError(f"the time limit is {asked_s:g} s: give a number of seconds above 0")
     return asked_s or system.time_limit_s or LONGEST_S
 
 
@@ -94,11 +102,15 @@ class Dispatch(Generic[T]):
                     settle(running.task, Died(end.how))
             now = time.monotonic()
             for worker, running in tuple(self._running.items()):
-                allowed = self._limit_s if running.started else setup_s(self._limit_s)
+                allowed = self._limit_s if running.started else max(LEAST_S, self._limit_s)
                 if now - running.since <= allowed:
                     continue
                 if not running.started:
-                    raise too_late(self._name, allowed, " in a worker process")
+                    raise UserError(
+                        f"system {self._name!r} was not built in a worker process within "
+                        f"{allowed:g} s: look for what its factory or its file waits for, or allow "
+                        "more with --time-limit"
+                    )
                 self._executor.cancel(worker)
                 del self._running[worker]
                 how = f"it was stopped at the time limit of {allowed:g} s"

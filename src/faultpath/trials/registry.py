@@ -5,7 +5,7 @@ import importlib.util
 import os
 import sys
 from collections.abc import Generator, Iterable
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import (
@@ -270,7 +270,8 @@ def _undone_on_failure() -> Generator[None]:
     since whoever corrects one and loads again wants it as it then is."""
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
-        yield
+        with redirect_stdout(sys.stderr):  # what a system prints is no output of a command
+            yield
     except BaseException:
         sys.path[:] = path
         for name, module in tuple(sys.modules.items()):
