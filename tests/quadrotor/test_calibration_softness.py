@@ -10,9 +10,13 @@ import pytest
 import torch
 from planning_toys import replan
 
-from faultpath.quadrotor.choices import PlannerName
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planners import shift
+from faultpath.quadrotor.planners import (
+    MPPI,
+    AutoregressiveSampler,
+    CostWeights,
+    NavigationCost,
+    shift,
+)
 from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.plant.vehicle_batch import Vehicle
 from faultpath.quadrotor.predictors import Calibration, PredictorInputs
@@ -23,9 +27,10 @@ ERRORS = (0.0, 0.1, -0.1)
 SECONDS = 4.0
 
 
-def hover_heights(planner_name):
+def hover_heights(running):
     """Mean height offset over the second half of a hover, m, for each of `ERRORS`."""
-    planner = QuadrotorOptions(planner=planner_name).build_planner()
+    cost = NavigationCost(CostWeights(running=running))
+    planner = MPPI(AutoregressiveSampler(), cost, temperature=0.1)
     lanes = 32
     plant = TorchPlant(Vehicle.nominal(lanes))
     rest = torch.zeros(3, lanes, dtype=torch.float64)
@@ -51,7 +56,7 @@ def hover_heights(planner_name):
 @pytest.fixture(scope="module")
 def heights():
     with torch.inference_mode():
-        return {name: hover_heights(name) for name in PlannerName}
+        return {"terminal": hover_heights(0.0), "running": hover_heights(1.0)}
 
 
 def test_correct_calibration_leans_to_neither_side(heights):
