@@ -2,12 +2,10 @@
 
 Along a ray every solid occupies one interval: a yawed box by the slab test in its own axes, a
 pillar by the chord of its circle, both cut by their slab of heights. The image is the least entry
-over all solids and the exit from the arena. Solids outside the camera's view are left out. What
-remains is worked off in rounds, one solid of every scene a round, with the scenes that have most
-to draw in front: a round is then a prefix of the batch and nothing is padded.
+over all solids and the exit from the arena.
 
-The compiled kernel (`native/render.py`) does the same scene by scene, without rounds, and works on
-the part of the image that a solid can cover. This is its reference, and draws where there is none.
+The compiled kernel (`compiled_camera.py`) does the same scene by scene, and works on the part of
+the image that a solid can cover. This is its reference, and draws where there is none.
 
 Every pixel is an elementwise function of its own scene, and an image's rows are whole vectors, so
 that a scene's image has the same bits in a batch of any size.
@@ -29,7 +27,7 @@ from faultpath.quadrotor.scenes.scene import Scene
 from faultpath.quadrotor.state import State
 
 _GROUP = 16
-"""Scenes drawn at once: their scratch images stay in the second-level cache."""
+"""Scenes drawn at once, which bounds the scratch images."""
 
 _NOT_ZERO = 1e-20
 """Added to directions: an exact zero gets an inverse, every other number stays what it is."""
@@ -77,36 +75,6 @@ class _View:
         return torch.cat((self.eye, self.axes.flatten(0, 1), self.half, self.rounding[None]))
 
 
-@dataclass(frozen=True)
-class _Rounds:
-    """Which solid of which scene is drawn when.
-
-    Attributes:
-        order: Scenes by falling number of solids to draw, `[L]`.
-        solids: The solids of each, in this order, those to be drawn first, `[K, L]`.
-        sizes: How many scenes still have a solid to draw in each round.
-    """
-
-    order: Tensor
-    solids: Tensor
-    sizes: list[int]
-
-    @classmethod
-    def of(cls, wanted: Tensor) -> "_Rounds":
-        """Lay out the solids that are `wanted` `[K, L]`."""
-        count = wanted.sum(0)
-        order = count.argsort(descending=True, stable=True)
-        solids = wanted[:, order].to(torch.uint8).argsort(dim=0, descending=True, stable=True)
-        most = int(count.amax())
-        sizes = (count > torch.arange(most)[:, None]).sum(1)
-        return cls(order, solids[:most], sizes.tolist())
-
-    def gather(self, values: Tensor) -> Tensor:
-        """Return `values` `[F, K, L]` in the order of drawing, `[F, rounds, L]`."""
-        ordered = values.index_select(2, self.order)
-        return ordered.gather(1, self.solids.expand(len(values), -1, -1))
-
-
 class DepthRenderer:
     """Draws what the cameras of a block of scenes see."""
 
@@ -120,7 +88,8 @@ class DepthRenderer:
         left, up = (slope.to(device) for slope in slopes())
         self._left, self._up = left.float(), up.float()[:, None]
         self._planes, self._offsets = _PLANES.to(device), _OFFSETS.to(device)
-        most = _GROUP if host_readable(device) else geometry.sign.numel()
+        prisms, drawn = geometry.sign.shape
+        most = prisms * (min(_GROUP, drawn) if host_readable(device) else drawn)
         self._scratch = torch.empty(3, 3, most, HEIGHT, WIDTH, device=device)
         kernels = native.kernels_on(device)
         self._compiled: CompiledRenderer | None = None
@@ -151,12 +120,9 @@ class DepthRenderer:
             return self._compiled.render(position, rotation)
         view = self._view(position, rotation)
         if not host_readable(position.device):
-            return self._draw_at_once(view)
-        image = torch.empty(count, HEIGHT, WIDTH)
-        for first in range(0, len(image), _GROUP):
-            group = slice(first, min(first + _GROUP, len(image)))
-            self._draw(view.take(group), image[group])
-        return image
+            return self._draw(view)
+        groups = (slice(first, first + _GROUP) for first in range(0, count, _GROUP))
+        return torch.cat([self._draw(view.take(group)) for group in groups])
 
     def _view(self, position: Tensor, rotation: Tensor) -> _View:
         g = self._geometry
@@ -172,27 +138,10 @@ class DepthRenderer:
         seen = (furthest >= 0).all(0) & (g.sign > 0)
         return _View(eye, axes, g.half, g.rounding, seen)
 
-    def _draw(self, view: _View, image: Tensor) -> None:
-        """Draw the scenes of one group into `image`."""
-        torch.clamp(self._background(view), 0, RANGE_M, out=image)
-        pillar = view.rounding > 0
-        for wanted, interval in (
-            (view.seen & ~pillar, self._box),
-            (view.seen & pillar, self._pillar),
-        ):
-            rounds = _Rounds.of(wanted)
-            numbers = rounds.gather(view.numbers()).float()[..., None, None]
-            ordered = image.index_select(0, rounds.order)
-            for solid, size in zip(numbers.unbind(1), rounds.sizes, strict=True):
-                enter, leave = interval(solid[:, :size])
-                enter.clamp_(min=0).masked_fill_(enter > leave, RANGE_M)
-                torch.minimum(ordered[:size], enter, out=ordered[:size])
-            image.index_copy_(0, rounds.order, ordered)
+    def _draw(self, view: _View) -> Tensor:
+        """Return the images of some scenes; every solid is drawn, and what is out of view left out.
 
-    def _draw_at_once(self, view: _View) -> Tensor:
-        """Return the image of all scenes, every solid drawn and those out of view left out after.
-
-        How many are in view only the device knows, and so how many rounds there would be.
+        How many are in view only the device knows.
         """
         image = self._background(view).clamp_(0, RANGE_M)
         solids = view.numbers().float().flatten(1)[..., None, None]

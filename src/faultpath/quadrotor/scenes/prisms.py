@@ -90,19 +90,5 @@ def prism(solid: Box | Cylinder, bounds: Bounds | None = None) -> Prism:
     return Prism((x, y, (low + high) / 2), (hx, hy, (high - low) / 2), yaw, rounding)
 
 
-def plan_gap(one: Prism, other: Prism) -> float:
-    """Return the clear width in plan between two solids that do not cross, m.
-
-    Between convex outlines that are apart, the least distance is taken at a corner of one of
-    them. Where outlines cross it is not a distance, but for loose obstacles, whose corners lie
-    within 0.64 m of their centre, it stays below the least gap and so still says "too near".
-    """
-    return min(
-        a.plan_distance(corner) - b.rounding_m
-        for a, b in ((one, other), (other, one))
-        for corner in b.corners_m
-    )
-
-
 def _corner(first: float, second: float) -> float:
     return hypot(max(first, 0.0), max(second, 0.0)) + min(max(first, second), 0.0)
