@@ -90,11 +90,10 @@ def _picture(part: str) -> str:
 
 
 def _origin() -> str:
-    found, origin = load()
-    first, last = (end[:16].replace("T", " ") for end in found.flown or ("", ""))
+    origin = load()[1]
     place = f"[`docs/reference/{PLACE.relative_to(REFERENCE)}`]"
     return (
-        f"Run between {first} and {last} UTC, with {origin.workers} workers on "
+        f"Finished on {origin.finished[:10]}, with {origin.workers} workers on "
         f"{origin.processor.replace('(R)', '')}, and concluded anew by the code that is here, "
         f"which a test repeats. {flown_by(origin, SYSTEM, {})} {_run_again()}Everything is in "
         f"{place}({{reference}}/{PLACE.relative_to(REFERENCE)}): the report, the ledger and all "

@@ -2,7 +2,6 @@
 
 from faultpath.record import (
     ClaimVerdict,
-    Configuration,
     Ledger,
     Part,
     Point,
@@ -116,17 +115,6 @@ def reproduction() -> Reproduction:
         ledger=ledger(),
         tables=tables(),
         figures=(sweep(),),
-        configurations=(
-            Configuration(
-                setting=f"held-out, obstacles, L3 {NASTY}",
-                library="held-out",
-                library_hash="9d0c31f2" * 8,
-                system_fingerprint="b7e1" * 4,
-                arms=12,
-                trials=1200,
-            ),
-        ),
         trials=12345,
         failed_trials=1,
-        flown=("2026-11-20T08:00:00Z", "2026-11-21T08:11:42Z"),
     )

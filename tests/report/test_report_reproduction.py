@@ -115,7 +115,7 @@ def test_tables_set_each_figure_beside_the_papers(html: str, page: Page) -> None
 
 
 def test_a_page_without_tables_figures_and_provenance() -> None:
-    empty = {"tables": (), "figures": (), "configurations": ()}
+    empty = {"tables": (), "figures": ()}
     page = Page(reproduction_page(reproduction().model_copy(update=empty), None, None))
     assert {"C01", "provenance"} <= set(page.ids)
     assert not {"central", "tables", "figures"} & set(page.ids)

@@ -50,7 +50,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     flown = fly(asked, folder)
     evidence = measure_all(asked, folder, 0, lambda done, total: None)
     results = asked.results(flown.outcomes, evidence)
-    save(folder, flown, results, evidence, conclude(asked, flown, results))
+    save(folder, flown, results, evidence, conclude(asked, results))
     return folder
 
 

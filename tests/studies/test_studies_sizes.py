@@ -7,8 +7,7 @@ from study_toys import as_published, outcomes, whole
 
 from faultpath.record import ClaimVerdict
 from faultpath.studies.claims import STATEMENTS, evaluate
-from faultpath.studies.claims.sizes import size
-from faultpath.studies.claims.statement import Statement
+from faultpath.studies.claims.statement import Statement, size
 from faultpath.studies.published import Printed
 from faultpath.studies.results import Results
 

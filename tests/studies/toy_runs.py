@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from faultpath.evidence import EvidenceTable, Measured, Measurement
-from faultpath.studies.cells import Cell
+from faultpath.studies.cells import Cell, of_seed
 from faultpath.studies.page import Page
 from faultpath.studies.pages import PAGES
 from faultpath.studies.results import Results
@@ -84,7 +84,7 @@ class Watched(Results):
         return super().pairs(first, second, **named)
 
     def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
-        self.cells.append(cell)
+        self.cells.append(of_seed(cell, seed))
         return super().counts(cell, seed)
 
     def measured(self, measurement: Measurement) -> Measured:

@@ -45,7 +45,7 @@ def carry_out(plan: Plan, job: Job) -> ReproductionRun:
             ) from None
     results = plan.results(flown.outcomes, evidence)
     place = folder / plan.place
-    found = conclude(plan, flown, results)
+    found = conclude(plan, results)
     result = save(place, flown, results, evidence, found)
     provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
     write_pages(place, found, provenance)

@@ -7,7 +7,6 @@ from faultpath.record.question import Question, StopRule
 from faultpath.record.reproduction import (
     Answer,
     ClaimVerdict,
-    Configuration,
     Ledger,
     Part,
     Point,
@@ -21,7 +20,6 @@ __all__ = [
     "SHARED",
     "Answer",
     "ClaimVerdict",
-    "Configuration",
     "DecisionRecord",
     "Ledger",
     "Part",

@@ -107,18 +107,6 @@ class Sweep(_Frozen):
     notes: tuple[str, ...] = ()
 
 
-class Configuration(_Frozen):
-    """One setting of the system as it was flown."""
-
-    setting: str
-    library: str
-    library_hash: str
-    system_fingerprint: str
-    """Hash of code, weights, kernels and options: everything frozen that decides a trial."""
-    arms: int
-    trials: int
-
-
 class Reproduction(_Frozen):
     """Ledger, tables and figures of one run, in the order in which they are read."""
 
@@ -126,9 +114,5 @@ class Reproduction(_Frozen):
     ledger: Ledger
     tables: tuple[Table, ...]
     figures: tuple[Sweep, ...]
-    configurations: tuple[Configuration, ...]
     trials: int
     failed_trials: int
-    flown: tuple[str, str] | None
-    """When the first and the last block of trials were written, over all invocations; `None` where
-    nothing had to be flown."""

@@ -1,11 +1,13 @@
 """Entries of tables as data: what each is made of, how, and the paper's figure beside it."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 from faultpath.evidence import Measurement
 from faultpath.record import wording
+from faultpath.statistics import Contrast
 from faultpath.studies.cells import Cell, of_seed
+from faultpath.studies.quantities.differences import contrast
 from faultpath.studies.quantities.windows import mean_of_medians
 from faultpath.studies.results import NotRun, Quantity, Results, Undecidable
 from faultpath.tables import MISSING, Entry
@@ -66,16 +68,6 @@ def success(cell: Cell, paper: Figure = "") -> Group:
     return Group(make, (printed(paper),), (cell,))
 
 
-def seed_range(cell: Cell, ends: Sequence[int]) -> Group:
-    """Least and greatest success of a seed, percent."""
-
-    def make(results: Results) -> Made:
-        per_seed = results.rate(cell).per_seed or ()
-        return ("–".join(dict.fromkeys(wording.plain(end(per_seed), 0) for end in (min, max))),)
-
-    return Group(make, ("–".join(map(str, ends)),), (cell,))
-
-
 def ended(cell: Cell, status: Status, paper: Figure = "") -> Group:
     """Share of seed 0's trials that ended in a way, percent; failed trials do not count."""
 
@@ -96,17 +88,6 @@ def time(cell: Cell, paper: float) -> Group:
         (printed(paper, 2),),
         (of_seed(cell),),
     )
-
-
-def successes(cell: Cell, scenes: Iterable[int], paper: int | Sequence[int]) -> Group:
-    """Successful scenes among those of some indices, seed by seed, such as `14/15/14`."""
-    indices, counts = tuple(scenes), (paper,) if isinstance(paper, int) else paper
-
-    def make(results: Results) -> Made:
-        pairs = results.pairs(cell, cell, scenes=indices)
-        return ("/".join(map(str, pairs.first.success.sum(axis=0))),)
-
-    return Group(make, ("/".join(map(str, counts)),), (cell,))
 
 
 def measured(
@@ -148,3 +129,51 @@ def of_quantity(
         return Entry(text=value, detected=bold), ends or MISSING
 
     return Group(make, published, tuple(cells), tuple(measurements))
+
+
+@dataclass(frozen=True)
+class PublishedContrast:
+    """What the paper prints of a contrast; empty where it prints nothing."""
+
+    difference: str = ""
+    interval: str = ""
+    wins_losses: str = ""
+    p_value: str = ""
+    detectable: str = ""
+
+
+def published_contrasts(
+    differences: Sequence[float],
+    intervals: Sequence[Sequence[float]],
+    wins_losses: Sequence[Sequence[str]],
+) -> tuple[PublishedContrast, ...]:
+    """Return contrasts that the paper prints in a row: pp, ends of intervals, `2:15` by seed."""
+    return tuple(
+        PublishedContrast(wording.signed(pp), bracket(ends), "/".join(counts))
+        for pp, ends, counts in zip(differences, intervals, wins_losses, strict=True)
+    )
+
+
+def difference(first: Cell, second: Cell, published: PublishedContrast) -> Group:
+    """Difference, interval, wins:losses, p-value and least detectable difference of two cells."""
+    return Group(
+        lambda results: _entries(contrast(results, first, second)),
+        astuple(published),
+        (first, second),
+    )
+
+
+def _entries(found: Contrast) -> Made:
+    assert found.test is not None
+    return (
+        decided(found),
+        wording.interval(found.estimate()) or MISSING,
+        str(found.counts),
+        wording.p_value(found.test.p_value),
+        "none" if found.least is None else wording.plain(found.least),
+    )
+
+
+def decided(found: Contrast) -> Entry:
+    """Return a difference, bold where it is detected."""
+    return Entry(text=wording.signed(found.value), detected=bool(found.detected))

@@ -4,7 +4,6 @@ import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from faultpath.execution import RunResult
@@ -42,8 +41,6 @@ class Flown:
 
     legs: tuple[Leg, ...]
     results: tuple[RunResult, ...]
-    written: tuple[str, str] | None
-    """When the first and the last block were written, by this and by earlier invocations."""
 
     @property
     def outcomes(self) -> OutcomeTable:
@@ -99,20 +96,7 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
         place = folder / FLIGHTS / leg.folder
         results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))
         before += leg.trials
-    return Flown(tuple(legs), tuple(results), _written(folder, legs))
-
-
-def _written(folder: Path, legs: Iterable[Leg]) -> tuple[str, str] | None:
-    shards = [
-        path
-        for leg in legs
-        for path in (folder / FLIGHTS / leg.folder / "shards").glob("*.parquet")
-    ]
-    moments = [datetime.fromtimestamp(path.stat().st_mtime, UTC) for path in shards]
-    if not moments:
-        return None
-    first, last = min(moments), max(moments)
-    return first.isoformat(timespec="seconds"), last.isoformat(timespec="seconds")
+    return Flown(tuple(legs), tuple(results))
 
 
 def _row(system: System, cell: Cell, seed: int) -> Row:

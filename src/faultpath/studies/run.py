@@ -10,7 +10,7 @@ from faultpath.evidence import EvidenceTable, Measurement
 from faultpath.execution import RunResult
 from faultpath.files.opening import LARGEST_TEXT, contents
 from faultpath.files.plain import Misread, model_of
-from faultpath.record import Configuration, Reproduction, RunProvenance, Sweep
+from faultpath.record import Reproduction, RunProvenance, Sweep
 from faultpath.store import (
     RunFolder,
     read_evidence,
@@ -120,7 +120,7 @@ def measure_all(
     return EvidenceTable({asked: found.values(own) for asked, own in wanted.items()})
 
 
-def conclude(plan: Plan, flown: Flown, results: Results) -> Reproduction:
+def conclude(plan: Plan, results: Results) -> Reproduction:
     """Evaluate pages and claims."""
     library = plan.system.library(HELD_OUT)
     built = [part for page in plan.pages for part in page.build(results)]
@@ -137,20 +137,8 @@ def conclude(plan: Plan, flown: Flown, results: Results) -> Reproduction:
         ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),
-        configurations=tuple(
-            Configuration(
-                setting=leg.study.name,
-                library=leg.study.library,
-                library_hash=result.library_hash,
-                system_fingerprint=result.system_fingerprint,
-                arms=len(leg.study.arms()),
-                trials=leg.trials,
-            )
-            for leg, result in zip(flown.legs, flown.results, strict=True)
-        ),
         trials=len(rows),
         failed_trials=sum(row.outcome.failed for row in rows),
-        flown=flown.written,
     )
 
 

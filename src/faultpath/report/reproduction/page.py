@@ -7,7 +7,6 @@ from faultpath.record.reproduction import Reproduction
 from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
 from faultpath.report.reproduction import words
-from faultpath.report.reproduction.glossary import GLOSSARY
 from faultpath.tables import Table
 from faultpath.tables.html import html
 
@@ -34,7 +33,6 @@ def reproduction_page(
             "table": Markup(html(central[1])),
             "notes": (*central[1].legend(), *central[1].notes),
         },
-        glossary=GLOSSARY,
         tables=[(table, Markup(html(table, "beside", caption=False))) for table in found.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},
         sweeps=[

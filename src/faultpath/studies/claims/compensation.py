@@ -10,11 +10,13 @@ from faultpath.studies.claims.rules import (
     within,
 )
 from faultpath.studies.claims.statement import Statement, Statements
-from faultpath.studies.pages import table_4, table_6, text_mechanism
+from faultpath.studies.pages import in_text, table_4, table_6
 from faultpath.studies.published import Printed, published
+from faultpath.studies.quantities.summaries import rank_correlation
 from faultpath.studies.quantities.windows import (
     Subject,
     difference_of_changes,
+    difference_of_quantiles,
     ratio,
 )
 
@@ -96,22 +98,28 @@ CLAIMS: dict[str, Statements] = {
     ),
     "C34": tuple(
         Statement(
-            f"rank correlation of success with {error} over {len(text_mechanism.NINE)} cells",
-            quantity,
+            f"rank correlation of success with {error} over {len(in_text.NINE)} cells",
+            rank_correlation(
+                [
+                    (table_4.cell(method, path), table_6.by_seed(measure, method, path))
+                    for method, path in in_text.NINE
+                ]
+            ),
             by_point(-1, -0.5, strict=False),
             Printed(_CORRELATIONS[key]),
         )
-        for error, key, quantity in zip(
-            ("acceleration error", "20-step position error"),
-            ("analytic_acceleration_error", "position_error_20_step"),
-            text_mechanism.RANKED,
-            strict=True,
+        for error, key, measure in (
+            ("acceleration error", "analytic_acceleration_error", table_6.acceleration_error),
+            ("20-step position error", "position_error_20_step", table_6.position_error),
         )
     ),
     "C35": (
         Statement(
             "median position error with GRU, shared minus reconstruction-only,",
-            text_mechanism.RISE,
+            difference_of_quantiles(
+                table_6.by_seed(table_6.position_error, GRU, SHARED),
+                table_6.by_seed(table_6.position_error, GRU, ISOLATED),
+            ),
             NO_LOSS,
         ),
     ),

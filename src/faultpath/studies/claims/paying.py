@@ -16,8 +16,7 @@ from faultpath.studies.claims.rules import (
     points_decide,
     telling,
 )
-from faultpath.studies.claims.sizes import size
-from faultpath.studies.claims.statement import Statements, beside
+from faultpath.studies.claims.statement import Statements, beside, size
 from faultpath.studies.pages import table_5
 from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import together

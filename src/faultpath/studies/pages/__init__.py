@@ -3,28 +3,22 @@
 from faultpath.studies.page import Page
 from faultpath.studies.pages import (
     figure_3,
+    in_text,
     table_1,
     table_2,
     table_3,
     table_4,
     table_5,
     table_6,
-    text_calibration,
-    text_mechanism,
-    text_planning,
-    text_wind,
 )
 
 PAGES: tuple[Page, ...] = (
     table_1.PAGE,
     table_2.PAGE,
     figure_3.PAGE,
-    text_calibration.PAGE,
     table_3.PAGE,
     table_4.PAGE,
     table_5.PAGE,
-    text_wind.PAGE,
     table_6.PAGE,
-    text_mechanism.PAGE,
-    text_planning.PAGE,
+    in_text.PAGE,
 )

@@ -3,8 +3,7 @@
 from faultpath.evidence import Measurement
 from faultpath.record import Point, Series, Sweep
 from faultpath.studies.cells import SELECTION, Cell, Setting
-from faultpath.studies.notes import flown
-from faultpath.studies.page import Page
+from faultpath.studies.page import Page, flown
 from faultpath.studies.pages.table_2 import NAMES, faults
 from faultpath.studies.published import published
 from faultpath.studies.results import NotRun, Results

@@ -1,8 +1,9 @@
-"""Results that the paper reports in its text only."""
+"""Results that the paper reports in its text only: the claims about them hold their figures."""
 
 from faultpath.evidence import Measurement, Recording
-from faultpath.studies.cells import SEEDS, SELECTION, Cell, Setting, calibration
-from faultpath.studies.pages import table_1, table_2, table_3, table_4
+from faultpath.studies.cells import SEEDS, SELECTION, Cell, Setting, calibration, of_seed
+from faultpath.studies.page import Page
+from faultpath.studies.pages import table_1, table_2, table_3, table_4, table_6
 
 NOISE = "noisy_state=1"
 """State noise and delay (paper, Section IV-A: supplementary evaluation)."""
@@ -87,4 +88,34 @@ WINDY_SUBJECTS = (
     "wm-a-wind/true-wind",
     table_3.WITHHELD,
     "wm-a-wind/zero-wind",
+)
+
+NINE = tuple((method, path) for method in table_4.METHODS for path in table_4.PATHS)
+"""Methods and interfaces of Table IV."""
+MECHANISM = tuple(
+    error
+    for measure in (table_6.acceleration_error, table_6.position_error)
+    for method, path in NINE
+    for error in table_6.by_seed(measure, method, path)
+)
+"""Errors of the analytic acceleration and of the full prediction, of each of the nine."""
+
+PAGE = Page(
+    "text",
+    "Results in the text",
+    cells=(
+        *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
+        *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),
+        *(WIND_UPDATED, WIND_FROZEN, CODE_UPDATED, CODE_FROZEN, WITHHELD_UPDATED, WITHHELD_FROZEN),
+        CALIBRATION_WITHHELD,
+        *(table_4.cell(method, path) for method, path in NINE),
+        *map(of_seed, CEILING),
+        REFERENCE_PLANNER,
+        *OTHER_PLANNERS.values(),
+    ),
+    measurements=(
+        *(response(model, probe) for model in ("wm-a", "wm-a+dcc") for probe in PROBES),
+        *map(windy_error, WINDY_SUBJECTS),
+        *MECHANISM,
+    ),
 )

@@ -1,25 +1,14 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
 from faultpath.evidence import Measurement, Recording
-from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, Setting
 from faultpath.studies.entries import (
-    Group,
-    Made,
     centimetres,
     ended,
-    of_quantity,
-    printed,
-    seed_range,
     time,
 )
-from faultpath.studies.notes import INTERVALS, WINDOWS
-from faultpath.studies.page import Page, Row, TableSpec
+from faultpath.studies.page import WINDOWS, Page, Row, TableSpec
 from faultpath.studies.published import published
-from faultpath.studies.quantities.differences import time as time_difference
-from faultpath.studies.quantities.windows import quantile
-from faultpath.studies.results import Results
-from faultpath.tables import MISSING
 from faultpath.trials import Status
 
 STILL = Setting()
@@ -77,28 +66,6 @@ def _row(key: str, cell: Cell) -> Row:
     )
 
 
-def _later(key: str, cell: Cell) -> Row:
-    """Median difference in time to WM-A over jointly successful scenes, s, with their number."""
-    quantity, paper = time_difference(cell, WM_A), _PAPER["paired_time_minus_WM-A_s"][key]
-
-    def make(results: Results) -> Made:
-        value, ends = of_quantity(quantity, digits=2).entries(results)
-        return (f"{value.text} {ends.text} (n = {quantity(results).n_scenes})",)
-
-    printed_by_paper = f"{wording.signed(paper['median'], 2)} (n = {paper['n']})"
-    group = Group(make, (printed_by_paper,), (cell, WM_A))
-    return Row(f"Time, {key} minus WM-A (s)", (group,))
-
-
-def _span(results: Results) -> Made:
-    errors = [quantile(results, common_error(cell)) for cell in PREDICTORS]
-    return (wording.plain(max(errors) / min(errors)) if min(errors) else MISSING,)
-
-
-_SPAN = Group(
-    _span, (printed(_PAPER["error_span"]),), measurements=tuple(map(common_error, PREDICTORS))
-)
-
 PAGE = Page(
     "table-1",
     TITLE,
@@ -129,29 +96,6 @@ PAGE = Page(
                 "those that the row itself flew.",
                 "Common: {recorded}",
                 "Time: median over successful trials.",
-            ),
-        ),
-        TableSpec(
-            name="table-1-below",
-            title="Span of errors, paired times and seeds (paper, Table I, below)",
-            columns=("Value",),
-            rows=(
-                Row("Largest to smallest common error", (_SPAN,)),
-                _later("DKI", DKI),
-                _later("true-parameter", TRUE_PARAMETER),
-                *(
-                    Row(
-                        f"Success of {key} over seeds (%)",
-                        (seed_range(cell, _PAPER["success_range_over_seeds"][key]),),
-                    )
-                    for key, cell in (("WM-A", WM_A), ("WM-U", WM_U))
-                ),
-            ),
-            notes=(
-                "{flown}",
-                "Times: median of the differences within jointly successful scenes, n of them, "
-                "seed 0.",
-                INTERVALS,
             ),
         ),
     ),

@@ -3,10 +3,23 @@
 from faultpath.evidence import Measurement
 from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, calibration, of_seed
-from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
-from faultpath.studies.entries import Group, centimetres
-from faultpath.studies.notes import INTERVALS, WINDOWS, WINS
-from faultpath.studies.page import Page, Row, Rows, TableSpec, rates
+from faultpath.studies.entries import (
+    Group,
+    PublishedContrast,
+    centimetres,
+    published_contrasts,
+)
+from faultpath.studies.page import (
+    INTERVALS,
+    WINDOWS,
+    WINS,
+    Page,
+    Row,
+    Rows,
+    TableSpec,
+    differences,
+    rates,
+)
 from faultpath.studies.pages.table_1 import COMMON, STILL
 from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.windows import quantile

@@ -3,12 +3,8 @@
 The paper averages some rows over three seeds; all others use the first.
 """
 
-from dataclasses import replace
-
 from faultpath.studies.cells import SEEDS, Cell, Setting
-from faultpath.studies.entries import successes
-from faultpath.studies.notes import EVERY_NOISE
-from faultpath.studies.page import Page, Row, Rows, TableSpec, rates
+from faultpath.studies.page import EVERY_NOISE, Page, Row, Rows, TableSpec, rates
 from faultpath.studies.published import published
 
 LEVELS = ("L0", "L2", "L3")
@@ -23,9 +19,6 @@ WITHHELD, ZERO, TRAJECTORY, GRU, TRUE = (
 )
 ZERO_OF_EVERY_SEED = "wm-a-wind/zero-wind"
 """The zero input to the predictor of the arm's seed; `zero-wind` has that of seed 0."""
-
-UNSEEN = range(70, 100)
-"""Scene indices that the trajectory-trained reconstruction never met the wind of."""
 
 
 def cell(variant: str, environment: str, level: str) -> Cell:
@@ -70,19 +63,6 @@ def _levels(environment: str) -> Rows:
     return Row(_HEADINGS[environment]), *rows
 
 
-def _unseen(variant: str, key: str, seeds: tuple[int, ...]) -> Row:
-    papers = _PAPER["unseen_wind_subset_L3"][key]
-    groups = (
-        successes(
-            replace(cell(variant, environment, "L3"), seeds=seeds),
-            UNSEEN,
-            papers[environment.replace("-", "_")],
-        )
-        for environment in ENVIRONMENTS
-    )
-    return Row(ROWS[variant][0], tuple(groups))
-
-
 PAGE = Page(
     "table-3",
     TITLE,
@@ -98,20 +78,6 @@ PAGE = Page(
                 "obstacles at L3 every row is such a mean here; in the paper only those of the "
                 f"reconstructions are. {EVERY_NOISE}",
                 "At L0 the true wind is zero; those entries are the zero-input runs.",
-            ),
-        ),
-        TableSpec(
-            name="table-3-unseen",
-            title="Winds that the trajectory GRU was not trained on, L3 (paper, Table III, below)",
-            columns=tuple(_HEADINGS.values()),
-            rows=(
-                _unseen(TRAJECTORY, "trajectory-GRU_seeds", SEEDS),
-                _unseen(ZERO, "zero", (0,)),
-                _unseen(TRUE, "ground-truth", (0,)),
-            ),
-            notes=(
-                f"Successful scenes among those with indices {UNSEEN[0]}–{UNSEEN[-1]}. Trajectory "
-                "GRU: seed by seed; the others: seed 0.",
             ),
         ),
     ),

@@ -5,10 +5,25 @@ from typing import Any
 
 from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, Setting, calibration
-from faultpath.studies.contrasts import PublishedContrast, differences, published_contrasts
-from faultpath.studies.entries import Group, bracket, of_quantity
-from faultpath.studies.notes import EVERY_NOISE, INTERVALS, WINS
-from faultpath.studies.page import Columns, Page, Row, Rows, TableSpec, rates
+from faultpath.studies.entries import (
+    Group,
+    PublishedContrast,
+    bracket,
+    of_quantity,
+    published_contrasts,
+)
+from faultpath.studies.page import (
+    EVERY_NOISE,
+    INTERVALS,
+    WINS,
+    Columns,
+    Page,
+    Row,
+    Rows,
+    TableSpec,
+    differences,
+    rates,
+)
 from faultpath.studies.published import Printed, published
 from faultpath.studies.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath.studies.results import Quantity

@@ -3,10 +3,8 @@
 from faultpath.record import wording
 from faultpath.statistics import break_even
 from faultpath.studies.cells import Cell
-from faultpath.studies.contrasts import decided
-from faultpath.studies.entries import Group, Made
-from faultpath.studies.notes import INTERVALS
-from faultpath.studies.page import Page, Row, TableSpec
+from faultpath.studies.entries import Group, Made, decided
+from faultpath.studies.page import INTERVALS, Page, Row, TableSpec
 from faultpath.studies.pages import table_2, table_4
 from faultpath.studies.published import published
 from faultpath.studies.quantities.differences import together

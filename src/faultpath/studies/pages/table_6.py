@@ -5,8 +5,7 @@ from collections.abc import Callable
 from faultpath.evidence import Measurement
 from faultpath.record import wording
 from faultpath.studies.cells import SEEDS, Cell, calibration
-from faultpath.studies.contrasts import PublishedContrast, difference
-from faultpath.studies.entries import BLANK, Group, measured
+from faultpath.studies.entries import BLANK, Group, PublishedContrast, difference, measured
 from faultpath.studies.page import Columns, Page, Row, TableSpec, rates
 from faultpath.studies.pages.table_1 import recording
 from faultpath.studies.pages.table_4 import ERROR, METHODS, NAMES, PATHS, WINDY
