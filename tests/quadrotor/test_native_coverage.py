@@ -23,7 +23,7 @@ from faultpath.quadrotor.predictors import (
     Memory,
     Predictor,
 )
-from faultpath.quadrotor.predictors.compiled import horizon_loop, uncovered
+from faultpath.quadrotor.predictors.compiled import HorizonLoop, uncovered
 from faultpath.quadrotor.predictors.drag import LinearDrag
 from faultpath.quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath.quadrotor.state import State
@@ -140,7 +140,7 @@ def test_what_the_kernel_cannot_stand_for_is_refused_with_a_reason(
     model = make()
     assert uncovered(model)
     with pytest.raises(ValueError, match=why):
-        horizon_loop(native.load(native.available()[0]), model)
+        HorizonLoop(native.load(native.available()[0]), model)
 
 
 @torch.inference_mode()

@@ -11,7 +11,7 @@ from faultpath.quadrotor import native
 from faultpath.quadrotor.device import CPU
 from faultpath.quadrotor.native.lending import is_exactly, tell_portable
 from faultpath.quadrotor.predictors import Predictor, PredictorInputs, TrueParameter
-from faultpath.quadrotor.predictors.compiled import horizon_loop, named, uncovered
+from faultpath.quadrotor.predictors.compiled import HorizonLoop, uncovered
 from faultpath.quadrotor.state import State
 
 
@@ -68,12 +68,12 @@ def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
         if not is_exactly(predictor, TrueParameter):  # of which there never was a kernel
             tell_portable(f"The predictor {type(predictor).__name__}", why)
         return partial(rollout, predictor)
-    loop = horizon_loop(built, predictor)
+    loop = HorizonLoop(built, predictor)
 
     def roll(inputs: PredictorInputs, commands: Tensor) -> Rollout:
         if commands.shape[-1] == 1:
             return rollout(predictor, inputs, commands)
-        positions, velocities, rotation, rate = loop(named(inputs), commands)
+        positions, velocities, rotation, rate = loop(inputs, commands)
         final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
         return Rollout(positions, velocities, final)
 
