@@ -71,8 +71,6 @@ def kept(episode):
 
 
 def plant(environment=Walk, **given):
-    if "vector" in given:
-        environment = None
     given = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | given
     return GymnasiumPlant(environment, action="push", **given)
 

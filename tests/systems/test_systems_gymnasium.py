@@ -4,11 +4,9 @@ import sys
 from functools import partial
 from pathlib import Path
 
-import gymnasium
 import numpy as np
 import pytest
 from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
-from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 import faultpath
 from faultpath.errors import SystemMistake, UserError
@@ -32,25 +30,11 @@ class Choose(Module):
         return {"push": (inputs["place", "feedback"] < 0).astype(int)}, memory
 
 
-def vector(count, mode=AutoresetMode.NEXT_STEP, copy=True):
-    return SyncVectorEnv([Walk] * count, autoreset_mode=mode, copy=copy)
-
-
 def told(outcomes):
     return [(o.scene, o.status, o.time_s, o.initial_hash) for o in outcomes]
 
 
-@pytest.mark.parametrize("mode", AutoresetMode)
-@pytest.mark.parametrize("copy", [True, False])
-def test_each_mode_of_autoreset_ends_the_same_episodes_in_the_same_way(mode, copy):
-    alone = fly(system(plant()))
-    assert {o.status for o in alone} == {Status.SUCCESS, Status.CRASH}
-    assert len({o.time_s for o in alone}) > 2
-    assert told(fly(system(plant(vector=partial(vector, mode=mode, copy=copy))))) == told(alone)
-
-
-@pytest.mark.parametrize("mode", AutoresetMode)
-def test_a_finished_episode_is_frozen_as_it_ended(mode):
+def test_a_finished_episode_is_frozen_as_it_ended():
     episodes = []
 
     def note(episode):
@@ -68,7 +52,7 @@ def test_a_finished_episode_is_frozen_as_it_ended(mode):
             self.clocks.append(inputs["clock", "watch"].copy())
             return super().step(inputs, memory)
 
-    built = system(plant(vector=partial(vector, mode=mode), **seen), [Watch()], **units)
+    built = system(plant(**seen), [Watch()], **units)
     Watch.clocks.clear()
     ends = [round(o.time_s / 0.5) for o in fly(built)]
     assert sorted(len(e.rewards) for e in episodes) == sorted(ends)
@@ -200,17 +184,6 @@ def test_libraries_are_seeds():
         built.library("held-out")
 
 
-def unnamed(count):
-    envs = vector(count)
-    del envs.metadata["autoreset_mode"]
-    return envs
-
-
-def test_the_first_version_did_not_name_its_one_mode(monkeypatch):
-    monkeypatch.setattr(gymnasium, "__version__", "1.0.0")
-    assert told(fly(system(plant(vector=unnamed)))) == told(fly(system(plant())))
-
-
 class Whole(Steer):
     def step(self, inputs, memory):
         return {"push": np.zeros((len(inputs["place", "feedback"]), 2))}, memory
@@ -223,7 +196,6 @@ class Whole(Steer):
         (lambda: plant(observes={"place": "at"}), "holds no such part"),
         (lambda: plant(dt_s=None, environment="CartPole-v1"), "does not say dt_s: give it"),
         (lambda: plant(steps=None), "does not say steps: give it"),
-        (lambda: plant(None), "give an environment, or else a vector"),
         (lambda: system(plant(), units={"place": ""}, modules=[Choose()]), "'eye' has no unit"),
         (
             lambda: fly(system(plant(), [Whole()])),
@@ -236,12 +208,6 @@ class Whole(Steer):
         (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
         (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
         (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
-        (lambda: plant(vector=lambda n: vector(n + 1)), "asked for 1 environments and returned 2"),
-        (lambda: plant(vector=unnamed), r"metadata\['autoreset_mode'\].* is None"),
-        (
-            lambda: plant(vector=partial(gymnasium.make_vec, "CartPole-v1"), dt_s=0.1),
-            "takes no list of seeds",
-        ),
     ],
 )
 def test_mistakes_are_told_in_a_sentence(make, said):

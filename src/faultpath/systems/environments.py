@@ -33,7 +33,7 @@ def code(env: Any) -> tuple[str, ...]:
 
     What is registered under an id is imported by nobody, and its code counts all the same.
     """
-    parts: list[Any] = [env, *getattr(env.unwrapped, "envs", ())]
+    parts: list[Any] = [env]
     while hasattr(parts[-1], "env"):
         parts.append(parts[-1].env)
     names = ((part.__class__.__module__, part.__class__.__name__) for part in parts)
