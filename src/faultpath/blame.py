@@ -6,7 +6,6 @@ decides.
 """
 
 import os
-import re
 import sys
 import sysconfig
 import traceback
@@ -23,12 +22,6 @@ _STANDARD = tuple(
     os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
 )
 _PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
-
-_OLD_METRIC = re.compile(
-    r"\b(Outcome|Progress)\.__init__\(\) got an unexpected keyword argument "
-    r"'(terminal_distance_m|min_clearance_m)'"
-)
-"""A call that an earlier version took."""
 
 _systems: set[str] = set()
 """Folders of systems that are loaded, for those that are installed packages themselves."""
@@ -62,12 +55,6 @@ def described(error: BaseException) -> str:
         said = error.msg if isinstance(error, SyntaxError) else str(error)
     except Exception:  # an error of the system's own may fail even at that
         said = ""
-    if isinstance(error, TypeError) and (old := _OLD_METRIC.search(said)):
-        holder, name = old.groups()
-        said += (
-            f" (since version 0.2 a measure is a metric: give {holder} metrics={{'{name}': ...}}, "
-            "and name it in the system's `metrics`)"
-        )
     return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
 
 
@@ -81,29 +68,24 @@ def located(error: UserError) -> UserError:
 def explained(error: BaseException) -> UserError | None:
     """Return what to tell the author of a system; `None` for an error that is faultpath's own.
 
-    - An error raised in the system's code is its author's.
-    - So is a `SystemMistake`, with which faultpath refuses what that code hands it.
-    - An error raised in faultpath's code is faultpath's own. Where the system's code called it and
-      the error is of a kind that a wrong argument causes, either may be at fault, and the
-      sentence says so.
+    An error raised in the system's code is its author's. Where that code called faultpath's, and
+    the error is of a kind that a wrong argument causes, either may be at fault.
     """
     if isinstance(error, UserError):
         return located(error)
     found, innermost = place(error), next(_frames(error), "")
-    if not found:
+    if not found or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
         return None
     what = described(error)
     if isinstance(error, SystemExit):
         said = f"the system ends the program ({what}); let it raise an error instead"
     elif innermost:
         said = f"{what}; correct the system there, or see all of it with --traceback"
-    elif isinstance(error, _MISUSE):
+    else:
         said = (
             f"faultpath fails on what it is handed there ({what}); correct the call, or see with "
             "--traceback whether the fault is faultpath's"
         )
-    else:
-        return None
     mistake = SystemMistake(said)
     mistake.place, mistake.__cause__ = found, error
     return mistake

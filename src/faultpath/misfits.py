@@ -15,40 +15,38 @@ if TYPE_CHECKING:
 
 _BRANCH = re.compile(r".*[\[(].*|constrained-.*|float|int|str|bool|none|[A-Z]\w*")
 """What stands in a place for a branch that was tried and is no key: `float`, `literal['fit']`."""
-_NUMBERS = "a number"
-_WHOLE = "a whole number"
-_LIST = "a list"
-_FIELDS = "a group of fields, `name: value`"
+_NUMBER, _WHOLE = "a number", "a whole number"
 _KINDS = {
     "string": "text",
+    "bytes": "text",
     "int": _WHOLE,
-    "float": _NUMBERS,
-    "decimal": _NUMBERS,
-    "complex": _NUMBERS,
     "finite": "a finite number",
     "bool": "true or false",
-    "tuple": _LIST,
-    "list": _LIST,
-    "set": _LIST,
-    "frozen": _LIST,
-    "iterable": _LIST,
-    "dict": _FIELDS,
-    "mapping": _FIELDS,
-    "model": _FIELDS,
-    "dataclass": _FIELDS,
     "none": "nothing",
     "path": "a path",
-    "bytes": "text",
+    **dict.fromkeys(("float", "decimal", "complex"), _NUMBER),
+    **dict.fromkeys(("tuple", "list", "set", "frozen", "iterable"), "a list"),
+    **dict.fromkeys(("dict", "mapping", "model", "dataclass"), "a group of fields, `name: value`"),
 }
 """What is allowed, by the first word of a kind of error."""
-_BOUNDS = {
-    "greater_than": ("gt", "above"),
-    "greater_than_equal": ("ge", "of at least"),
-    "less_than": ("lt", "below"),
-    "less_than_equal": ("le", "of at most"),
-    "multiple_of": ("multiple_of", "that is a multiple of"),
+_WITH = {
+    "greater_than": "a number above {gt:g}",
+    "greater_than_equal": "a number of at least {ge:g}",
+    "less_than": "a number below {lt:g}",
+    "less_than_equal": "a number of at most {le:g}",
+    "multiple_of": "a multiple of {multiple_of:g}",
+    "literal_error": "{expected}",
+    "enum": "{expected}",
+    "union_tag_invalid": "of the {discriminator} {expected_tags}",
+    "union_tag_not_found": "fields with a {discriminator} among them",
+    "string_pattern_mismatch": "text of the form {pattern}",
+    "string_too_short": "text of at least {min_length} characters",
+    "string_too_long": "text of at most {max_length} characters",
+    "too_short": "of at least {min_length} values, and has {actual_length}",
+    "too_long": "of at most {max_length} values, and has {actual_length}",
+    "is_instance_of": "a {class}",
 }
-_LENGTHS = {"too_short": "min_length", "too_long": "max_length"}
+"""What is allowed, by the kind of error, with what the error says of it."""
 _SHOWN = 60
 
 
@@ -82,10 +80,8 @@ def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) 
     if where := first.get("ctx", {}).get("where"):  # a sentence of faultpath's own
         return Misfit(tuple(where), str(first["msg"]), len(found) - 1, names_it=True)
     if first["type"] == "missing":
-        beside = first["loc"][:-1]
-        if isinstance(first["loc"][-1], int):
-            return _short_list(found, _place(first)[:-1])
         # What is misspelt is missing as well; the word that stands there says more.
+        beside = first["loc"][:-1]
         strange = (e for e in found if e["type"] == "extra_forbidden" and e["loc"][:-1] == beside)
         first = next(strange, first)
     place = _place(first)
@@ -104,64 +100,30 @@ def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
     )
 
 
-def _short_list(found: Sequence[Mapping[str, Any]], place: tuple[str | int, ...]) -> Misfit:
-    missing = [p[-1] for each in found if (p := _place(each))[:-1] == place and p != place]
-    at = [index for index in missing if isinstance(index, int)]
-    says = f"has {_counted(min(at))}, and {max(at) + 1} belong there: add what is missing"
-    rest = {_place(each) for each in found if _place(each)[:-1] != place}
-    return Misfit(place, says, len(rest))
-
-
 def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
     """Say what is wrong at one place: `errors` are of the branches that were tried."""
     first = errors[0]
-    kind, context, given = str(first["type"]), first.get("ctx", {}), first["input"]
-    match kind:
-        case "missing":
-            return "is missing: add it"
-        case "extra_forbidden":
-            name = str(first["loc"][-1])
-            told = unknown("field", name, known).removeprefix(f"unknown field '{name}'")
-            return f"is no field{told if known else ''}; correct its spelling or drop it"
-        case "value_error" | "assertion_error":
-            return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
-        case "json_invalid":
-            return f"is not JSON ({context.get('error', 'damaged')})"
-        case "too_short" | "too_long":
-            least = "at least" if kind == "too_short" else "at most"
-            count = int(context[_LENGTHS[kind]])
-            return f"has {_counted(int(context['actual_length']))}, and takes {least} {count}"
-        case _:
-            pass
+    kind, context = str(first["type"]), first.get("ctx", {})
+    if kind == "missing":
+        return "is missing: add it"
+    if kind == "extra_forbidden":
+        name = str(first["loc"][-1])
+        told = unknown("field", name, known).removeprefix(f"unknown field '{name}'")
+        return f"is no field{told if known else ''}; correct its spelling or drop it"
+    if kind in ("value_error", "assertion_error"):
+        return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
     allowed = [said for said in dict.fromkeys(map(_allowed, errors)) if said]
-    if {_NUMBERS, _WHOLE} <= set(allowed):
+    if {_NUMBER, _WHOLE} <= set(allowed):
         allowed.remove(_WHOLE)
     must = f"and must be {' or '.join(allowed)}" if allowed else "which does not fit"
-    return f"is {_shown(given)}, {must}"
+    return f"is {_shown(first['input'])}, {must}"
 
 
 def _allowed(error: Mapping[str, Any]) -> str:
-    kind, context = str(error["type"]), error.get("ctx", {})
-    if kind in _BOUNDS:
-        key, said = _BOUNDS[kind]
-        return f"{_NUMBERS} {said} {context[key]:g}"
-    match kind:
-        case "literal_error" | "enum":
-            return str(context["expected"])
-        case "union_tag_invalid":
-            return f"of the {context['discriminator']} {context['expected_tags']}"
-        case "union_tag_not_found":
-            return f"fields with a {context['discriminator']} among them"
-        case "string_pattern_mismatch":
-            return f"text of the form {str(context['pattern']).strip('^$')}"
-        case "string_too_short":
-            return f"text of at least {context['min_length']} characters"
-        case "string_too_long":
-            return f"text of at most {context['max_length']} characters"
-        case "is_instance_of":
-            return f"a {context['class']}"
-        case _:
-            return _KINDS.get(kind.partition("_")[0], "")
+    kind = str(error["type"])
+    if kind in _WITH:
+        return _WITH[kind].format_map(error.get("ctx", {}))
+    return _KINDS.get(kind.partition("_")[0], "")
 
 
 def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
@@ -174,10 +136,6 @@ def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
         field = model.model_fields.get(names[0])
         return () if field is None else _fields(field.annotation, names[1:])
     return tuple(name for part in get_args(model) for name in _fields(part, place))
-
-
-def _counted(count: int) -> str:
-    return f"{count} value{'s' * (count != 1)}"
 
 
 def _shown(given: object) -> str:

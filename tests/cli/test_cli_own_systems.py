@@ -11,10 +11,6 @@ from unittest.mock import Mock
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath.blame import described
-from faultpath.loop.module import Progress
-from faultpath.trials import Outcome
-
 HEAD = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "examples")!r})
@@ -175,19 +171,6 @@ def test_a_module_that_does_what_it_does_not_declare(code, says, tmp_path):
         """
     system, place = _system(tmp_path, dedent(module))
     _check(audit(system=system, out=tmp_path / "run").refused(), place, says)
-
-
-@pytest.mark.parametrize("call", ["Outcome", "Progress"])
-def test_a_call_of_an_earlier_version_is_told_what_stands_for_it_now(call):
-    made = {"Outcome": Outcome, "Progress": Progress}[call]
-    with pytest.raises(TypeError) as caught:
-        made(terminal_distance_m=1.0)
-    told = described(caught.value)
-    assert f"give {call} metrics={{'terminal_distance_m': ...}}" in told
-    assert "since version 0.2" in told
-    with pytest.raises(TypeError) as caught:
-        made(wheels=4)
-    assert "metrics" not in described(caught.value)
 
 
 def test_an_error_of_ours_keeps_its_traceback(monkeypatch, tmp_path):

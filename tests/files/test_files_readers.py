@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from faultpath.execution.rechecks import Rechecks
 
 from faultpath.errors import UserError
 from faultpath.files.opening import contents
@@ -116,12 +115,6 @@ def test_what_is_no_file_is_refused_in_one_sentence(
         read(path)
     assert "\n" not in str(caught.value)
     assert path.exists() or thing == "socket"
-
-
-@pytest.mark.parametrize("thing", THINGS)
-def test_rechecks_that_are_no_file_are_as_good_as_none(thing: str, tmp_path: Path) -> None:
-    THINGS[thing](tmp_path / "rechecks.json")
-    assert Rechecks((), RunFolder(tmp_path), "").flown() == ()
 
 
 def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:

@@ -36,8 +36,11 @@ def misfit(model: type, given: object) -> Misfit:
     [
         ({"frame": "UP"}, "frame: is 'UP', and must be 'NED' or 'ENU'"),
         ({"fram": "NED"}, "fram: is no field; did you mean 'frame'?"),
-        ({"attitude": {"columns": ["q"], "order": "wxyz"}}, "has 1 value, and 4 belong there"),
-        ({"attitude": {"columns": [*"abcde"], "order": "wxyz"}}, "has 5 values, and takes at most"),
+        (
+            {"attitude": {"columns": ["q"], "order": "wxyz"}},
+            "attitude.columns[1]: is missing: add it",
+        ),
+        ({"attitude": {"columns": [*"abcde"], "order": "wxyz"}}, "of at most 4 values, and has 5"),
         ({"attitude": {"colums": [*"abcd"], "order": "wxyz"}}, "did you mean 'columns'?"),
         ({"thrust": {"column": ["x"]}}, "thrust.column: is ['x'], and must be text"),
         ({"thrust": {"column": "x", "newton_per_unit": "fot"}}, "must be a number or 'fit'"),
