@@ -1,6 +1,5 @@
 """Data and fitting of the clearance model: deterministic, resumable, split by scene, judged."""
 
-import json
 from dataclasses import fields
 from pathlib import Path
 
@@ -9,7 +8,6 @@ import torch
 
 from faultpath.errors import UserError
 from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint
-from faultpath.quadrotor.perception.camera import mounted
 from faultpath.quadrotor.perception.clearance import ClearanceModel
 from faultpath.quadrotor.perception.labels import (
     HIGHEST_M,
@@ -17,7 +15,6 @@ from faultpath.quadrotor.perception.labels import (
     between_pixels,
     visible_distance,
 )
-from faultpath.quadrotor.scenes.geometry import Geometry
 from faultpath.quadrotor.scenes.library import load_library
 from faultpath.quadrotor.training import clearance_data
 from faultpath.quadrotor.training.clearance_data import Recipe, Samples
@@ -27,8 +24,6 @@ from faultpath.quadrotor.training.clearance_task import (
     censored_loss,
     predict,
 )
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
-from faultpath.streams import generator
 
 SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
 
@@ -53,14 +48,6 @@ def test_labels_are_those_of_the_stored_images(samples: Samples):
         assert torch.equal(label, samples.clearance[i])
     assert between_pixels(samples.points.movedim(1, 0)).float().mean() > 0.4
     assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
-
-
-def test_images_are_level_as_the_mount_and_from_where_the_vehicle_fits():
-    scene = load_library("training")[7]
-    random = generator("clearance-data", scene.id, 0)
-    state = clearance_data._poses(SMALL.model_copy(update={"images": 40}), scene, random)
-    torch.testing.assert_close(mounted(state.rotation), state.rotation)
-    assert Geometry.stack([scene]).distance(state.position[:, None]).min() > COLLISION_RADIUS_M
 
 
 def test_a_scenes_samples_depend_on_the_recipe_and_the_scene_alone(samples: Samples):
@@ -94,17 +81,6 @@ def test_another_recipe_and_missing_data_are_refused(collected: Path, tmp_path: 
         clearance_data.read(tmp_path, SMALL)
 
 
-@pytest.mark.slow
-def test_two_processes_make_what_one_makes(tmp_path: Path, samples: Samples, monkeypatch):
-    library = load_library("training")
-    few = library.of("training", library.scenes[:3])
-    monkeypatch.setattr(clearance_data, "load_library", lambda name: few)
-    clearance_data.collect(tmp_path, SMALL, workers=2)
-    found = clearance_data.read(tmp_path, SMALL)
-    assert torch.equal(found.points, samples.points[: len(found)])
-    assert torch.equal(found.clearance, samples.clearance[: len(found)])
-
-
 @pytest.fixture(scope="module")
 def task(samples: Samples) -> ClearanceTask:
     made = ClearanceTask(0, Path(), SMALL)
@@ -127,28 +103,6 @@ def test_an_epoch_draws_the_same_augmentation_whatever_came_before(task: Clearan
     task.begin_epoch(3)
     assert torch.equal(mirrored, task._mirrored)
     assert torch.equal(chosen, task._chosen)
-
-
-def test_fitting_lowers_the_loss(task: ClearanceTask):
-    model = task.module()
-    optimiser = torch.optim.Adam(model.parameters(), lr=1e-3)
-    task.begin_epoch(0)
-    losses = []
-    for _ in range(40):
-        loss = task.loss(model, torch.arange(32))
-        optimiser.zero_grad()
-        loss.backward()
-        optimiser.step()
-        losses.append(loss.item())
-    assert losses[-1] < 0.6 * losses[0]
-    found = task.validate(model.eval())
-    assert next(iter(found)) == "error_m"
-    assert all(value > 0 for value in found.values())
-
-
-def test_the_task_describes_itself_in_json(task: ClearanceTask):
-    content = json.loads(json.dumps(task.describe()))
-    assert len(content["data_sha256"]["clearance"]) == 64
 
 
 def test_beyond_a_bound_that_the_truth_is_at_an_estimate_costs_nothing():

@@ -1,7 +1,6 @@
 """One model: what its weights depend on, and what survives a process that stops."""
 
 import itertools
-import json
 from pathlib import Path
 
 import pytest
@@ -13,7 +12,7 @@ from faultpath.quadrotor.checkpoint import ModelCard
 from faultpath.quadrotor.training.fitting import fit, journal_path
 from faultpath.repairs.card import Schedule
 from faultpath.repairs.card import read_card as read
-from faultpath.repairs.loop import Diverged, Moment, minibatches
+from faultpath.repairs.loop import Diverged, minibatches
 from faultpath.store.atomic import write
 
 
@@ -204,19 +203,3 @@ def test_weights_that_are_no_numbers_are_not_kept(tmp_path: Path) -> None:
 def test_the_norm_of_the_gradient_is_clipped(reference: bytes, tmp_path: Path) -> None:
     assert _fit(Toy(clip_norm=1e9), tmp_path / "far") == reference
     assert _fit(Toy(clip_norm=1e-6), tmp_path / "near") != reference
-
-
-def test_progress_rises_to_one(tmp_path: Path) -> None:
-    moments: list[Moment] = []
-    fit(Toy(epochs=2), tmp_path, moments.append, notice=_silent)
-    assert [moment.fraction for moment in moments] == pytest.approx([k / 10 for k in range(1, 11)])
-    assert [moment.epoch for moment in moments] == [0] * 5 + [1] * 5
-
-
-def test_the_digest_covers_no_time(tmp_path: Path) -> None:
-    cards = [
-        json.loads(fit(Toy(), tmp_path / place).with_suffix(".json").read_text()) for place in "ab"
-    ]
-    for card in cards:
-        assert card.pop("duration_s") > 0
-    assert cards[0] == cards[1]

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 import torch
 from fitting_toys import Net, Toy
-from safetensors.torch import save_file
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import checkpoint
@@ -36,13 +35,6 @@ def test_a_loaded_model_is_the_fitted_one(fitted: Path) -> None:
     assert task.validate(module) == card.final
 
 
-def test_the_file_depends_on_the_weights_alone(fitted: Path, tmp_path: Path) -> None:
-    module = Net(seed=7)
-    load_checkpoint(module, fitted)
-    save_file(module.state_dict(), tmp_path / "again.safetensors")
-    assert (tmp_path / "again.safetensors").read_bytes() == fitted.read_bytes()
-
-
 def test_a_missing_checkpoint_is_named_with_the_command_that_makes_it() -> None:
     with pytest.raises(UserError, match=r"'wm-q' with seed 7 in ") as stop:
         checkpoint_path("wm-q", 7)
@@ -57,13 +49,6 @@ def test_shipping_puts_a_checkpoint_where_the_package_finds_it(
     found = checkpoint_path("toy", 0)
     assert found.parent == tmp_path / "package"
     assert load_checkpoint(Net(3), found) == read_card(fitted, ModelCard)
-
-
-def test_checkpoints_ship_inside_the_package() -> None:
-    import faultpath.quadrotor
-
-    assert faultpath.quadrotor.__file__ is not None
-    assert shipped_folder() == Path(faultpath.quadrotor.__file__).parent / "checkpoints"
 
 
 def test_every_shipped_checkpoint_is_the_one_of_its_card() -> None:

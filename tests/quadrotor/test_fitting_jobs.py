@@ -17,7 +17,6 @@ from faultpath.quadrotor.training.fitting import fit, journal_path
 from faultpath.quadrotor.training.job_pools import missing_pools
 from faultpath.quadrotor.training.jobs import Failure, Overview, run_jobs
 from faultpath.quadrotor.training.provenance import Provenance
-from faultpath.repairs.loop import Moment
 from faultpath.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent
@@ -60,14 +59,6 @@ def test_wrong_names_and_seeds(names, seeds, says) -> None:
         choose(names, seeds)
 
 
-def test_a_corrupted_variant_stands_beside_its_baseline_in_everything_else() -> None:
-    by_name = {each.name: each for each in ALL}
-    for each in ALL:
-        if each.name.endswith("+dcc"):
-            base = by_name[each.name.removesuffix("+dcc")]
-            assert (each.pools, each.seeds, each.cost) == (base.pools, base.seeds, base.cost)
-
-
 def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
     known = {*EPISODES, catalogue.CLEARANCE_POOL, trajectories.POOL}
     assert {pool for each in ALL for pool in each.pools} == known
@@ -99,35 +90,6 @@ def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> Non
         run_jobs(wanted, tmp_path, tmp_path / "out", 0, print, print)
 
 
-def test_each_missing_pool_is_made_by_its_own_collector(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    made: list[str] = []
-    told: list[tuple[str, float, float]] = []
-
-    def flights(folder: Path, pools: list[str], workers: int, progress) -> None:
-        made.extend(f"{folder.name}/{pool} by {workers}" for pool in pools)
-        progress(1.0, 2.0)
-
-    def images(folder: Path, workers: int, progress) -> None:
-        made.append(f"{folder.name}/images by {workers}")
-        progress(3, 4)
-
-    monkeypatch.setattr(job_pools, "collect", flights)
-
-    def closed_loop(folder: Path, workers: int, progress) -> None:
-        made.append(f"{folder.name}/closed loop by {workers}")
-        progress(5, 6)
-
-    monkeypatch.setattr(job_pools.clearance_data, "collect", images)
-    monkeypatch.setattr(job_pools.trajectories, "record", closed_loop)
-    (tmp_path / "wind.json").touch()
-    job_pools.collect_missing(choose([]), tmp_path, 2, lambda *news: told.append(news))
-    what = ("nominal", "closed loop", "images")
-    assert made == [f"{tmp_path.name}/{each} by 2" for each in what]
-    assert told == [("nominal", 1.0, 2.0), ("trajectory", 5, 6), ("clearance", 3, 4)]
-
-
 @pytest.mark.slow
 def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> None:
     good, bug, dies = (Job(entry(name), 0) for name in ("good", "bug", "dies"))
@@ -140,22 +102,6 @@ def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> N
     assert broken.details is not None
     assert "Traceback" in broken.details.read_text()
     assert "memory" in killed.error
-
-
-def _order(tmp_path: Path, wanted: list[Job]) -> list[str]:
-    seen: list[str] = []
-
-    def note(now: Overview) -> None:
-        seen.extend(stem for stem in now.running if stem not in seen)
-
-    _run(tmp_path, wanted, told=note)
-    return seen
-
-
-def test_the_longest_goes_first(tmp_path: Path) -> None:
-    costs = {"short": 1.0, "long": 5.0, "middle": 2.0}
-    wanted = [Job(entry(name, cost=cost), 0) for name, cost in costs.items()]
-    assert _order(tmp_path, wanted) == ["long-0", "middle-0", "short-0"]
 
 
 def test_a_model_that_fails_stops_no_other(tmp_path: Path) -> None:
@@ -248,25 +194,3 @@ def test_workers_end_with_a_parent_that_is_killed(tmp_path: Path) -> None:
     time.sleep(0.5)
     assert journal.read_bytes() == before
     _finishes_to_the_same_bits(tmp_path)
-
-
-def test_ctrl_c_here_counts_what_is_finished(tmp_path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stop(name: str, seed: int, data: Path) -> Toy:
-        del name, seed, data
-        raise KeyboardInterrupt
-
-    stopping = catalogue.Entry("stop", stop, (), "", 0.5, seeds=(0,))
-    with pytest.raises(Stopped, match="with 1 of 2 models finished"):
-        _run(tmp_path, [Job(entry("one"), 0), Job(stopping, 0)])
-
-
-def test_the_whole_counts_models_by_their_cost_and_names_those_at_work(tmp_path: Path) -> None:
-    seen: list[Overview] = []
-    wanted = [Job(entry(name, cost=cost), 0) for name, cost in (("long", 3.0), ("short", 1.0))]
-    _run(tmp_path, wanted, told=seen.append)
-    assert [now.fraction for now in seen] == sorted(now.fraction for now in seen)
-    (between,) = {now.fraction for now in seen if now.done == 1 and not now.running}
-    assert between == pytest.approx(3 / 4)
-    assert (seen[-1].done, seen[-1].total, seen[-1].fraction) == (2, 2, 1.0)
-    moments = [moment for now in seen for moment in now.running.values()]
-    assert any(isinstance(moment, Moment) and moment.loss > 0 for moment in moments)

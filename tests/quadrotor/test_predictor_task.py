@@ -82,22 +82,6 @@ def test_a_few_steps_of_descent_lower_the_loss(name, data):
     assert loss < 0.9 * first
 
 
-def test_windy_predictors_see_as_much_still_air_as_wind(data):
-    names = [name.split("/")[0] for name in loaded("wm-a-wind", data)._train.ids]
-    assert names.count("nominal") == names.count("wind") > 0
-
-
-def test_wind_conditioned_and_withheld_differ_in_the_input_alone(data):
-    given, withheld = loaded("wm-a-wind", data), loaded("wm-a-nowind", data)
-    assert given._train.ids == withheld._train.ids
-    assert given.schedule == withheld.schedule
-    shapes = [
-        {name: value.shape for name, value in ready.module().state_dict().items()}
-        for ready in (given, withheld)
-    ]
-    assert shapes[0] == shapes[1]
-
-
 def test_the_true_parameters_predict_recorded_flights_best(data):
     """In still air only integration and motor limits are left; in wind, that it changes."""
     windows = windows_of(data / "nominal.parquet")

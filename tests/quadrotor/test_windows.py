@@ -11,9 +11,6 @@ from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.training.collection import collect
 from faultpath.quadrotor.training.pool import read_pool
 from faultpath.quadrotor.training.windows import (
-    COMMANDS,
-    HISTORY,
-    HORIZON,
     STRIDE,
     Windows,
     starts,
@@ -38,36 +35,6 @@ def nominal(pools):
 @pytest.fixture(scope="module")
 def windy(pools):
     return windows_of(pools["wind"])
-
-
-def test_a_window_is_twelve_steps_of_history_and_twenty_ahead():
-    assert (HISTORY, HORIZON, COMMANDS) == (12, 20, 32)
-
-
-def test_windows_have_the_shapes_that_models_expect(windy):
-    count = len(windy)
-    shapes = {field.name: tuple(getattr(windy, field.name).shape) for field in fields(Windows)[:-1]}
-    assert shapes == {
-        "position": (3, 33, count),
-        "velocity": (3, 33, count),
-        "rotation": (3, 3, 33, count),
-        "rate": (3, 33, count),
-        "command": (4, 32, count),
-        "wind_mps": (3, 33, count),
-        "mass_kg": (count,),
-        "thrust_scale": (count,),
-        "inertia_kgm2": (3, count),
-        "torque_scale": (count,),
-        "motor_time_constant_s": (count,),
-        "drag_kgps": (3, count),
-        "motor_thrust_n": (33, count),
-        "episode": (count,),
-    }
-    for field in fields(Windows)[:-1]:
-        tensor = getattr(windy, field.name)
-        assert tensor.dtype == (torch.int64 if field.name == "episode" else torch.float32)
-        assert torch.isfinite(tensor).all()
-        assert tensor.is_contiguous()
 
 
 def test_a_full_episode_has_four_windows_spread_from_end_to_end():
@@ -98,12 +65,6 @@ def test_command_k_acts_from_state_k_to_state_k_plus_1(nominal):
         assert min(error(k, k - 1), error(k, k + 1)) > 0.1
 
 
-def test_position_is_the_integral_of_velocity(nominal):
-    mean = 0.5 * (nominal.velocity[:, 1:] + nominal.velocity[:, :-1])
-    error = nominal.position[:, 1:] - nominal.position[:, :-1] - mean * 0.05
-    assert error.abs().max() < 5e-3
-
-
 def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, pools):
     assert not nominal.wind_mps.any()
     steps = read_pool(pools["wind"]).steps
@@ -112,19 +73,6 @@ def test_windows_hold_the_wind_of_their_place_in_the_episode(nominal, windy, poo
         first = starts(int(steps[episode]))[number]
         series = PLATFORM.winds.pool_series(0, episode, 6.1)[25 * first :: 25][:33]
         assert np.array_equal(windy.wind_mps[..., w].T.numpy(), series.astype(np.float32))
-
-
-def test_ids_name_pool_episode_and_window(windy):
-    assert windy.ids[:4] == tuple(f"wind/00000/{i}" for i in range(4))
-    assert len(set(windy.ids)) == len(windy)
-    assert [int(name.split("/")[1]) for name in windy.ids] == windy.episode.tolist()
-
-
-def test_windows_carry_the_vehicle_of_their_episode(windy, pools):
-    pool = read_pool(pools["wind"])
-    for name in ("mass_kg", "drag_kgps", "inertia_kgm2"):
-        expected = pool.vehicles[name][..., windy.episode].astype(np.float32)
-        assert np.array_equal(getattr(windy, name).numpy(), expected)
 
 
 def test_no_episode_is_on_both_sides_of_the_split(nominal, windy):
@@ -142,16 +90,6 @@ def test_the_split_of_an_episode_does_not_depend_on_the_others(nominal, windy):
     _, fewer = windy.take(torch.arange(20)).split(0.3)
     assert alone.ids == tuple(name for name in validation.ids if name.startswith("wind/"))
     assert set(fewer.ids) == set(alone.ids) & set(windy.ids[:20])
-
-
-def test_the_usual_split_keeps_about_one_episode_in_twenty():
-    count = 4000
-    nothing = torch.zeros(count)
-    shape = {field.name: nothing for field in fields(Windows)[:-1]}
-    windows = Windows(**shape, ids=tuple(f"wind/{i:05d}/0" for i in range(count)))
-    training, validation = windows.split()
-    assert len(validation) == pytest.approx(200, abs=60)
-    assert len(training) == count - len(validation)
 
 
 def test_take_and_join_keep_windows_whole(nominal, windy):

@@ -6,7 +6,7 @@ import torch
 from repair_toys import SHORT, Net, scaled_net, windows
 from torch import nn
 
-from faultpath.repairs import Schedule, errors, fit, matched, uncertainty_training, withholding
+from faultpath.repairs import Schedule, fit, matched, uncertainty_training, withholding
 
 REPAIR = uncertainty_training("gain:uniform_scale=0.2")
 
@@ -119,21 +119,6 @@ def test_fits_that_differ_in_the_repair_alone_are_matched(baseline, repair, tmp_
     assert found.matched
     assert str(found).startswith(f"matched in all but the repair ({repair.kind.replace('_', ' ')}:")
     assert matched(baseline.record, repaired.path) == found
-
-
-def test_errors_that_differ_in_their_dependence_alone_are_two_repairs() -> None:
-    sizes = {"gain": 0.1, "velocity": 0.1}
-    one, other = (made(repair=uncertainty_training(errors(sizes, dependence=d))) for d in (0, 0.5))
-    found = matched(one, other)
-    assert found.matched
-    assert found.baseline != found.repair
-    assert "with a loading of 0.707107 on q_eps of gain, velocity" in found.repair
-
-
-def test_the_same_fit_twice_is_said_to_be_that(baseline) -> None:
-    found = matched(baseline, baseline)
-    assert not found.matched
-    assert str(found).startswith("the same fit twice")
 
 
 def test_all_differences_are_listed(baseline) -> None:

@@ -8,22 +8,12 @@ from repair_toys import DT_S, INTERFACE, windows
 
 from faultpath.errors import UserError
 from faultpath.faults import (
-    Bias,
     Coupled,
-    Delay,
-    Drift,
-    Erase,
     Fault,
-    Intermittence,
-    Noise,
-    Scale,
-    UniformScale,
 )
-from faultpath.interface import module_of
 from faultpath.loop import Port
 from faultpath.repairs import errors, uncertainty_training, withholding
 from faultpath.repairs.windows import delivered
-from faultpath.taps import Reading, Taps
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 
@@ -44,14 +34,6 @@ def test_magnitude_is_the_standard_deviation_at_every_step(persistence) -> None:
     error = relative_errors(errors({"gain": 0.1}, persistence))[GAIN]
     assert error.std(axis=0) == pytest.approx([0.1] * 3, rel=0.05)
     assert np.abs(error.mean(axis=0)).max() < 0.006
-
-
-def test_an_error_in_the_readings_unit_does_not_grow_with_it() -> None:
-    data = windows(4000, 2, readings={"gain": np.full(4000, 5.0), "velocity": np.ones((4000, 2))})
-    got, _ = delivered(
-        data, (errors({"gain": 0.1}, relative=False),), data.readings, range(4000), 0, 0
-    )
-    assert (got[GAIN] - 5).std() == pytest.approx(0.1, rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -76,22 +58,6 @@ def test_dependence_is_the_correlation_of_two_channels(persistence, dependence, 
     )
 
 
-def test_errors_that_were_named_apart_are_independent() -> None:
-    data = windows(4000, 1, readings={"gain": np.ones(4000), "velocity": np.ones((4000, 1))})
-    apart = [errors({name: 0.1}, dependence=1.0) for name in ("gain", "velocity")]
-    got, _ = delivered(data, apart, data.readings, range(4000), 0, 0)
-    assert correlation(got[GAIN], got[VELOCITY]) == pytest.approx(0.0, abs=0.05)
-
-
-def test_the_papers_noise_is_uniform_and_one_draw_a_window() -> None:
-    fault = Fault(channel="gain", intervention=UniformScale(half_range=0.2))
-    error = relative_errors(fault)[GAIN]
-    assert (error == error[:, :1]).all()
-    assert error.min() > -0.2
-    assert error.max() < 0.2
-    assert np.histogram(error[:, 0], bins=4, range=(-0.2, 0.2))[0] == pytest.approx(1000, rel=0.1)
-
-
 def test_places_of_one_channel_get_the_same_error_and_one_place_may_err_alone() -> None:
     everywhere = errors({"gain": 0.1})
     both = relative_errors(everywhere, 20)
@@ -112,40 +78,6 @@ def test_draws_belong_to_window_seed_and_epoch_and_not_to_the_minibatch() -> Non
     assert (of(np.array([17, 3])) == whole[[17, 3]]).all()
     assert (of(np.arange(30), epoch=1) != whole).all()
     assert (of(np.arange(30), seed=1) != whole).all()
-
-
-@pytest.mark.parametrize(
-    "fault",
-    [
-        Fault(channel="gain", intervention=Drift(rate_per_s=0.1, walk_per_sqrt_s=0.2)),
-        Fault(
-            channel="gain",
-            intervention=Scale(factor=1.5),
-            intermittence=Intermittence(mean_on_s=0.2, mean_off_s=0.2),
-        ),
-        Fault(channel="velocity", intervention=Bias(std=0.1, time_constant_s=1.0), onset_step=2),
-        Fault(channel="velocity", intervention=Delay(steps=2)),
-        Fault(channel="velocity", intervention=Noise(std=0.1), duration_steps=2, recovery_steps=2),
-        Fault(channel="gain", intervention=Erase()),
-        errors({"gain": 0.1, "velocity": 0.2}, 0.3, 0.5),
-    ],
-    ids=lambda fault: fault.describe().partition(" at ")[0],
-)
-def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(fault) -> None:
-    data = windows(8, 6)
-    got, counts = delivered(data, (fault,), data.readings, range(8), 0, epoch=4)
-    taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=4, privileged={"true_slope"})
-    for step in range(6):
-        for port, consumer in data.ports.items():
-            value = data.readings[port.channel]
-            value = value[:, step] if value.ndim == 2 else value
-            reading = Reading(value, taps.bindings[port.channel], step)
-            flown = taps.deliver(port.channel, consumer, reading, step)
-            assert (got[port][:, step] == flown).all()
-    struck = {count.channel for count in counts if count.altered_steps}
-    named = [fault] if isinstance(fault, Fault) else fault.faults
-    assert struck == {each.channel for each in named}
-    assert {module_of(count.consumer) for count in counts} == {"observer"}
 
 
 def test_without_a_fault_the_readings_arrive_as_they_are() -> None:

@@ -177,8 +177,6 @@ def load(module: nn.Module, path: Path | str) -> Fit:
 class _WindowTask(Task):
     """Windows as samples, with a delivery through the taps for each minibatch."""
 
-    order_key = "repairs"
-
     def __init__(
         self,
         net: nn.Module,
@@ -213,6 +211,11 @@ class _WindowTask(Task):
     @override
     def count(self) -> int:
         return len(self.training)
+
+    @property
+    @override
+    def order_key(self) -> str:
+        return "repairs"
 
     @override
     def begin_epoch(self, epoch: int) -> None:

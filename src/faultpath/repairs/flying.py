@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from typing_extensions import override
@@ -77,42 +77,29 @@ def _laid(past: Sequence[Mapping[Port, HostArray]], port: Port, steps: int | Non
     return np.stack([step[port] for step in past], axis=1)
 
 
-def withheld(module: Module, repair: Repair, interface: Interface | None = None) -> Module:
+def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
     """Return a module that gets a withheld channel's neutral value without reading the channel.
 
     It has no tap there, so that no fault on the channel reaches it: this is the variant to audit.
     `interface` gives the erasure default where the repair names no value. Raises `UserError` where
-    the repair withholds nothing of the module's.
+    the repair withholds nothing that the module reads.
     """
     values: dict[Port, HostArray] = {}
     for fault in repair.faults:
         if not isinstance(fault, Fault) or not isinstance(fault.intervention, Erase):
             raise UserError(f"withheld: {repair.words} is no withholding")
-        found = [p for p in module.ports if p.channel == fault.channel and _named(fault, module, p)]
-        values |= dict.fromkeys(found, _neutral(fault, interface))
+        channel, value = interface.channel(fault.channel), fault.intervention.default
+        shape = interface.source(channel.sources[0]).shape
+        neutral = np.broadcast_to(channel.erasure_default if value is None else value, shape)
+        for port in module.ports:
+            names = {ALL, module.name, f"{module.name}.{port.place}"}
+            if port.channel == fault.channel and names & set(fault.consumers):
+                values[port] = neutral
     if not values:
         raise UserError(
             f"withheld: module '{module.name}' reads nothing of what {repair.words} names"
         )
     return _Withheld(module, values)
-
-
-def _named(fault: Fault, module: Module, port: Port) -> bool:
-    return any(n in (ALL, module.name, f"{module.name}.{port.place}") for n in fault.consumers)
-
-
-def _neutral(fault: Fault, interface: Interface | None) -> HostArray:
-    value: Any = getattr(fault.intervention, "default", None)
-    if interface is None:
-        if value is None:
-            raise UserError(
-                f"withheld: '{fault.channel}' is withheld without a value: give one, or the "
-                "interface that declares the channel's erasure default"
-            )
-        return np.asarray(value)
-    channel = interface.channel(fault.channel)
-    shape = interface.source(channel.sources[0]).shape
-    return np.broadcast_to(channel.erasure_default if value is None else value, shape)
 
 
 class _Withheld(Module):
@@ -138,16 +125,12 @@ class _Withheld(Module):
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         scenes, past = memory
-        looked, looked_truths = set(inputs.used), set(inputs.used_truths)
         given = {port: inputs[port] for port in inputs}
         truths = {name: inputs.truth(name) for name in self.truths}
         beside = next((value for value in given.values() if is_array(value)), np.zeros(1))
         rows = {p: np.broadcast_to(v, (scenes, *v.shape)) for p, v in self._values.items()}
         given |= {port: _beside(np.array(row, dtype=float), beside) for port, row in rows.items()}
         filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running)
-        # What the inner module looks at is noted where the loop asks for it; handing on is no look.
-        filled.used = inputs.used = looked
-        filled.used_truths = inputs.used_truths = looked_truths
         outputs, past = self._inner.step(filled, past)
         return outputs, (scenes, past)
 
