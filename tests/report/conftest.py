@@ -44,23 +44,11 @@ INTERFACE = """
 name: quadrotor
 sources:
 - {name: mass_estimate, unit: kg, provenance: estimated, correlation_group: calibration}
-- {name: thrust_scale_estimate, unit: '1', provenance: estimated,
-   correlation_group: calibration}
-- {name: position_estimate, unit: m, shape: [3], provenance: estimated,
-   correlation_group: state}
-- {name: velocity_estimate, unit: m/s, shape: [3], provenance: estimated, latency_s: 0.02,
-   correlation_group: state}
-- {name: attitude_estimate, unit: '1', shape: [3, 3], provenance: estimated,
-   correlation_group: state}
-- {name: body_rate_measurement, unit: rad/s, shape: [3], provenance: measured,
-   correlation_group: state}
-- {name: commanded_action, unit: 'N, rad/s', shape: [4], provenance: commanded}
-- {name: mission_goal, unit: m, shape: [3], provenance: commanded}
+- {name: thrust_scale_estimate, unit: '1', provenance: estimated, correlation_group: calibration}
+- {name: position_estimate, unit: m, shape: [3], provenance: estimated}
+- {name: velocity_estimate, unit: m/s, shape: [3], provenance: estimated, latency_s: 0.02}
 - {name: zero_wind, unit: m/s, shape: [3], provenance: constant}
 - {name: reconstructed_wind, unit: m/s, shape: [3], provenance: reconstructed}
-- {name: true_wind, unit: m/s, shape: [3], provenance: privileged}
-- {name: depth_clearance, unit: m, shape: [20, 512], provenance: estimated}
-- {name: true_physics, unit: 'kg m^2, 1, s, kg/s, N', shape: [9], provenance: privileged}
 channels:
 - {name: mass, sources: [mass_estimate], gap: fidelity,
    consumers: [predictor.dynamics, predictor.wind_map, predictor.trim, reconstruction.head]}
@@ -70,17 +58,8 @@ channels:
    consumers: [predictor.initial_state]}
 - {name: velocity, sources: [velocity_estimate], gap: fidelity,
    consumers: [predictor.initial_state, reconstruction.history]}
-- {name: attitude, sources: [attitude_estimate], gap: fidelity,
-   consumers: [predictor.initial_state, reconstruction.history]}
-- {name: body_rate, sources: [body_rate_measurement], gap: fidelity,
-   consumers: [predictor.initial_state, reconstruction.history]}
-- {name: action, sources: [commanded_action],
-   consumers: [vehicle.actuators, reconstruction.history]}
-- {name: goal, sources: [mission_goal], consumers: [planner.goal_cost]}
-- {name: wind, sources: [zero_wind, reconstructed_wind, true_wind], gap: availability,
+- {name: wind, sources: [zero_wind, reconstructed_wind], gap: availability,
    consumers: [predictor.wind_map]}
-- {name: clearance, sources: [depth_clearance], gap: fidelity, consumers: [planner.risk_cost]}
-- {name: physics, sources: [true_physics], gap: fidelity, consumers: [predictor.physics]}
 reconstructs: {reconstruction: reconstructed_wind}
 """
 
@@ -265,7 +244,7 @@ def _outcome(
 
 
 def _track(index: int, status: Status, rng: np.random.Generator) -> np.ndarray:
-    """Fly from start to goal round the middle; a crash stops on the way, a timeout circles."""
+    """Fly from start to goal round the middle; a crash stops on the way, a timeout takes long."""
     plan = _plan(index)
     start, goal = np.array(plan.start), np.array(plan.goal)
     steps = {
@@ -278,43 +257,21 @@ def _track(index: int, status: Status, rng: np.random.Generator) -> np.ndarray:
     track = start + u * (goal - start) + np.sin(np.pi * u) * side + np.sin(np.pi * u / 2) * sink
     if status is Status.CRASH:
         track = track[: int(steps * rng.uniform(0.35, 0.8))]
-    if status is Status.TIMEOUT:
-        stop = 0.55 * steps
-        angle = 2 * np.pi * np.maximum(np.arange(steps) - stop, 0)[:, None] / 60
-        track = np.where(
-            np.arange(steps)[:, None] < stop,
-            track,
-            track[int(stop)] + 0.4 * np.hstack([np.cos(angle) - 1, np.sin(angle), 0 * angle]),
-        )
     return track.astype(np.float32)
 
 
 def _plan(index: int) -> FloorPlan:
     rng = np.random.default_rng([7, index])
-
-    def box(x: float, y: float, w: float, d: float, top: float) -> Prism:
-        return Prism(((x, y), (x + w, y), (x + w, y + d), (x, y + d)), 0.0, top)
-
-    walls = [box(4.6, -3.0, 0.3, 2.2, 3.0), box(4.6, 0.9, 0.3, 2.1, 3.0)]
-    crates = [
-        box(
-            float(rng.uniform(1.5, 7.5)),
-            float(rng.uniform(-2.7, 2.0)),
-            float(rng.uniform(0.3, 0.9)),
-            float(rng.uniform(0.3, 0.9)),
-            float(rng.uniform(0.8, 3.0)),
-        )
-        for _ in range(6)
-    ]
-    pillars = [
-        Pillar(float(rng.uniform(1.5, 8.0)), float(rng.uniform(-2.5, 2.5)), 0.2, 0.0, 3.0)
-        for _ in range(4)
-    ]
+    crates: list[Prism] = []
+    for x, y, w, d, top in rng.uniform((1.5, -2.7, 0.3, 0.3, 0.8), (7.5, 2.0, 0.9, 0.9, 3), (6, 5)):
+        corners = ((x, y), (x + w, y), (x + w, y + d), (x, y + d))
+        crates.append(Prism(tuple((float(a), float(b)) for a, b in corners), 0.0, float(top)))
+    at = rng.uniform((1.5, -2.5), (8.0, 2.5), (4, 2))
     return FloorPlan(
         low=(0.0, -3.0, 0.0),
         high=(10.0, 3.0, 3.0),
-        prisms=tuple(walls + crates) if index % 5 else tuple(crates),
-        pillars=tuple(pillars),
+        prisms=tuple(crates),
+        pillars=tuple(Pillar(float(x), float(y), 0.2, 0.0, 3.0) for x, y in at),
         start=(0.8, float(rng.uniform(-1.5, 1.5)), 1.2),
         goal=(9.2, float(rng.uniform(-1.5, 1.5)), 1.4),
         title=TOPOLOGIES[index % 5],

@@ -108,26 +108,6 @@ def test_selectors_change_the_flights(page: Page) -> None:
     assert page.locator("#viewer-across .small svg:visible").count() == 4
 
 
-def test_no_label_of_the_heights_is_cut_off(page: Page, three_seeds: ReportInput) -> None:
-    heights = page.locator("#viewer-height svg")
-    heights.scroll_into_view_if_needed()
-    for scene in range(6):
-        page.locator("#viewer-scene").select_option(index=scene)
-        for path in range(len(three_seeds.record.paths)):
-            page.locator("#viewer-paths button").nth(path).click()
-            within = heights.evaluate(
-                """(svg) => {
-                  const whole = svg.getBoundingClientRect();
-                  return [...svg.querySelectorAll("text")].map((text) => {
-                    const box = text.getBoundingClientRect();
-                    return box.left >= whole.left && box.right <= whole.right;
-                  });
-                }"""
-            )
-            assert len(within) > 4
-            assert all(within)
-
-
 def test_time_moves_the_vehicles(page: Page) -> None:
     before = page.locator("#viewer-plan").inner_html()
     page.locator("#viewer-time").fill("10")

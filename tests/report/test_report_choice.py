@@ -92,11 +92,6 @@ def test_the_path_that_is_shown_first_was_announced(
     assert unpack(viewer.packed)[0]["path"] == path
 
 
-def test_the_other_side_of_what_was_announced_comes_last(one_seed: ReportInput) -> None:
-    record = announcing(one_seed, shared=-1)
-    assert begun(one_seed, record, scenes(one_seed, "bbbr", "bbbr", "bbbb", "bbbl")) == [3, 2, 0, 1]
-
-
 @pytest.mark.parametrize("sign", [0, 1])
 def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, sign: int) -> None:
     """Nothing announced: what most scenes do comes first, and of ties the lowest index."""

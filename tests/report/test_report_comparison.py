@@ -14,7 +14,6 @@ from faultpath.report.comparison.page import (
     headline,
     markdown,
     page,
-    same,
     sentences,
 )
 from faultpath.report.comparison.runs import Compared, differing, facts_table, labels, titles
@@ -109,19 +108,6 @@ def test_decided_in_opposite_directions(two: Given) -> None:
     )
 
 
-def test_the_same_arm_ahead_is_no_disagreement_where_roles_are_exchanged(two: Given) -> None:
-    first, second = two
-    arms = {"baseline": second.asked.repair, "repair": second.asked.baseline}
-    asked = second.asked.model_copy(update=arms)
-    other = replace(second, record=second.record.model_copy(update={"question": asked}))
-    for path in titles((first,)):
-        other = signed(other, path, -first.effect(path).sign)
-    assert "opposite directions" not in headline((first, other))
-    # The same decisions, taken for the same roles, are opposite ones.
-    same_role = signed(other, "shared", first.effect("shared").sign)
-    assert "opposite directions" in headline((first, same_role))
-
-
 def test_other_arms_ask_something_else(one_seed: ReportInput) -> None:
     first, second = run(one_seed, 1), run(one_seed, 2, repair="dob", system="other")
     turned = (first, signed(second, "shared", 1))
@@ -156,14 +142,6 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     table = facts_table((first, second), differing((first, second)))
     at = [line.label for line in table.lines].index("calibration=-0.1")
     assert table.lines[at].entries[0].text == "2"
-
-
-def test_nothing_differs(one_seed: ReportInput) -> None:
-    first, second = run(one_seed, 1), run(one_seed, 2)
-    assert same((first, second)).endswith("and so are the outcomes, bit for bit.")
-    other = second.provenance.model_copy(update={"outcomes_sha256": "0" * 64})
-    assert same((first, replace(second, provenance=other))).endswith("yet outcomes differ.")
-    assert "bit for bit" in page((first, second))
 
 
 def test_a_label_tells_the_runs_apart(one_seed: ReportInput, two: Given) -> None:

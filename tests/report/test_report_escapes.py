@@ -64,11 +64,6 @@ def test_markdown_shows_a_name_as_it_is(name: str) -> None:
     assert not re.search(r"(?<!\\)(\\\\)*\$", escaped)
 
 
-def test_numbers_need_no_escapes() -> None:
-    for text in ("+12.3", "-4.0", "[+1, 2.5]", "3:12", "1.5 %"):
-        assert escapes.markdown(text).replace("\\[", "[").replace("\\]", "]") == text
-
-
 @given(st.text(st.characters(codec="utf-8", max_codepoint=0x2FF), min_size=1))
 def test_markdown_shows_any_text_as_it_is(name: str) -> None:
     seen = escapes.visible(_line(name)).strip(" ")

@@ -58,7 +58,7 @@ def _panel(
 ) -> str:
     kind = "whole" if pieces == ((0.0, 1.0),) else "interval" if pieces else "empty"
     result = BreakEven(
-        p_star=None, pieces=pieces, kind=kind, regions=regions, words="", method="", estimand=""
+        p_star=None, pieces=pieces, kind=kind, regions=regions, method="", estimand=""
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
     path = PathBreakEven(path="shared", result=result, curve=curve, words=words)
@@ -131,6 +131,6 @@ def test_words_of_numbers() -> None:
 )
 def test_a_set_of_frequencies_is_written_with_its_ends_outwards(p_star, kind, pieces, said) -> None:
     result = BreakEven(
-        p_star=p_star, pieces=pieces, kind=kind, regions=(), words="", method="", estimand=""
+        p_star=p_star, pieces=pieces, kind=kind, regions=(), method="", estimand=""
     )
     assert wording.break_even(result) == said

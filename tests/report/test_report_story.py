@@ -7,15 +7,11 @@ from pathlib import Path as FilePath
 
 import pytest
 
-from faultpath.faults import parse_fault
-from faultpath.planning import plan_audit
-from faultpath.question import AuditQuestion
 from faultpath.record import DecisionRecord, Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import shortened
 from faultpath.report.taps import Fork, Reader, fork_panels, forks
-from faultpath.trials import SystemSpec, library_of, load_system
 
 TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
 IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
@@ -122,19 +118,6 @@ def test_receipts_decide_what_is_drawn_as_struck(one_seed: ReportInput) -> None:
     assert states(forks(some)[-1])[1][0] == "predictor: partly wrong"
 
 
-def test_an_audit_keeps_its_fault_spelled_out() -> None:
-    toy = load_system(SystemSpec(name=f"{TOY}:create"))
-    fault = parse_fault("gain:scale=0.6", toy.interface, {}, toy.control_dt_s)
-    asked = plan_audit(
-        toy,
-        SystemSpec(name="toy"),
-        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=4),
-        library_of(toy, "carts"),
-    ).question
-    assert asked.faults == fault.resolved(toy.interface)
-    assert type(asked).model_validate_json(asked.model_dump_json()) == asked
-
-
 @pytest.mark.parametrize("n", [1, 2, 4])
 @pytest.mark.parametrize("ties", [False, True])
 def test_with_too_few_scenes_the_screen_says_so_and_asks_for_nothing(
@@ -155,23 +138,6 @@ def _said(record: DecisionRecord) -> set[str]:
     return {effect.path for effect in record.effects if effect.detected}
 
 
-def test_ties_favour_nobody(make: Callable[..., ReportInput]) -> None:
-    source = make(void=False, library="held-out", chances=EQUAL)
-    assert not _said(source.record)
-    said = screen(source)
-    assert "Nothing that was tested gives a reason to prefer either." in said
-    assert "succeeds more often" not in said
-    assert not IMPERATIVE.search(said)
-
-
 def test_without_a_pair_on_a_path_the_picture_says_so(make: Callable[..., ReportInput]) -> None:
     source = make(void=False, n_scenes=40, lost="shared")
     assert screen(source).count("no pair of trials to compare") == 1
-
-
-def test_what_qualifies_a_decision_is_not_folded(one_seed: ReportInput) -> None:
-    said = screen(one_seed)
-    open_ = said[: said.index("Every sentence of the record")]
-    assert one_seed.record.verdict.sentences[0] in open_
-    assert "Ask which fault your system will meet" in open_
-    assert "at most 5 %" in open_

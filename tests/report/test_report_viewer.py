@@ -73,14 +73,6 @@ def test_what_was_hit_is_what_is_nearest() -> None:
     assert hit(rail, np.array((4.0, 0.0, 0.0))) is None
 
 
-def test_positions_along_one_axis_are_plotted_over_time(one_seed: ReportInput) -> None:
-    flat = {at: track * [1, 0, 0] for at, track in one_seed.traces.positions.items()}
-    data, _ = _unpacked(replace(one_seed, traces=Traces(flat, 0.05), plans={}))
-    assert data["space"] == "line"
-    assert len(data["scenes"]) == 80
-    assert [plot["title"] for plot in data["plots"]] == ["position"]
-
-
 def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
     """Without positions only scenes of which signals were recorded can be played."""
     still = replace(one_seed, traces=Traces({}, 0.05), plans={})
