@@ -130,7 +130,5 @@ def test_words_of_numbers() -> None:
     ],
 )
 def test_a_set_of_frequencies_is_written_with_its_ends_outwards(p_star, kind, pieces, said) -> None:
-    result = BreakEven(
-        p_star=p_star, pieces=pieces, kind=kind, regions=(), method="", estimand=""
-    )
+    result = BreakEven(p_star=p_star, pieces=pieces, kind=kind, regions=(), method="", estimand="")
     assert wording.break_even(result) == said
