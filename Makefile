@@ -60,7 +60,7 @@ fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEE
 	  --hypothesis-profile=explore --fuzz-seed=$(SEED) $(ARGS)
 
 statistics: $(STAMPS)/dev ## Simulate what the statistics promise, and write its page: some minutes
-	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation.py docs/statistics-check.md
+	OMP_NUM_THREADS=1 $(BIN)/python tests/statistics/simulation_page.py docs/statistics-check.md
 
 bench: $(BENCH)/ready $(STAMPS)/dev ## Measure side by side with other software; ARGS="--only plant" for some
 	$(BENCH)/bin/python -m benchmarks $(ARGS)

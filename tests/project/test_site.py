@@ -106,15 +106,3 @@ def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     for notebook in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
         shown = (site / "notebooks" / f"{notebook.stem}.html").read_text("utf-8")
         assert 'class="highlight-text' in shown, f"{notebook.name} printed nothing"
-
-
-def test_what_is_fetched_or_missing_is_found(tmp_path: Path) -> None:
-    (tmp_path / "there.html").write_text("<p>", "utf-8")
-    (tmp_path / "a.html").write_text(
-        "<a href='there.html#x'><a href='gone.html'><a href='https://example.org'>"
-        "<img src='//example.org/x.png'><script src='https://example.org/x.js'></script>",
-        "utf-8",
-    )
-    (tmp_path / "a.css").write_text("@import 'https://example.org/x.css';", "utf-8")
-    assert [where for where, _ in fetched(tmp_path)] == ["a.html", "a.html", "a.css"]
-    assert list(broken(tmp_path)) == [("a.html", "gone.html")]

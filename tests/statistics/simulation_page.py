@@ -1,0 +1,214 @@
+"""The page of `make statistics`: every promise of the statistics, measured."""
+
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+
+from simulation import (
+    LEANS,
+    RATES,
+    Population,
+    any_look,
+    break_even_coverage,
+    detection,
+    equal_arms,
+    every_look,
+    interval_coverage,
+    models_coverage,
+    reversals,
+    trainings,
+)
+
+from faultpath.record.family import ALPHA
+
+
+def share(rates: Iterable[float]) -> str:
+    """Return `.950`, or the least and the greatest of several rates."""
+    texts = [f"{r:.3f}".removeprefix("0") if r < 0.9995 else "1" for r in sorted(rates)]
+    return texts[0] if texts[0] == texts[-1] else f"{texts[0]}–{texts[-1]}"
+
+
+def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [list(heads), *map(list, rows)]
+    lines.insert(1, [":--", *["--:"] * (len(lines[0]) - 1)])
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def sections() -> Iterator[tuple[str, str, str]]:
+    """Yield title, note and table of everything that is measured."""
+    by_rate = [f"{100 * rate:g} %" for rate in RATES]
+    kinds = [(seeds, alike, own) for seeds in (3, 5) for alike in (0.0, 0.5) for own in (0, 1)]
+
+    def structured(rate: float, lean: float, seeds: int) -> list[Population]:
+        mine = [each for each in kinds if each[0] == seeds] or [(1, 0.0, 0)]
+        return [Population(rate, lean, n, alike, bool(own)) for n, alike, own in mine]
+
+    yield (
+        "Interval of an effect",
+        "Least and greatest coverage of the 95 % interval, over even and one-sided splits of the "
+        "scenes that differ, and over seeds that are independent or half alike, without and with "
+        "seed effects; exact for one seed. Columns: share of scenes that differ. Promised: at "
+        "least .93. Where few scenes differ no interval of counts can keep .95: it covers more.",
+        markdown(
+            ("scenes, seeds", *by_rate),
+            (
+                (
+                    f"{n}, {seeds}",
+                    *(
+                        share(
+                            interval_coverage(n, truth)
+                            for lean in LEANS
+                            for truth in structured(rate, lean, seeds)
+                        )
+                        for rate in RATES
+                    ),
+                )
+                for n, seeds in product((10, 25, 50, 100, 300), (1, 3, 5))
+            ),
+        ),
+    )
+    yield (
+        "Break-even frequency",
+        "Least and greatest coverage of the set of frequencies at which it is not decided who is "
+        "ahead, over costs that are one-sided or in between and gains of 5 and 30 pp under the "
+        "fault. Columns: share of scenes that differ under correct inputs. Promised: at least .93.",
+        markdown(
+            ("scenes, seeds", *by_rate),
+            (
+                (
+                    f"{n}, {seeds}",
+                    *(
+                        share(
+                            break_even_coverage(n, cost, replace(cost, rate=gain, lean=1.0))
+                            for lean, gain in product((0.5, 1.0), (0.05, 0.3))
+                            for cost in structured(rate, -lean, seeds)
+                            if cost.mean <= 0.0
+                        )
+                        for rate in RATES
+                    ),
+                )
+                for n, seeds in product((25, 100, 300), (1, 3))
+            ),
+        ),
+    )
+    yield (
+        "Interval for newly trained models",
+        "Coverage of the interval of `--generalise models`, where only the first arm ever wins. "
+        "Columns: share of scenes that differ. Promised: at least .93.",
+        markdown(
+            ("scenes, trainings", *by_rate),
+            (
+                (f"{n}, {seeds}", *(share([models_coverage(n, seeds, rate)]) for rate in RATES))
+                for n, seeds in product((25, 100), (3, 5))
+            ),
+        ),
+    )
+    yield (
+        "Least detectable difference",
+        "Audits of equal arms report what they could have detected; then the true difference is "
+        "made that. Share of audits that detect it. Promised: about .80, at least .70.",
+        markdown(
+            ("scenes, share that differs", "1 seed", "3 seeds"),
+            (
+                (
+                    f"{n}, {100 * rate:g} %",
+                    *(
+                        share([detection(n, Population(rate, 0.0, s, 0.5 * (s > 1)), ALPHA)])
+                        for s in (1, 3)
+                    ),
+                )
+                for n, rate in product((25, 100, 300), (0.02, 0.1, 0.3))
+            ),
+        ),
+    )
+    sizes = ((25, 1), (100, 1), (100, 3))
+    for title, what, found in (
+        ("Audits of equal arms", "four paths", equal_arms),
+        ("Sequential audits of equal arms", "four paths and ten looks", any_look),
+    ):
+        yield (
+            title,
+            f"Share of audits with {what} that announce anything at all. Paths alike: chance that "
+            "a scene ends the same on all paths. Promised: at most .05.",
+            markdown(
+                ("scenes, seeds, share that differs", "paths independent", "paths alike 70 %"),
+                (
+                    (
+                        f"{n}, {seeds}, {100 * rate:g} %",
+                        *(
+                            share([found(n, Population(rate, 0.0, seeds, 0.5), t)])
+                            for t in (0, 0.7)
+                        ),
+                    )
+                    for (n, seeds), rate in product(sizes, (0.05, 0.3))
+                ),
+            ),
+        )
+    yield (
+        "Reversals",
+        "Share of audits that announce a reversal where the shared effect is -20 pp. Where both "
+        "isolated effects are 0 there is none; promised: at most .015. The others show the power.",
+        markdown(
+            ("scenes, seeds", "isolated effects 0", "isolated effects 20 pp"),
+            (
+                (f"{n}, {s}", *(share([reversals(n, s, pp)]) for pp in (0.0, 0.2)))
+                for n, s in product((25, 100), (1, 3))
+            ),
+        ),
+    )
+    yield (
+        "Equal methods, other trainings",
+        "Two equal methods, of which every training is off by 8 pp (standard deviation). Share of "
+        "audits that detect a difference. For newly trained models that is an error, promised in "
+        "at most .05; for these trained models it is not one: they do differ.",
+        markdown(
+            ("scenes, trainings", "new trainings", "these trainings"),
+            (
+                (f"100, {s}", *(share([trainings(100, s, m)]) for m in (True, False)))
+                for s in (2, 3, 5)
+            ),
+        ),
+    )
+    yield (
+        "Confidence sequence of an effect",
+        "Share of sequential audits whose 95 % confidence sequence holds the truth after every one "
+        "of 300 scenes. Columns: share of scenes that differ. Promised: at least .95.",
+        markdown(
+            ("seeds, split", *by_rate),
+            (
+                (
+                    f"{s}, {words}",
+                    *(
+                        share([every_look(300, Population(r, lean, s, 0.5 * (s > 1)))])
+                        for r in RATES
+                    ),
+                )
+                for s, (lean, words) in product((1, 3), LEANS.items())
+            ),
+        ),
+    )
+
+
+def main() -> None:
+    """Write the page; its path is the argument."""
+    lines = [
+        "# What the statistics keep",
+        "",
+        "Made by `make statistics`. Populations with a known truth are sampled, and the shipped "
+        "code decides. Simulated rates have a standard error of .003 (interval), .005 "
+        "(break-even), .011 (newly trained models), at most .013 (audits) and .018 (sequential "
+        "audits). What is promised, and how it is decided: "
+        "[design/statistics.md](design/statistics.md).",
+        "",
+    ]
+    for title, note, table in sections():
+        print(title, file=sys.stderr, flush=True)
+        lines += [f"## {title}", "", note, "", table, ""]
+    Path(sys.argv[1]).write_text("\n".join(lines).rstrip() + "\n", "utf-8")
+
+
+if __name__ == "__main__":
+    main()
