@@ -1,6 +1,7 @@
 """How results look in a console and in a notebook: a line, and a table of their fields."""
 
 from html import escape
+from typing import cast
 
 from pydantic import BaseModel
 
@@ -29,11 +30,14 @@ class Shown(BaseModel):
     def _texts(self) -> list[tuple[str, str]]:
         found: list[tuple[str, str]] = []
         for name in type(self).model_fields:
-            value = getattr(self, name)
-            if isinstance(value, tuple | list) and len(value) > 4:
-                value = f"{len(value)} of them"
-            text = f"{value:.4g}" if isinstance(value, float) else printable(str(value))
-            found.append((name, "" if value in (None, (), {}) else _cut(text, _CELL)))
+            value: object = getattr(self, name)
+            if isinstance(value, float):
+                text = f"{value:.4g}"
+            elif isinstance(value, tuple) and len(cast("tuple[object, ...]", value)) > 4:
+                text = f"{len(cast('tuple[object, ...]', value))} of them"
+            else:
+                text = "" if value in (None, (), {}) else printable(str(cast("object", value)))
+            found.append((name, _cut(text, _CELL)))
         return found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import faultpath
-from faultpath.door import recording
+from faultpath.door import carrying_out
 from faultpath.door.saved import read_run
 from faultpath.errors import UserError
 from faultpath.review.hearing import error_signals, fly_heard
@@ -71,7 +71,7 @@ def test_a_second_call_flies_nothing_again_and_completes_what_is_missing(
     shutil.copytree(run.folder, place)
     kept = (place / SIGNALS).read_bytes()
     with monkeypatch.context() as without:
-        without.setattr(recording, "fly_again", None)
+        without.setattr(carrying_out, "fly_again", None)
         again = faultpath.audit(FILE, **AUDIT, folder=place)
     assert (place / SIGNALS).read_bytes() == kept
     assert SIGNALS in again.provenance.files
@@ -84,7 +84,7 @@ def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, mon
     def stopped(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(recording, "fly_again", stopped)
+    monkeypatch.setattr(carrying_out, "fly_again", stopped)
     run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run")
     assert (run.folder / "report.html").is_file()
     assert not (run.folder / SIGNALS).exists()
@@ -121,7 +121,7 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
 
 
 def test_without_signals_nothing_is_flown_again(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(recording, "fly_again", None)
+    monkeypatch.setattr(carrying_out, "fly_again", None)
     run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run", signals=False)
     assert not (run.folder / SIGNALS).exists()
 

@@ -1,6 +1,6 @@
 """One job, as audit, map and reproduction do it: trials run, failures displayed, files sealed."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -28,7 +28,13 @@ class Job:
     stopwatch: Stopwatch = field(default_factory=Stopwatch)
 
     def run(
-        self, study: Study, system: System, show: Show, folder: Path | None = None, **how: Any
+        self,
+        study: Study,
+        system: System,
+        show: Show,
+        folder: Path | None = None,
+        notice: Callable[[str], None] | None = None,
+        **how: Any,
     ) -> RunResult:
         """Run a study, into the job's folder unless another is given; see `run_study` for `how`.
 
@@ -38,11 +44,12 @@ class Job:
             study,
             folder or self.folder,
             progress=show,
+            notice=notice or self.display.say,
             system=system,
             executor=self.executor,
             time_limit_s=self.time_limit_s,
             share=self.share,
-            **{"notice": self.display.say, **how},
+            **how,
         )
 
     def finish(

@@ -86,10 +86,10 @@ class RunState:
             case Died() | Raised() if len(task.scenes) > 1:
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
             case Raised() | Died():
+                scene = next(iter(task.scenes))
                 error = reply.error if isinstance(reply, Raised) else reply.how
-                outcomes, taps = (failed_outcome(task.scenes[0], error),), ()
-                said = reply.traceback if isinstance(reply, Raised) else reply.how
-                details = {task.scenes[0]: said}
+                outcomes, taps = (failed_outcome(scene, error),), ()
+                details = {scene: reply.traceback if isinstance(reply, Raised) else reply.how}
         for scene, said in details.items():
             text = f"{scene}: {unit.arm.model_dump_json()}\n{said}\n"
             self._tracebacks.setdefault(unit.key, []).append(text)

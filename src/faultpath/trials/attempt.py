@@ -128,10 +128,11 @@ def _run(
 
 
 def _outcomes(system: System, scenes: Sequence[str], returned: object) -> tuple[Outcome, ...]:
-    outcomes = list(cast("Iterable[object]", returned)) if isinstance(returned, Iterable) else []
+    kind, several = type(returned).__name__, isinstance(returned, Iterable)
+    outcomes = list(cast("Iterable[object]", returned)) if several else []
     odd = [type(each).__name__ for each in outcomes if not isinstance(each, Outcome)]
-    if odd or not isinstance(returned, Iterable):
-        kind = f"{odd[0]} in place of an Outcome" if odd else type(returned).__name__
+    if odd or not several:
+        kind = f"{odd[0]} in place of an Outcome" if odd else kind
         raise WrongOutcomes(
             f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
             "Outcome for each scene, in order"

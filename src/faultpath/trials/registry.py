@@ -206,7 +206,10 @@ def _load_file(place: str) -> ModuleType:
         raise UserError(f"{place!r} cannot be imported: it must be a Python file")
     _look_beside(path)
     module = importlib.util.module_from_spec(spec)
-    _compile(place, loader)
+    try:
+        loader.get_code(name)  # before anything of it runs
+    except (ValueError, RecursionError, MemoryError) as error:
+        raise UserError(f"{place} is not valid Python ({error}): correct it") from error
     _check_own(Root(name, path), path.parent)
     sys.modules[name] = module  # dataclasses look their module up by name
     loader.exec_module(module)
@@ -222,17 +225,6 @@ class _FromSource(SourceFileLoader):
 
     def get_code(self, fullname: str) -> CodeType:
         return self.source_to_code(self.get_data(self.path), self.path)
-
-
-def _compile(place: str, loader: _FromSource) -> None:
-    """Raise what is wrong with a file before anything of it runs."""
-    try:
-        loader.get_code(loader.name)
-    except SyntaxError as error:
-        error.filename = error.filename or place  # a file with NUL bytes has neither
-        raise
-    except (ValueError, RecursionError, MemoryError) as error:
-        raise UserError(f"{place} is not valid Python ({error}): correct it") from error
 
 
 def _file(place: str) -> Path:
