@@ -67,7 +67,7 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(workers, gate, tmp_path, undi
     # A block whose file was just written may not be counted yet.
     assert kept - 1 <= int(told[1]) <= kept
     assert str(run) in last
-    assert "run the same command again to resume" in last
+    assert "run the same again to resume" in last
     assert not (run / "record.json").exists()
     assert _resumed(run, gate) == undisturbed
 
