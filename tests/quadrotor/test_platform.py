@@ -32,7 +32,7 @@ def test_weights_belong_to_what_decided_their_data():
 
 
 def test_weights_of_another_platform_are_refused(monkeypatch):
-    models.predictor.cache_clear()
+    models._loaded.cache_clear()
     monkeypatch.setattr(models, "PLATFORM", Platform(drag_kgps=(0.3, 0.3, 0.3)))
     with pytest.raises(UserError, match=r"wm-a-0 .* another platform .* fit them again"):
         models.predictor("wm-a", 0)

@@ -55,7 +55,15 @@ def inputs(
             three(NOMINAL_DRAG_KGPS),
             thrust * column,
         ),
+        code=following(thrust, scenes),
     )
+
+
+def following(thrust, scenes):
+    """History code of motors that were told `thrust` for long."""
+    code = torch.zeros(32, scenes, 1, dtype=torch.float64)
+    code[12:16] = thrust
+    return code
 
 
 def commands(thrust, rates=(0.0, 0.0, 0.0), scenes=1, candidates=4):
@@ -144,6 +152,7 @@ def test_a_scene_does_not_depend_on_its_neighbours(predictor):
     calibration = Calibration(torch.full((4, 1), 1.1), torch.full((4, 1), 0.9))
     physics = Physics(*(v.float() for v in vars(one.physics).values()))
     given = PredictorInputs(state, calibration, calibration, torch.full((4, 1), 1.1), wind, physics)
+    given = replace(given, code=one.code.float())
     noise = torch.randn(HORIZON, 4, 4, 512, generator=generator)
     noise[:, 0] += GRAVITY_MPS2
     whole = rollout(predictor, given, noise)

@@ -138,18 +138,20 @@ RECONSTRUCTIONS: Mapping[str, Kind[Reconstruction]] = MappingProxyType(
 )
 
 
-@lru_cache
 def predictor(name: str, seed: int | None, device: torch.device = CPU) -> Predictor:
     """Return a predictor of `PREDICTORS`; `UserError` where a checkpoint is missing."""
-    with device:
-        return PREDICTORS[name].load(name, seed)
+    return _loaded(PREDICTORS[name], name, seed, device)
+
+
+def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
+    """Return a reconstruction of `RECONSTRUCTIONS`; `UserError` for a missing checkpoint."""
+    return _loaded(RECONSTRUCTIONS[name], name, seed, device)
 
 
 @lru_cache
-def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
-    """Return a reconstruction of `RECONSTRUCTIONS`; `UserError` for a missing checkpoint."""
+def _loaded(kind: Kind[Model], name: str, seed: int | None, device: torch.device) -> Model:
     with device:
-        return RECONSTRUCTIONS[name].load(name, seed)
+        return kind.load(name, seed)
 
 
 @lru_cache
