@@ -122,20 +122,3 @@ def shown(made: MapRecord) -> dict[str, tuple[str, ...]]:
         f"{each.label}, {each.entries[0].text}": tuple(e.text for e in each.entries[1:])
         for each in table.lines
     }
-
-
-def test_the_table_of_turning_sizes_says_what_its_sentences_say() -> None:
-    made = record(reversal(100))
-    rows = shown(made)
-    assert len(rows) == 6
-    assert rows["shared, below 0"] == ("old, −40 %", "–", "–")
-    kept, turn, beyond = rows["observer alone, above 0"]
-    (said,) = (
-        s for s in made.sentences if s.startswith("With the observer alone wrong, error above")
-    )
-    assert kept.startswith("old, +")
-    assert beyond.startswith("new, +")
-    assert f"old is ahead up to {kept.removeprefix('old, ')}" in said
-    assert f"new is ahead from {beyond.removeprefix('new, ')} on" in said
-    sizes = [float(re.findall(r"[\d.]+", each)[0]) for each in (kept, turn, beyond)]
-    assert sizes == sorted(sizes)

@@ -6,9 +6,7 @@ from typing import Any
 import pytest
 
 from faultpath.errors import UserError
-from faultpath.execution import run_study
-from faultpath.plane.decide import conclude
-from faultpath.plane.lattice import COARSE, UNITS, lattice
+from faultpath.plane.lattice import UNITS
 from faultpath.plane.study import MapPlan, plan_map
 from faultpath.planning import plan_audit
 from faultpath.question import AuditQuestion, MapQuestion, ask
@@ -47,14 +45,6 @@ def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
         assert arms[row.variant, made.path(names[row.path])] == row.arm
 
 
-def test_correct_arms_and_arms_that_no_error_reaches_are_flown_once() -> None:
-    study = plan().study(lattice(COARSE))
-    blind = [arm for arm in study.arms() if arm.variant == "blind"]
-    assert len(study.rows) == 2 * 25
-    assert len(blind) == 5  # it reads the gain at the controller alone
-    assert len(study.arms()) == 30
-
-
 def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
     rows = plan().study([(8, -16)]).rows
     struck = {
@@ -67,18 +57,6 @@ def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
         ("calibrated", ("observer.model",), 0.8),
         ("blind", ("controller.inverse",), 1.1),
     }
-
-
-def test_the_toy_turns_at_the_observer_and_not_when_shared(tmp_path: Path) -> None:
-    made = plan(scenes=40, points=25)
-    points = [*lattice(COARSE)]
-    done = run_study(made.study(points), tmp_path, workers=0, recheck=False)
-    record = conclude(made, points, done.outcomes)
-    flips = {(flip.path, flip.direction): flip for flip in record.flips}
-    assert flips["observer", -1].estimate == pytest.approx(-0.25, abs=0.1)
-    assert flips["shared", -1].first is None
-    assert record.joint.regions[-1].sign == -1
-    assert record.scenes == 40
 
 
 def test_an_offset_is_in_the_unit_of_the_reading() -> None:

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from plane_toys import MODULES, differences, grown, reversal
 
-from faultpath.plane.grow import first_turn, next_points
+from faultpath.plane.grow import first_turn
 from faultpath.plane.lattice import (
     COARSE,
-    FINE,
     SHOWN,
     UNITS,
     along,
@@ -79,17 +78,6 @@ def test_copies_of_a_seed_decide_nothing_more() -> None:
     np.testing.assert_array_equal(*(Combined.of(weights, f).signs(2.5) for f in (one, two)))
 
 
-def test_many_places_need_more_than_one() -> None:
-    rng = np.random.default_rng(0)
-    arms = rng.random((2, 25, 50, 1)) < 0.5
-    found = Differences(lattice(COARSE), *arms.astype(float))
-    one = simultaneous(np.eye(25)[:1], found, "toy")
-    assert 1.9 < one < 2.2
-    assert simultaneous(np.eye(25), found, "toy") > 2.7
-    same = Differences(found.points, *np.repeat(arms[:, :1].astype(float), 25, axis=1))
-    assert simultaneous(np.eye(25), same, "toy") == pytest.approx(one)
-
-
 def test_cells_are_cut_where_the_sign_is_not_decided_and_nowhere_else() -> None:
     found = grown(reversal(100))
     flown = set(found.points)
@@ -108,17 +96,6 @@ def test_cells_are_cut_where_the_sign_is_not_decided_and_nowhere_else() -> None:
     assert any(
         around == {1} for around in ({of[c] for c in corners(x, COARSE)} for x in [(-32, 16)])
     )
-
-
-@pytest.mark.parametrize("limit", [25, 40, 81])
-def test_the_limit_holds_for_all_but_bisections(limit: int) -> None:
-    points = lattice(COARSE)
-    on_paths = {along(way, size) for way in rays(MODULES).values() for size in range(UNITS + 1)}
-    while new := next_points(differences(reversal(100), points), MODULES, limit, "toy"):
-        assert set(new) <= on_paths or len(points) + len(new) <= limit
-        points += new
-    assert len(set(points)) == len(points)
-    assert set(points) - on_paths <= {*lattice(COARSE), *lattice(FINE)}
 
 
 def test_the_first_turn_of_a_path_is_bisected_to_one_unit() -> None:

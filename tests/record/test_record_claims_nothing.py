@@ -7,12 +7,12 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.errors import UserError
+from faultpath.question import StopWhen
 from faultpath.record import (
     CORRECT,
     SHARED,
     DecisionRecord,
     StopRule,
-    StopWhen,
     decide,
     phrases,
     wording,

@@ -5,8 +5,6 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
 from faultpath.record import CORRECT, SHARED, DecisionRecord, decide, phrases
-from faultpath.record.compared import Voids
-from faultpath.record.family import decide_paths
 from faultpath.record.summary import answers
 from faultpath.trials import OutcomeTable, Status
 
@@ -83,13 +81,6 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert "new is ahead" in safe.verdict.headline
 
 
-def test_trials_that_failed_in_both_arms_favour_neither():
-    both = [*[NO] * 5, *[YES] * 85, *[FAILED] * 10]
-    made = audit(([YES] * 90 + [FAILED] * 10, both))
-    assert made.effects[0].sign == 1
-    assert "10 trials of new failed and 10 of old" in made.findings[0]
-
-
 def test_a_failure_on_one_path_is_open_on_the_others_too():
     """The scenes that it leaves out are those of every path: there the others are known."""
     wins = np.arange(SCENES) < 9
@@ -114,28 +105,3 @@ def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
     assert (shared.uneven, shared.leads) == (True, False)
     assert made.changes[0].turn != "reversal"
     assert "Do not choose" not in made.verdict.headline
-
-
-def test_whole_audits_with_failures_keep_their_level():
-    """Equal arms on two paths; a trial that the repair loses may fail."""
-    stream, said = np.random.default_rng(8), 0
-    for _ in range(150):
-        success, arms, held = {}, {}, np.ones(60, bool)
-        for path in (CORRECT, SHARED):
-            first, second = stream.random((2, 60, 1)) < 0.6
-            died = ~first & (stream.random((60, 1)) < 0.15)
-            held &= ~died[:, 0]
-            arms[path] = first, second, died
-        for path, (first, second, _) in arms.items():
-            success[path] = first[held], second[held]
-        voids = {
-            path: Voids(
-                failed=(int(died.sum()), 0),
-                alone=(int(died.sum()), 0),
-                against=(first, second),
-                favour=(first | died, second),
-            )
-            for path, (first, second, died) in arms.items()
-        }
-        said += decide_paths(success, rule="unconditional", voids=voids).announces
-    assert said <= 0.06 * 150

@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 
 from faultpath.statistics import (
     Resamples,
-    break_even,
     change,
     decide_family,
-    mixture_curve,
     success_effect,
     with_test,
 )
@@ -62,14 +60,6 @@ def test_a_bet_on_discordant_pairs_is_robbins_mixture():
         assert found == pytest.approx(exact, rel=1e-2)
 
 
-def test_evidence_does_not_depend_on_the_order_of_scenes():
-    values = generator("betting", "order", 0).choice([-1.0, -0.5, 0.0, 0.5, 1.0], 60)
-    kinds, counts = np.unique(values, return_counts=True)
-    for ordered in (values, values[::-1], np.sort(values)):
-        last = log_capitals(ordered, 0.1, 1.0)[-1]
-        assert last == pytest.approx(float(log_capital(kinds, counts, 0.1, 1.0)), abs=1e-9)
-
-
 @pytest.mark.parametrize("scenes", [1, 2, 4, 14])
 def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
     for wins in range(scenes + 1):
@@ -95,21 +85,6 @@ def test_swapping_the_arms_mirrors_and_copying_a_seed_changes_nothing(seed, seed
     assert mirrored.test.p_value == found.test.p_value
     assert copied.interval == pytest.approx(found.interval, abs=1e-9)
     assert copied.test.p_value == pytest.approx(found.test.p_value)
-
-
-def test_the_band_of_a_mixture_touches_0_exactly_where_it_is_undecided():
-    stream = generator("betting", "mixture", 0)
-    correct = effect(*(stream.random((120, 1)) < [[[0.6]], [[0.9]]]))
-    faulty = effect(*(stream.random((120, 1)) < [[[0.9]], [[0.4]]]))
-    found = break_even(correct, faulty)
-    ((start, end),) = found.pieces
-    for p, _, low, high in mixture_curve(correct, faulty, points=201):
-        if min(abs(p - start), abs(p - end)) > 1e-6:
-            assert (low <= 0.0 <= high) == (start < p < end)
-    ends = mixture_curve(correct, faulty, points=2)
-    assert ends[0][2:] == pytest.approx(correct.interval)
-    assert ends[1][2:] == pytest.approx(faulty.interval)
-    assert "betting" in found.method
 
 
 def test_each_contrast_stands_at_its_own_share():

@@ -1,7 +1,5 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -19,7 +17,6 @@ from faultpath.statistics import (
     success_effect,
 )
 from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
-from faultpath.streams import generator
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
@@ -51,21 +48,6 @@ def test_resamples_are_keyed_and_complete():
         RESAMPLES.counts[0, 0] = 3
 
 
-@pytest.mark.parametrize(
-    ("n_resamples", "n_scenes"), [(10_000, 100), (10_000, 1), (3001, 37), (3, 70_001)]
-)
-def test_counts_are_those_of_the_scenes_drawn_one_resample_after_another(n_resamples, n_scenes):
-    """However the counting is done: every reported interval comes of these very numbers."""
-    drawn = generator("bootstrap", "plain", 4).integers(0, n_scenes, size=(n_resamples, n_scenes))
-    plain = np.stack([np.bincount(row, minlength=n_scenes) for row in drawn]).astype(np.float64)
-    resamples = Resamples.draw("plain", n_scenes, seed=4, n_resamples=n_resamples)
-    assert resamples.counts.dtype == np.float64
-    np.testing.assert_array_equal(resamples.counts, plain, strict=True)
-    blocks = list(resamples.blocks())
-    assert len(blocks) > 1 or n_scenes == 1
-    np.testing.assert_array_equal(np.concatenate(blocks), plain, strict=True)
-
-
 @fewer
 @given(BINARY.filter(lambda pair: pair.shape[2] > 1))
 def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
@@ -87,19 +69,6 @@ def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
     backward = success_effect(*pair[::-1], RESAMPLES, models=True)
     low, high = trained.interval
     assert (backward.value, backward.interval) == (-trained.value, pytest.approx((-high, -low)))
-
-
-@pytest.mark.parametrize("seeds", [3, 5])
-def test_the_interval_for_new_trainings_holds_their_mean(seeds):
-    """The crossed bootstrap, which knows too little of the spread of a few, held it in .79."""
-    rng, audits, held = np.random.default_rng(8), 300, 0
-    for _ in range(audits):
-        shift = rng.normal(0.0, 0.08, size=seeds)
-        scene, one, two = rng.random((N, 1)), *rng.normal(0.0, 0.15, size=(2, N, seeds))
-        arms = scene + one < 0.5 + shift, scene + two < 0.5
-        low, high = success_effect(*arms, RESAMPLES, models=True).interval
-        held += low <= 0.0 <= high
-    assert held >= 0.92 * audits
 
 
 @fewer
@@ -124,15 +93,6 @@ def test_duplicating_seeds_changes_neither_value_nor_interval(pair, times):
 
 
 @fewer
-@given(BINARY, st.permutations(range(N)))
-def test_permuting_scenes_with_their_resamples_changes_nothing(pair, order):
-    order = np.array(order)
-    resamples = replace(RESAMPLES, counts=RESAMPLES.counts[:, order])
-    moved = success_effect(*pair[:, order], resamples)
-    assert moved.estimate() == success_effect(*pair, RESAMPLES).estimate()
-
-
-@fewer
 @given(BINARY, BINARY)
 def test_a_change_is_joint(a, b):
     effect_a, effect_b = (success_effect(*pair, RESAMPLES) for pair in (a, b))
@@ -145,22 +105,6 @@ def test_a_change_is_joint(a, b):
     assert not none.scenes.values.any()
     low, high = none.interval
     assert low == -high < 0
-
-
-def test_effects_that_are_not_joint_are_refused():
-    one = np.ones((N, 2))
-    here = success_effect(one, one, RESAMPLES)
-    elsewhere = success_effect(one, one, Resamples.draw("other", N, n_resamples=500))
-    with pytest.raises(ValueError, match="same resamples"):
-        change(here, elsewhere)
-    with pytest.raises(ValueError, match="'pp' and 'm'"):
-        change(here, mean_effect(one, one, RESAMPLES, "m"))
-    trained = success_effect(one, one, RESAMPLES, models=True)
-    with pytest.raises(ValueError, match="one effect speaks of new seeds"):
-        change(here, trained)
-    three = np.ones((N, 3))
-    with pytest.raises(ValueError, match="same seeds"):
-        change(trained, success_effect(three, three, RESAMPLES, models=True))
 
 
 def test_wrong_input_is_refused():

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from faultpath.statistics import (
     Resamples,
     break_even,
-    mean_effect,
     mixture_curve,
     success_effect,
 )
@@ -39,18 +38,6 @@ def effect(wins, losses, first_scene=0):
 )
 def test_the_point_is_where_the_estimates_cross(delta_0, delta_f, expected):
     assert break_even_point(delta_0, delta_f) == expected
-
-
-@settings(deadline=None)
-@given(DELTA, DELTA)
-def test_the_mixture_is_zero_at_the_point_and_nowhere_without_one(delta_0, delta_f):
-    p = break_even_point(delta_0, delta_f)
-    if p is None:
-        assert delta_0 * delta_f > 0 or delta_0 == delta_f
-    else:
-        assert 0 <= p <= 1
-        assert (1 - p) * delta_0 + p * delta_f == pytest.approx(0, abs=1e-9)
-        assert break_even_point(-delta_0, -delta_f) == p
 
 
 def test_a_clear_crossing():
@@ -117,35 +104,3 @@ def test_the_curves_band_holds_0_exactly_where_the_set_is(counts, shift):
     first, *_, last = mixture_curve(correct, faulty)
     assert first[2:] == pytest.approx(correct.interval, abs=1e-6)
     assert last[2:] == pytest.approx(faulty.interval, abs=1e-6)
-
-
-def test_unbounded_outcomes_use_the_bootstrap():
-    rng = np.random.default_rng(0)
-    correct, faulty = (
-        mean_effect(rng.normal(mean, 1, N), np.zeros(N), RESAMPLES, "m") for mean in (-1.0, 2.0)
-    )
-    result = break_even(correct, faulty)
-    ((low, high),) = result.pieces
-    assert 0.2 < low < result.p_star < high < 0.5
-    assert [region.sign for region in result.regions] == [-1, 1]
-    _, _, *ends = mixture_curve(correct, faulty, points=2)[0]
-    assert tuple(ends) == correct.interval
-
-
-def models(wins, losses):
-    """An effect for newly trained models: three trainings, a scene is won or lost by all."""
-    scene = np.repeat(np.arange(N)[:, np.newaxis], 3, axis=1)
-    arms = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return success_effect(*arms, RESAMPLES, models=True)
-
-
-@pytest.mark.parametrize("losses", [0, 2, 30])
-def test_the_band_for_newly_trained_models_is_that_of_the_effects_and_of_the_set(losses):
-    correct, faulty = models(2, losses), models(40, 1)
-    curve = mixture_curve(correct, faulty, points=101)
-    assert curve[0][2:] == pytest.approx(correct.interval)
-    assert curve[-1][2:] == pytest.approx(faulty.interval)
-    ((first, last),) = break_even(correct, faulty).pieces
-    for p, _, low, high in curve:
-        assert low < high
-        assert (low <= 0 <= high) == (first <= p <= last)

@@ -10,7 +10,7 @@ from scipy.stats import norm
 from statsmodels.stats.proportion import proportion_confint
 
 from faultpath.statistics import Resamples, success_effect, success_rate
-from faultpath.statistics.score import SceneValues, interval, reach, rejects
+from faultpath.statistics.score import SceneValues, rejects
 
 Z = float(norm.ppf(0.975))
 N = 30
@@ -42,20 +42,6 @@ def test_one_seed_gives_tangos_interval(n):
             values = np.concatenate([np.ones(b), -np.ones(c), np.zeros(n - b - c)])
             found = SceneValues.paired(values, 1.0).interval()
             assert found == pytest.approx(tango(b, c, n), abs=1e-9), (b, c)
-
-
-@pytest.mark.parametrize(("n", "n_seeds"), [(100, 1), (100, 3), (25, 5)])
-def test_no_discordance_has_an_interval_with_width(n, n_seeds):
-    """0 of 100 used to print [0.0, 0.0]; that no scene in n differs bounds how many may."""
-    none = np.zeros((n, n_seeds))
-    found = success_effect(none, none, Resamples.draw("none", n, n_resamples=10))
-    expected = 100 * Z**2 / (n + Z**2)
-    assert found.value == 0.0
-    assert found.interval == pytest.approx((-expected, expected))
-    everything = np.concatenate([np.ones(n)])
-    whole = success_effect(everything, 0 * everything, Resamples.draw("w", n, n_resamples=10))
-    assert whole.estimate().high == 100.0
-    assert whole.estimate().low == pytest.approx(100 - 2 * expected)
 
 
 @laws
@@ -103,14 +89,3 @@ def test_one_arms_rate_has_wilsons_interval(successes):
     assert found.method == "score (Wilson)"
     seeds = success_rate(np.tile(outcomes[:, None], 3), RESAMPLES)
     assert seeds.interval == pytest.approx(found.interval)
-
-
-def test_batches_agree_with_single_samples():
-    rng = np.random.default_rng(0)
-    counts = rng.integers(0, 20, size=(50, 7)).astype(float)
-    kinds = np.arange(-3.0, 4.0)
-    values = np.broadcast_to(kinds, counts.shape)
-    low, high = interval(values, counts, reach(values, counts, 3.0), Z)
-    for row, *ends in zip(counts, low, high, strict=True):
-        scenes = SceneValues.paired(np.repeat(kinds, row.astype(int)), 3.0)
-        assert scenes.interval() == pytest.approx(ends, abs=1e-12)

@@ -8,8 +8,6 @@ import pytest
 
 from faultpath.statistics import Resamples, success_effect, unconditional, with_test
 from faultpath.statistics.distributions import sign_p_value
-from faultpath.statistics.power import rule_power
-from faultpath.statistics.score import quantile, rejects
 
 
 def tables(n):
@@ -54,24 +52,6 @@ def test_p_values_are_those_of_the_definition_and_keep_their_level(n):
         assert p >= expected * (1.0 - 1e-7)  # as near as the maximum is looked for
     for alpha in (0.05, 0.025, 0.05 / 6, 0.001):
         assert (laws @ (ours <= alpha)).max() <= alpha
-
-
-def test_of_a_hundred_pairs_it_agrees_with_tangos_interval_nearly_everywhere():
-    """What the documents say: where each test and the interval disagree, level, and power."""
-    first, second = np.array(tables(100)).T
-    total, fewer = first + second, np.minimum(first, second)
-    em = fewer <= unconditional.critical(100, 0.05)[total]
-    exact = np.array([sign_p_value(b, c) for b, c in zip(first, second, strict=True)]) <= 0.05
-    counts = np.stack([second, 100 - total, first], axis=1).astype(float)
-    interval = rejects(np.array([-1.0, 0.0, 1.0]), counts, 0.0, np.ones(len(em)), quantile(0.95))
-    assert len(em) == 5151
-    assert (em != interval).sum() == 12
-    assert (exact != interval).sum() == 94
-    levels = [chances(100, share)[em].sum() for share in np.linspace(0.0, 1.0, 51)]
-    assert 0.049 < max(levels) < 0.0498
-    # 5 % of pairs discordant, all of them on one side: the power of test and interval together.
-    power = {rule: rule_power(100, 0.05, 0.05, rule=rule) for rule in ("exact", "unconditional")}
-    assert power == pytest.approx({"exact": 0.38, "unconditional": 0.74}, abs=5e-3)
 
 
 @pytest.mark.parametrize(("n", "alpha"), [(7, 0.05), (40, 0.05), (40, 0.05 / 6), (100, 0.025)])

@@ -90,18 +90,6 @@ def test_latex_is_balanced_and_every_row_has_every_column(table: Table) -> None:
     assert rf"{{@{{}}l{'c' * len(table.columns)}@{{}}}}" in tex
 
 
-def test_latex_puts_the_papers_figures_in_a_row_of_their_own() -> None:
-    rows = _rows(booktabs(SMALL))
-    assert rows[1:] == [
-        r"\multicolumn{3}{@{}l}{\emph{Heading (pp)}} \\",
-        r"{[row]} & \textbf{+57.3} &  \\",
-        r" & (+49.7) &  \\",
-        r"{Another} & -- & 4 \\",
-        r" & (no crossing) &  \\",
-        r"{Ours alone} & [$-$1.0, 2.0] & $p^\star$ 3 \% \\",
-    ]
-
-
 def test_no_text_ends_an_environment_or_starts_a_comment() -> None:
     tex = booktabs(ODD)
     assert tex.count(r"\end{tabular}") == 1
