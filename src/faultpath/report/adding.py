@@ -88,7 +88,7 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
 def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | None:
     asked = source.record.question
     found: list[tuple[str, str, tuple[Lines, ...]]] = []
-    terms: tuple[Signal, ...] = ()
+    terms: list[Signal] = []
     for path in source.record.paths:
         if path.name == CORRECT or path.name not in pairs:
             continue
@@ -99,7 +99,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
         ):
             known = _terms(source.signals.get(TrialAddress(name, path.name, pair.seed, scene), ()))
             if trial is not None and known:
-                terms = known
+                terms = [*known]
                 values = np.array([each.values[:, 0] for each in known], np.float64)
                 ended = f"{wording.ended(asked, trial.status)}, {trial.time_s:.1f} s"
                 lines.append(Lines(role, name, values, trial, ended))
@@ -180,7 +180,7 @@ def _arm(svg: Svg, arm: Lines, x: Axis, y: Axis, shown: Adding) -> None:
     svg.text(_WIDTH, y.end - 10, arm.ended, "small soft", "end")
     draw_levels(svg, x, y, 4, zero="zero")
     svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-    steps = shown.dt_s * np.arange(arm.values.shape[1])
+    steps: NDArray[np.float64] = shown.dt_s * np.arange(arm.values.shape[1])
     lines: list[list[Point]] = []
     for values in np.clip(arm.values, y.low, y.high):
         known = np.isfinite(values)

@@ -99,7 +99,9 @@ def panel(title: str, rows: Rows, axis: Axis, width: float = 350.0) -> str:
         note, sign = ("", 0) if isinstance(row, str) else (row.note, row.sign)
         room = width - text_width(value, 12) - text_width(note, 11) - 18
         short = shortened(label, room, 12)
-        svg.rect(0, y + 3, width, 18, "paper")
+        beside = text_width(short, 12) + (text_width(note, 11) + 12 if note else 6)
+        svg.rect(0, y + 3, beside, 18, "paper")
+        svg.rect(width - text_width(value, 12) - 6, y + 3, text_width(value, 12) + 6, 18, "paper")
         svg.text(0, y + 16, short, tip=label)
         if note:
             svg.text(text_width(short, 12) + 6, y + 16, note, "small soft")

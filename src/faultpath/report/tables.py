@@ -23,11 +23,7 @@ ALL = (
 def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
     """Return all that a record says of a path, by the name of the quantity."""
     found = {b.path: wording.break_even(b.result) for b in record.break_even}
-
-    def number(value: float | None) -> str:
-        return MISSING if value is None else wording.plain(value)
-
-    beside = effect.mcnemar_p_value
+    beside, power = effect.mcnemar_p_value, effect.minimum_detectable_pp
     return {
         "baseline": wording.plain(effect.baseline_percent),
         "repair": wording.plain(effect.repair_percent),
@@ -42,7 +38,7 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
         "mcnemar": MISSING if beside is None else wording.p_value(beside),
         "holm": wording.adjusted(effect),
         "decided": decided_for(record, effect),
-        "power": number(effect.minimum_detectable_pp),
+        "power": MISSING if power is None else wording.plain(power),
         "scenes": str(effect.scenes),
         "void": Entry(text=str(effect.void_pairs), tone="bad" if effect.void_pairs else ""),
         "break-even": found.get(effect.path, MISSING),
