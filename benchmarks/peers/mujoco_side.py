@@ -7,10 +7,10 @@ import numpy as np
 
 from benchmarks import physics
 from benchmarks.side import Side, check_same
+from examples.mujoco_plant import MujocoPlant
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.perception.camera import RANGE_M
 from faultpath.quadrotor.perception.camera import rays as camera_rays
-from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
 from faultpath.quadrotor.scenes.scene import Scene
 
 

@@ -1,6 +1,7 @@
 """The plant on MuJoCo: the reference plant's trajectories, and the laws that every plant keeps."""
 
-import sys
+import runpy
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from flights import bits as outcome_bits
 from flights import fly as fly_trials
 from torch import Tensor
 
-from faultpath.errors import UserError
 from faultpath.quadrotor import so3
 from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath.quadrotor.plant.vehicle_batch import Vehicle
@@ -22,10 +22,10 @@ from faultpath.quadrotor.vehicle import (
     STEPS_PER_CONTROL,
     draw,
 )
-from faultpath.trials import SystemSpec, load_system
 
 pytest.importorskip("mujoco")
-from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
+EXAMPLE = Path(__file__).parents[2] / "examples" / "mujoco_plant.py"
+MujocoPlant = runpy.run_path(str(EXAMPLE))["MujocoPlant"]
 
 F64 = torch.float64
 LANES, CONTROLS = 40, 30
@@ -110,7 +110,7 @@ def test_an_audit_s_trials_are_their_own_and_of_their_plant(
 ) -> None:
     monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
     scenes = [scene.id for scene in SCENES[:4]]
-    system, other = (quadrotor(wind="L3", plant=plant) for plant in ("mujoco", "torch"))
+    system, other = (quadrotor(wind="L3", plant=plant) for plant in (f"{EXAMPLE}:create", "torch"))
     whole, alone, torch_s = (
         fly_trials(each, "dob", chosen, seed=3)[0]
         for each, chosen in ((system, scenes), (system, scenes[2:3]), (other, scenes))
@@ -123,12 +123,4 @@ def test_an_audit_s_trials_are_their_own_and_of_their_plant(
             theirs.metrics["terminal_distance_m"], abs=1e-3
         )
     assert system.fingerprint() != other.fingerprint()
-    assert system.backend.endswith("MuJoCo")
-
-
-def test_without_mujoco_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "mujoco", None)
-    monkeypatch.delitem(sys.modules, "faultpath.quadrotor.plant.mujoco_plant")
-    with pytest.raises(UserError, match=r"pip install '\.\[mujoco\]'"):
-        load_system(SystemSpec(name="quadrotor", options={"plant": "mujoco"}))
-    assert load_system(SystemSpec(name="quadrotor", options={"plant": "torch"}))
+    assert system.backend.endswith("mujoco_plant.py:create")

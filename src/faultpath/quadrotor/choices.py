@@ -106,7 +106,7 @@ class QuadrotorChoices(BaseModel):
     plant: Annotated[
         str,
         "What integrates the vehicle's motion, or your own as file.py:factory.",
-        Offered("torch", "mujoco", factories=True),
+        Offered("torch", factories=True),
     ] = "torch"
     device: Annotated[DeviceName, "What computes worlds and planners."] = DeviceName.CPU
     bring: Annotated[

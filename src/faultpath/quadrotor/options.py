@@ -21,7 +21,6 @@ from faultpath.quadrotor.planners import (
     Planner,
     SamplerSettings,
 )
-from faultpath.quadrotor.plant import Plant, TorchPlant
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.trials.options import call
 
@@ -38,7 +37,6 @@ class QuadrotorOptions(QuadrotorChoices):
 
         Raises:
             UserError: There is no such device, or the plant does not fly on it.
-            ModuleNotFoundError: The plant needs a package that is not installed.
         """
         given = choices.model_dump(include=choices.model_fields_set)
         if choices.bring and not all(part.strip() for part in choices.bring.split(",")):
@@ -52,9 +50,7 @@ class QuadrotorOptions(QuadrotorChoices):
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
             )
         require(choices.device)
-        options = cls.model_validate(given)
-        _ = options.plant_class  # what is missing is missed before anything flies
-        return options
+        return cls.model_validate(given)
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -70,15 +66,6 @@ class QuadrotorOptions(QuadrotorChoices):
     def place(self) -> torch.device:
         """Where tensors are made."""
         return device_of(self.device)
-
-    @property
-    def plant_class(self) -> type[Plant]:
-        """What of ours flies the vehicles; `ModuleNotFoundError` where its package is missing."""
-        if self.plant == "mujoco":
-            from faultpath.quadrotor.plant.mujoco_plant import MujocoPlant
-
-            return MujocoPlant
-        return TorchPlant
 
     @property
     def sampling(self) -> SamplerSettings:

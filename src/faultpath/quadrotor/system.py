@@ -26,6 +26,7 @@ from faultpath.quadrotor.options import QuadrotorOptions
 from faultpath.quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath.quadrotor.perception.module import Perception
 from faultpath.quadrotor.planners.module import Planning
+from faultpath.quadrotor.plant import TorchPlant
 from faultpath.quadrotor.plant.module import VehiclePlant
 from faultpath.quadrotor.plant.world import World
 from faultpath.quadrotor.platform import PLATFORM
@@ -99,8 +100,7 @@ class Quadrotor(LoopSystem):
         computes = (
             native.describe() if options.device is DeviceName.CPU else describe(options.device)
         )
-        flies = {"torch": "", "mujoco": ", the plant on MuJoCo"}
-        return computes + flies.get(options.plant, f", the plant {options.plant}")
+        return computes + ("" if options.plant == "torch" else f", the plant {options.plant}")
 
     def fingerprint(self) -> str:
         """See `System.fingerprint`: the kernels' arithmetic on this machine, and the options."""
@@ -132,7 +132,7 @@ class Quadrotor(LoopSystem):
 
         def world(scenes: Sequence[str]) -> World:
             flown, winds = self._records(scenes), PLATFORM.winds
-            flies = options.plant_class if own is None else own.load(None)
+            flies = TorchPlant if own is None else own.load(None)
             return World(flown, options.wind, free, place, flies, winds)
 
         def camera(scenes: Sequence[str]) -> DepthRenderer:

@@ -1,4 +1,6 @@
-"""A second plant, integrated by MuJoCo, that shares no equation of motion with the first.
+"""A plant of one's own for the quadrotor: MuJoCo, which shares no equation of motion with ours.
+
+    faultpath audit quadrotor --plant examples/mujoco_plant.py:create
 
 It flies the same vehicle (extra `[mujoco]`): what an audit finds on it does not hang on how the
 reference plant is written, and a test holds the two together. MuJoCo integrates the free body, the
@@ -198,3 +200,8 @@ def _unpack(physics: Array) -> PlantState:
         lanes(physics[:, _RATE]),
     )
     return PlantState(state, lanes(physics[:, _THRUSTS]))
+
+
+def create(seed: int | None) -> type[Plant]:
+    """Return the class of the plant; there is nothing to train."""
+    return MujocoPlant
