@@ -85,4 +85,4 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
         found = re.findall(r"pip install '(?:\.|/faultpath)\[([\w,]+)\]'|\bextra\(['\"](\w+)", text)
         named |= {each for pair in found for one in pair for each in one.split(",") if each}
     assert {"quadrotor", "torch", "pandas", "ray"} <= named
-    assert named | set(_EXTRAS.values()) <= extras
+    assert named | set(_EXTRAS) <= extras

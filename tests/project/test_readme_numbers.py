@@ -28,21 +28,14 @@ def record_of(run: str) -> DecisionRecord:
     return DecisionRecord.model_validate_json((REFERENCE / run / "record.json").read_bytes())
 
 
-def numbers(record: DecisionRecord) -> object:
+def numbers(value: object) -> object:
     """Everything of a record that is no sentence, without the last digits of one processor."""
-    content = record.model_dump(exclude={"verdict": True, "question": {"system"}})
-    for part in (*content["effects"], *content["changes"], *content["break_even"]):
-        del part["words"]
-    for part in content["break_even"]:
-        del part["result"]["words"]
-    return rounded(content)
-
-
-def rounded(value: object) -> object:
+    if isinstance(value, DecisionRecord):
+        return numbers(value.model_dump(exclude={"verdict": True, "question": {"system"}}))
     if isinstance(value, dict):
-        return {key: rounded(part) for key, part in value.items()}
+        return {key: numbers(part) for key, part in value.items() if key != "words"}
     if isinstance(value, list | tuple):
-        return [rounded(part) for part in value]
+        return [numbers(part) for part in value]
     return round(value, 6) + 0.0 if isinstance(value, float) else value
 
 
