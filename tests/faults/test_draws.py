@@ -28,22 +28,8 @@ def test_a_scenes_row_does_not_depend_on_its_neighbours(what: str) -> None:
     np.testing.assert_array_equal(block[2:], alone)
 
 
-def test_order_of_asking_does_not_matter() -> None:
-    one, two = Draws(("a",), 0, "x"), Draws(("a",), 0, "x")
-    forwards = [one.uniform((), step) for step in range(3)]
-    backwards = [two.uniform((), step) for step in (2, 1, 0)]
-    np.testing.assert_array_equal(forwards, backwards[::-1])
-    assert len({float(value[0]) for value in forwards}) == 3
-
-
 def test_parts_and_causes_and_seeds_are_apart() -> None:
     base = Draws(("a",), 0, "x")
     others = (base.part(0), base.part(1), base.part(0).part(1), Draws(("a",), 1, "x"))
     values = [float(draws.normal((), 0)[0]) for draws in (base, *others)]
     assert len(set(values)) == len(values)
-
-
-def test_permutations_hold_every_index_once() -> None:
-    drawn = Draws(("a", "b"), 0, "x").permutation(6, 2)
-    np.testing.assert_array_equal(np.sort(drawn, axis=1), np.tile(np.arange(6), (2, 1)))
-    assert not np.array_equal(drawn[0], drawn[1])

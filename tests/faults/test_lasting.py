@@ -8,7 +8,6 @@ import torch
 
 from faultpath.faults import (
     Bias,
-    Coupled,
     Draws,
     Fault,
     Freeze,
@@ -51,15 +50,6 @@ def test_a_wandering_bias_is_stationary_and_forgets_with_its_time_constant() -> 
     np.testing.assert_allclose(after, np.exp([-0.1, -1.0, -2.0]), atol=0.05)
 
 
-def test_a_wandering_bias_does_not_depend_on_how_often_a_tap_delivers() -> None:
-    bias, draws = Bias(std=0.3, time_constant_s=0.5), Draws(("a", "b"), 0, "cause")
-    seldom = np.zeros(2)
-    memory = bias.begin(seldom, Moment(0, 0, DT_S, draws))
-    for step in (3, 4, 9):
-        value, memory = bias.apply(seldom, memory, Moment(step, step, DT_S, draws))
-    assert value.tobytes() == biases(bias, 10, draws)[9].tobytes()
-
-
 @pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (0.5**0.5, 0.5**0.5), (1.0, -1.0), (0.0, 0.7)])
 def test_two_faults_of_one_cause_have_the_correlation_of_their_loadings(a: float, b: float) -> None:
     mass, thrust = (
@@ -70,14 +60,6 @@ def test_two_faults_of_one_cause_have_the_correlation_of_their_loadings(a: float
     assert np.corrcoef(errors)[0, 1] == pytest.approx(a * b, abs=0.04)
     for each in errors:
         assert each.std() == pytest.approx(0.1, rel=0.05)
-
-
-def test_correlated_uniform_numbers_stay_uniform() -> None:
-    own = Draws(SCENES, 0, "own")
-    drawn = Draws(SCENES, 0, "common", 0.8, own).uniform((), 0)
-    common = Draws(SCENES, 0, "common", 0.8, Draws(SCENES, 0, "other")).uniform((), 0)
-    np.testing.assert_allclose(np.quantile(drawn, [0.1, 0.5, 0.9]), [0.1, 0.5, 0.9], atol=0.03)
-    assert np.corrcoef(drawn, common)[0, 1] == pytest.approx(0.62, abs=0.04)  # 6/pi asin(0.64/2)
 
 
 def test_a_fault_that_draws_nothing_has_no_loading() -> None:
@@ -104,11 +86,6 @@ def test_parts_of_a_sequence_are_correlated_each_with_its_like_and_not_with_the_
         parts.apply(np.zeros(len(SCENES)), None, Moment(0, 0, DT_S, each))[0] for each in draws
     ]
     assert np.corrcoef(whole)[0, 1] == pytest.approx(0.5, abs=0.05)
-
-
-def test_a_coupled_fault_keeps_the_loadings_of_its_parts() -> None:
-    part = Fault(channel="mass", intervention=Bias(std=0.1), loading=-0.5)
-    assert Coupled(name="two", faults=(part,)).striking("predictor").faults[0].loading == -0.5
 
 
 def phases(what: Intermittence, steps: int) -> np.ndarray[Any, Any]:

@@ -72,11 +72,6 @@ def test_correlation_is_the_product_of_two_loadings() -> None:
     assert [fault.loading for fault in coupled.faults] == [0.5, 0.5]
 
 
-def test_preset_is_the_systems() -> None:
-    assert parse("calibration=+0.1") == calibration(0.1)
-    assert parse("calibration=-0.25") == calibration(-0.25)
-
-
 def test_a_group_stands_for_its_channels() -> None:
     assert parse("calibration:delay=3") == Coupled(
         name="calibration:delay",
@@ -104,15 +99,6 @@ def test_time_and_consumers(text: str) -> None:
         duration_steps=40,
         recovery_steps=5,
     )
-
-
-def test_time_and_consumers_of_a_preset() -> None:
-    fault = parse("calibration=+0.1,onset=3,for=2@observer")
-    assert isinstance(fault, Coupled)
-    assert [(f.onset_step, f.duration_steps, f.consumers) for f in fault.faults] == [
-        (3, 2, ("observer",))
-    ] * 2
-    assert [f.intervention for f in fault.faults] == [Scale(factor=1.1), Scale(factor=0.9)]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,6 @@ import re
 import pytest
 from pydantic import ValidationError
 
-from faultpath.errors import UserError
 from faultpath.interface import Channel, Interface, Source, Uncertainty
 
 MASS = Source(name="mass_estimate", unit="kg", provenance="estimated")
@@ -21,27 +20,6 @@ def channel(name: str = "mass", **fields: object) -> Channel:
 def build(**fields: object) -> Interface:
     given = {"name": "toy", "sources": (MASS,), "channels": (channel(),)} | fields
     return Interface.model_validate(given)
-
-
-def test_looks_up_by_name() -> None:
-    interface = build()
-    assert interface.channel("mass").sources == ("mass_estimate",)
-    assert interface.source("mass_estimate").unit == "kg"
-
-
-@pytest.mark.parametrize(
-    ("look_up", "sentence"),
-    [
-        (
-            lambda i: i.channel("mas"),
-            "interface toy: unknown channel 'mas'; did you mean 'mass'? known: mass",
-        ),
-        (lambda i: i.source("wind"), "interface toy: unknown source 'wind'; known: mass_estimate"),
-    ],
-)
-def test_unknown_name_is_a_users_mistake(look_up: object, sentence: str) -> None:
-    with pytest.raises(UserError, match=f"^{re.escape(sentence)}$"):
-        look_up(build())
 
 
 @pytest.mark.parametrize(
@@ -118,12 +96,6 @@ def test_refuses_reconstructions_in_a_circle() -> None:
             ),
             reconstructs={"a": "one", "b": "two"},
         )
-
-
-@pytest.mark.parametrize("consumer", ["predictor", "predictor.", ".dynamics", "a.b.c", "A.b"])
-def test_a_consumer_is_a_module_and_a_place(consumer: str) -> None:
-    with pytest.raises(ValidationError, match="pattern"):
-        channel(consumers=(consumer,))
 
 
 def test_uncertainty_is_one_of_two() -> None:

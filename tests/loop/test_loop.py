@@ -105,17 +105,6 @@ def test_a_query_of_a_step_gone_by_is_refused() -> None:
         execute((Guess(), Late()))
 
 
-def test_an_answer_cannot_be_written_to() -> None:
-    class Writing(Planner):
-        def step(self, inputs, memory):
-            answer = inputs["clearance", "cost"](np.zeros((2, 2)))
-            with pytest.raises(ValueError, match="read-only"):
-                answer += 1
-            return {"order": np.ones(2)}, memory
-
-    execute((Guess(), Writing()))
-
-
 def test_what_is_not_declared_cannot_be_read() -> None:
     class Peeking(Guess):
         def step(self, inputs, memory):
@@ -202,12 +191,6 @@ def _undeclared():
     graph(interface_of((Guess(), Planner(), Line())), Line(), (Other(), Planner()))
 
 
-def test_facts_that_list_readers_keep_their_list() -> None:
-    facts = "name: x\nsources: [{name: s, unit: m, provenance: measured}]\n"
-    facts += "channels: [{name: position, sources: [s], consumers: [a.b]}]\n"
-    assert derived(facts, (Guess(),)).channel("position").consumers == ("a.b",)
-
-
 def test_a_filter_reconstructs_position_and_velocity():
     class Filter(Module):
         """Holds where the vehicle was, and differences that."""
@@ -272,18 +255,6 @@ def test_a_loop_is_executed_as_often_as_wanted_and_ends_where_nothing_runs():
 
     together = [(one.step, two.step) for one, two in zip(execution(), execution(), strict=True)]
     assert together == [(0, 0), (1, 1), (2, 2), (3, 3)]
-
-
-class _Module(Module):
-    name = "m"
-
-    def step(self, inputs, memory):
-        return {}, memory
-
-
-def test_a_module_draws_nothing_and_remembers_nothing_unless_it_says_so() -> None:
-    assert _Module().begin(_batch()) is None
-    assert _Module().noise_hashes(_batch()) is None
 
 
 def _batch() -> Batch:

@@ -94,22 +94,6 @@ def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_flies_beside():
     assert all(o.disturbance_hash != by_scene[o.scene].disturbance_hash for o in other)
 
 
-def test_an_array_as_state():
-    plant = FunctionPlant(
-        lambda rng: rng.uniform(size=2),
-        lambda state, push, rng: state + push,
-        observes={"place": 0, "both": slice(0, 2)},
-        action="push",
-        steps=3,
-        dt_s=0.1,
-        succeeded=lambda episode: episode["both"].shape == (4, 2),
-    )
-    units = {"place": "m", "both": "m", "push": "m"}
-    built = ComposedSystem("array", plant, {"only": Parts("", [Steer()])}, units)
-    assert {o.status for o in fly(built)} == {Status.SUCCESS}
-    assert built.interface.source("both").shape == (2,)
-
-
 def test_a_module_that_reads_the_past_says_what_was_before():
     class Late(Steer):
         reads_past = frozenset({Port("push", "executed")})

@@ -1,6 +1,5 @@
 """Gymnasium's environments as plants: ends of episodes, scenes, what follows from what runs."""
 
-import sys
 from functools import partial
 from pathlib import Path
 
@@ -10,10 +9,9 @@ from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
 
 import faultpath
 from faultpath.errors import SystemMistake, UserError
-from faultpath.faults import Fault, Offset
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
-from faultpath.trials import Status, SystemSpec, load_system
+from faultpath.trials import SystemSpec
 from faultpath.trials.registry import load_parts
 from faultpath.trials.state import system_code
 
@@ -28,10 +26,6 @@ class Choose(Module):
 
     def step(self, inputs, memory):
         return {"push": (inputs["place", "feedback"] < 0).astype(int)}, memory
-
-
-def told(outcomes):
-    return [(o.scene, o.status, o.time_s, o.initial_hash) for o in outcomes]
 
 
 def test_a_finished_episode_is_frozen_as_it_ended():
@@ -83,11 +77,6 @@ def test_a_scene_does_not_depend_on_the_scenes_beside_it():
     assert fly(built, mixed) == [by_scene[scene] for scene in mixed]
 
 
-def test_time_is_up_at_the_steps_that_were_asked_for():
-    outcomes = fly(system(plant(steps=2, succeeded=lambda episode: False)))
-    assert {(o.status, o.time_s) for o in outcomes} == {(Status.TIMEOUT, 1.0)}
-
-
 def test_what_runs_is_the_interface():
     def setup(env, rng):
         env.unwrapped.slope = rng.uniform(-0.1, 0.1)
@@ -124,29 +113,6 @@ def test_scenes_set_up_in_another_way_are_no_pair():
     assert not set(twice) & set(disturbances(0.1))
 
 
-def test_what_the_setup_returns_is_hashed_too():
-    def disturbances(size):
-        built = system(plant(setup=lambda env, rng: {"slope": size}))
-        return {o.disturbance_hash for o in fly(built)}
-
-    assert not disturbances(0.1) & disturbances(0.2)
-
-
-def test_keys_images_and_choices():
-    seen = []
-
-    def note(episode):
-        seen.append((episode["eye"].shape, len(episode["place"]) - len(episode.rewards)))
-        return True
-
-    observes = {"place": ("at", 0), "eye": "eye"}
-    walk = plant(Keyed, observes=observes, succeeded=note)
-    built = system(walk, [Choose()], units={"eye": "1"})
-    assert built.interface.source("eye").shape == (4, 4)
-    fly(built)
-    assert set(seen) == {((1, 4, 4), 1)}
-
-
 def test_several_sources_of_a_channel_and_the_one_that_a_variant_writes():
     class Guess(Module):
         name, writes, reads = "guess", ("guessed",), frozenset({Port("clock", "model")})
@@ -164,14 +130,6 @@ def test_several_sources_of_a_channel_and_the_one_that_a_variant_writes():
     assert built.variants["seeing"].bindings == {"place": "seen"}
     assert built.variants["guessing"].bindings == {"place": "guessed"}
     assert built.interface.reconstructs == {"guess": ("guessed",)}
-
-
-def test_a_fault_acts_at_its_tap():
-    built = system(plant())
-    fault = Fault(channel="place", intervention=Offset(by=9.0), consumers=("steer.feedback",))
-    ends = [[o.time_s for o in fly(built, faults=struck)] for struck in ((), (fault,))]
-    assert all(struck <= clean for clean, struck in zip(*ends, strict=True))
-    assert ends[0] != ends[1]
 
 
 def test_libraries_are_seeds():
@@ -258,16 +216,6 @@ def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
     assert "faultpath_system_:Own" in here
     assert "function" in here
     assert here == there
-
-
-def test_the_pendulum_counts_the_simulator_and_needs_its_package(monkeypatch):
-    built = load_system(SystemSpec(name=f"{PENDULUM}:create"))
-    assert "'mujoco': " in built.fingerprint()
-    assert built.control_dt_s == pytest.approx(0.04)
-    monkeypatch.setitem(sys.modules, "gymnasium", None)
-    monkeypatch.delitem(sys.modules, "faultpath.systems.gymnasium")
-    with pytest.raises(SystemMistake, match=r"pip install '\.\[gymnasium\]'"):
-        load_system(SystemSpec(name=f"{PENDULUM}:create"))
 
 
 def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_the_shared(tmp_path):

@@ -41,30 +41,6 @@ def test_the_audit_that_the_template_with_gymnasium_suggests_shows_a_reversal(tm
     assert decided["observer"] > 0 > decided["shared"]
 
 
-@pytest.mark.parametrize(
-    ("name", "what"),
-    [
-        *((name, "of Python's own") for name in ("json", "os", "math", "random", "types")),
-        *((name, "an installed package") for name in ("numpy", "pytest", "faultpath", "yaml")),
-        *((name, "a word of Python") for name in ("class", "lambda", "async")),
-        ("conftest", "pytest"),
-    ],
-)
-def test_no_system_stands_before_what_others_import(name, what, tmp_path):
-    """A file numpy.py would be imported in place of numpy, in that folder and for ever."""
-    with pytest.raises(UserError, match=rf"'{name}' is .*{what}.*such as my_{name}\."):
-        write_system(name, "numpy", tmp_path)
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_file_of_ones_own_is_no_package(tmp_path, monkeypatch):
-    monkeypatch.syspath_prepend(tmp_path)
-    (tmp_path / "rover").mkdir()
-    write_system("rover", "numpy", tmp_path)
-    with pytest.raises(UserError, match=r"rover\.py is there already"):
-        write_system("rover", "numpy", tmp_path)
-
-
 def test_what_cannot_be_written_is_said(tmp_path):
     for name in ("my rover", "Rover", "test_rover", "1st", ""):
         with pytest.raises(UserError, match="cannot name a system"):

@@ -9,13 +9,12 @@ import pytest
 import torch
 from tap_toys import make
 
-from faultpath.faults import Fault, Offset, Scale
+from faultpath.faults import Fault, Scale
 from faultpath.taps import (
     NotDelivered,
     Reading,
     StruckElsewhere,
     Taps,
-    UndeclaredReader,
     check_delivered,
 )
 
@@ -91,16 +90,6 @@ def test_a_step_counts_once_for_the_run_however_many_taps_are_struck(to: Any) ->
     assert taps.receipts().steps_struck.tolist() == [2, 2]
 
 
-def test_channels_on_numpy_and_torch_count_together() -> None:
-    wind = Fault(channel="wind", intervention=Offset(by=1.0), onset_step=2)
-    taps = make([LATE, wind])
-    for step in range(4):
-        taps.deliver("mass", "observer.model", Reading(np.ones(2), "scale", step), step)
-        taps.deliver("wind", "planner.wind", Reading(torch.ones(2, 3), "still", step), step)
-    assert taps.receipts().steps_struck.tolist() == [2, 2]
-    assert taps.receipts().steps_altered.tolist() == [2, 2]
-
-
 def test_two_faults_at_a_tap_are_told_apart() -> None:
     early = LATE.model_copy(update={"onset_step": 0, "duration_steps": 4})
     taps = make([early, LATE])
@@ -108,23 +97,6 @@ def test_two_faults_at_a_tap_are_told_apart() -> None:
     receipt = taps.receipts().at("mass", "observer.model")
     assert [s.steps_in_force.tolist() for s in receipt.strikes] == [[4, 4], [2, 2]]
     assert receipt.steps_struck.tolist() == [5, 5]
-
-
-def test_recovery_counts_as_in_force() -> None:
-    taps = make([LATE.model_copy(update={"recovery_steps": 1})])
-    run(taps)
-    assert taps.receipts().steps_struck.tolist() == [3, 3]
-
-
-def test_there_is_no_receipt_of_an_undeclared_tap() -> None:
-    with pytest.raises(UndeclaredReader, match=re.escape("there is no tap mass -> planner.wind")):
-        make().receipts().at("mass", "planner.wind")
-
-
-def test_a_fault_that_reached_everyone_is_verified() -> None:
-    taps = make([LATE])
-    run(taps)
-    taps.verify(5)
 
 
 @pytest.mark.parametrize(

@@ -66,15 +66,6 @@ def test_isolated_and_shared_agree_where_both_strike(
 
 
 @EACH
-def test_all_consumers_of_a_shared_fault_get_the_same(intervention: Intervention) -> None:
-    both = [
-        play([fault(intervention, {})], SCENES, consumer=f"{m}.wind")
-        for m in ("predictor", "planner")
-    ]
-    assert both[0].tobytes() == both[1].tobytes()
-
-
-@EACH
 def test_outside_the_window_the_reading_is_untouched(intervention: Intervention) -> None:
     window = {"onset_step": 4, "duration_steps": 5, "recovery_steps": 3}
     clean = play([], SCENES)
@@ -110,13 +101,6 @@ def test_scales_in_turn_multiply(a: float, b: float, onset: int, last: int, back
     turn = fault(Sequence(parts=(Scale(factor=a), Scale(factor=b))), window)
     once = fault(Scale(factor=a * b), window)
     np.testing.assert_allclose(play([turn], "ab"), play([once], "ab"), rtol=1e-12, atol=1e-12)
-
-
-@given(st.integers(0, 6), st.integers(0, 6))
-@settings(max_examples=20, deadline=None)
-def test_delays_in_turn_add_up(a: int, b: int) -> None:
-    turn = fault(Sequence(parts=(Delay(steps=a), Delay(steps=b))), {})
-    assert play([turn], "ab").tobytes() == play([fault(Delay(steps=a + b), {})], "ab").tobytes()
 
 
 def test_faults_that_meet_at_a_tap_act_in_order() -> None:

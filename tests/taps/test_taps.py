@@ -1,16 +1,15 @@
 """Delivery: what a consumer may read, and what it gets."""
 
 import re
-import timeit
 from typing import Any
 
 import numpy as np
 import pytest
 import torch
-from tap_toys import INTERFACE, make
+from tap_toys import make
 
 from faultpath.errors import UserError
-from faultpath.faults import Coupled, Fault, Freeze, Noise, Offset, Quantise, Scale
+from faultpath.faults import Fault, Freeze, Offset, Quantise, Scale
 from faultpath.taps import IllegalRead, MalformedReading, Reading, Taps, UndeclaredReader
 
 SCALE = Fault(channel="mass", intervention=Scale(factor=2.0), consumers=("observer",))
@@ -39,80 +38,50 @@ def test_a_second_delivery_in_a_step_returns_the_first() -> None:
     assert taps.receipts().at("mass", "observer.model").deliveries == 1
 
 
-def test_bindings_name_the_source_of_every_channel() -> None:
-    taps = make(bindings={"wind": "truth"}, privileged={"truth"})
-    assert dict(taps.bindings) == {"mass": "scale", "wind": "truth"}
-    wind = Reading(np.zeros((2, 3)), "truth", 0)
-    assert np.shares_memory(taps.deliver("wind", "planner.wind", wind, 0), wind.value)
+WIND = Reading(np.zeros((2, 3)), "truth", 0)
 
 
 @pytest.mark.parametrize(
-    ("taps", "channel", "consumer", "reading", "error", "sentence"),
+    ("taps", "tap", "reading", "error", "said"),
     [
-        (
-            make(),
-            "mass",
-            "planner.wind",
-            mass(0),
-            UndeclaredReader,
-            "tap mass -> planner.wind: the channel does not declare this consumer; add it to the "
-            "interface, declared: observer.model, predictor.dynamics",
-        ),
+        (make(), "mass -> planner.wind", mass(0), UndeclaredReader, "does not declare this"),
         (
             make(consumers={"predictor.dynamics"}),
-            "mass",
-            "observer.model",
+            "mass -> observer.model",
             mass(0),
             UndeclaredReader,
-            "tap mass -> observer.model: this variant has no such consumer; name it in the "
-            "variant's consumers",
+            "this variant has no such consumer",
         ),
         (
             make(),
-            "mass",
-            "observer.model",
+            "mass -> observer.model",
             mass(0, source="still"),
             IllegalRead,
-            "tap mass -> observer.model: the reading is of source 'still', but the channel is "
-            "bound to 'scale'; deliver that one, or bind the channel in the variant",
+            "'still', but the channel is bound to 'scale'",
         ),
         (
             make(bindings={"wind": "truth"}),
-            "wind",
-            "planner.wind",
-            Reading(np.zeros((2, 3)), "truth", 0),
+            "wind -> planner.wind",
+            WIND,
             IllegalRead,
-            "tap wind -> planner.wind: source 'truth' is privileged and this arm does not permit "
-            "it; read another one, or name it in the variant's privileged sources",
+            "source 'truth' is privileged",
         ),
-        (
-            make(),
-            "mass",
-            "observer.model",
-            mass(1),
-            IllegalRead,
-            "tap mass -> observer.model: the reading is of step 1, which is after step 0; "
-            "deliver what is known by then",
-        ),
+        (make(), "mass -> observer.model", mass(1), IllegalRead, "which is after step 0"),
         (
             make([SCALE]),
-            "mass",
-            "observer.model",
+            "mass -> observer.model",
             mass(0, np.zeros(3)),
             MalformedReading,
-            "tap mass -> observer.model: the reading has 3 rows for 2 scenes",
+            "3 rows for 2 scenes",
         ),
     ],
 )
 def test_an_illegal_read_names_the_tap(
-    taps: Taps, channel: str, consumer: str, reading: Reading, error: type[Exception], sentence: str
+    taps: Taps, tap: str, reading: Reading, error: type[Exception], said: str
 ) -> None:
-    with pytest.raises(error, match=f"^{re.escape(sentence)}$"):
+    channel, consumer = tap.split(" -> ")
+    with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(said)}"):
         taps.deliver(channel, consumer, reading, 0)
-    assert (
-        all(receipt.deliveries == 0 for receipt in taps.receipts().taps)
-        or error is MalformedReading
-    )
 
 
 def test_steps_do_not_run_backwards() -> None:
@@ -172,12 +141,6 @@ def test_whole_numbers_are_not_turned_into_others(fault: Fault, sentence: str) -
         deliver_twice()
 
 
-def test_a_fault_may_miss_some_consumers_of_a_variant() -> None:
-    shared = Coupled(name="all", faults=(SCALE.striking("*"),))
-    taps = make([shared], consumers={"observer.model"})
-    assert [receipt.consumer for receipt in taps.receipts().taps] == ["observer.model"]
-
-
 class TestModuleView:
     def test_delivers_to_its_own_places_only(self) -> None:
         view = make([SCALE]).for_module("observer")
@@ -199,38 +162,6 @@ class TestModuleView:
                 getattr(view, name)
         with pytest.raises(AttributeError):
             view.module = "planner"  # pyright: ignore[reportAttributeAccessIssue]
-
-    def test_unknown_module_is_a_users_mistake(self) -> None:
-        with pytest.raises(UserError, match="unknown module 'observr'; did you mean 'observer'"):
-            make().for_module("observr")
-
-
-def test_gradients_pass_through_a_tap() -> None:
-    value = torch.ones(2, dtype=torch.float64, requires_grad=True)
-    taps = make([SCALE])
-    taps.deliver("mass", "observer.model", mass(0, value), 0).sum().backward()
-    assert value.grad is not None
-    assert value.grad.tolist() == [2.0, 2.0]
-    assert taps.receipts().steps_altered.tolist() == [1, 1]
-
-
-def test_delivery_without_a_fault_costs_next_to_nothing() -> None:
-    taps = Taps(INTERFACE, scenes=("a",), dt_s=0.05)
-    value = torch.ones(1)
-    readings = iter([Reading(value, "scale", step) for step in range(40000)])
-
-    def deliver() -> None:
-        reading = next(readings)
-        taps.deliver("mass", "observer.model", reading, reading.step)
-
-    assert min(timeit.repeat(deliver, number=1000, repeat=40)) / 1000 < 3e-6
-
-
-def test_noise_on_one_channel_leaves_the_other_alone() -> None:
-    taps = make([Fault(channel="wind", intervention=Noise(std=1.0)), SCALE, SCALE])
-    assert taps.deliver("mass", "observer.model", mass(0), 0).tolist() == [4.0, 12.0]
-    wind = Reading(np.zeros((2, 3)), "still", 0)
-    assert np.all(taps.deliver("wind", "planner.wind", wind, 0) != 0)
 
 
 def test_a_value_offset_by_zero_is_the_reading_itself() -> None:

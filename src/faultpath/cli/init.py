@@ -17,11 +17,11 @@ def command(
     from faultpath.systems.init import TEMPLATES, write_system
 
     system, test = write_system(name, kind, Path())
-    template = TEMPLATES[kind]
+    baseline, parameter = TEMPLATES[kind]
     typer.echo(
         f"Wrote {system} and {test}. Next:\n"
-        f"  faultpath audit {system}:create --baseline {template.baseline} "
-        f"--repair {template.repair} --fault {template.parameter}:scale=0.6\n"
+        f"  faultpath audit {system}:create --baseline {baseline} "
+        f"--repair typical --fault {parameter}:scale=0.6\n"
         f"  python -m pytest {test}"
     )
     return 0

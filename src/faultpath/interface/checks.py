@@ -1,6 +1,6 @@
 """An interface whose parts fit each other; each refusal says where and what to do."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Self
 
 from pydantic import model_validator
@@ -10,9 +10,6 @@ from faultpath.arrays import misfit
 from faultpath.interface.graph import readers
 from faultpath.interface.model import Channel, Declared, Source
 from faultpath.text import listed, unknown
-
-_LONGEST_CYCLE = 10
-"""Names of a cycle that are shown."""
 
 Where = tuple[str | int, ...]
 
@@ -108,40 +105,23 @@ def _check_reconstructions(interface: Declared) -> None:
 
 
 def _check_cycles(interface: Declared) -> None:
-    """Look at every module and every read once, however they are joined."""
+    """Refuse modules that reconstruct what they themselves need within a step."""
     read_by = readers(interface)
-    below = {
-        module: [
-            reader
-            for name in names
-            for reader in read_by.get(name, ())
-            if reader in interface.reconstructs
-        ]
+    waiting = {
+        module: {reader for name in names for reader in read_by.get(name, ())}
         for module, names in interface.reconstructs.items()
     }
-    done: set[str] = set()
-    for start in below:
-        path: dict[str, Iterator[str]] = {} if start in done else {start: iter(below[start])}
-        while path:
-            module = next(reversed(path))
-            following = next(path[module], None)
-            if following is None:
-                done.add(module)
-                path.popitem()
-            elif following in path:
-                _refuse_cycle(list(path), following)
-            elif following not in done:
-                path[following] = iter(below[following])
-
-
-def _refuse_cycle(path: list[str], module: str) -> None:
-    names = [*path[path.index(module) :], module]
-    if len(names) > _LONGEST_CYCLE:
-        half = _LONGEST_CYCLE // 2
-        names[half:-half] = [f"({len(names) - 2 * half} more)"]
-    cycle = " -> ".join(names)
+    while leaves := [m for m, below in waiting.items() if not below & waiting.keys()]:
+        for module in leaves:  # nothing that they make comes back to them
+            del waiting[module]
+    if not waiting:
+        return
+    path = [next(iter(waiting))]
+    while path[-1] not in path[:-1]:
+        path.append(min(waiting[path[-1]] & waiting.keys()))
+    cycle = " -> ".join(path[path.index(path[-1]) :])
     raise _refuse(
-        ("reconstructs", module),
+        ("reconstructs", path[-1]),
         f"reconstructs: {cycle} is a cycle; a module that needs its own past keeps it in "
         "its memory instead of reading it through a channel",
     )

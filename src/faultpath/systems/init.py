@@ -5,30 +5,15 @@ from importlib.resources import files
 from importlib.util import find_spec
 from keyword import iskeyword
 from pathlib import Path
-from typing import NamedTuple
 
 from faultpath.errors import UserError
 
-
-class _Template(NamedTuple):
-    baseline: str
-    repair: str
-    parameter: str
-    paths: tuple[str, ...]
-
-
 TEMPLATES = {
-    "numpy": _Template(
-        "calibrated", "typical", "gain", ("correct", "controller", "observer", "shared")
-    ),
-    "torch": _Template(
-        "calibrated", "typical", "gain", ("correct", "controller", "observer", "shared")
-    ),
-    "gymnasium": _Template(
-        "told", "typical", "mass", ("correct", "controller", "observer", "shared")
-    ),
+    "numpy": ("calibrated", "gain"),
+    "torch": ("calibrated", "gain"),
+    "gymnasium": ("told", "mass"),
 }
-"""By what the system is written with."""
+"""By what the system is written with: its baseline, and the channel that its audit faults."""
 
 
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
@@ -49,16 +34,10 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
         )
     if kind not in TEMPLATES:
         raise UserError(f"there is no template {kind!r}: choose from {', '.join(TEMPLATES)}.")
-    template, texts = TEMPLATES[kind], files("faultpath.systems") / "templates"
+    (baseline, parameter), texts = TEMPLATES[kind], files("faultpath.systems") / "templates"
     system = (texts / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name)
     test = (texts / "test.py.txt").read_text("utf-8").replace("NAME", name)
-    for word, meant in {
-        "BASELINE": repr(template.baseline),
-        "REPAIR": repr(template.repair),
-        "PARAMETER": template.parameter,
-        "PATHS": repr(list(template.paths)),
-    }.items():
-        test = test.replace(word, meant.replace("'", '"'))
+    test = test.replace("BASELINE", f'"{baseline}"').replace("PARAMETER", parameter)
     places = folder / f"{name}.py", folder / f"test_{name}.py"
     for place in places:
         if place.exists():
@@ -69,17 +48,13 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
 
 
 def _taken(name: str, folder: Path) -> str:
-    """Say what Python or pytest knows by this name, other than what lies in `folder`."""
+    """Say what Python knows by this name, other than what lies in `folder`."""
     if iskeyword(name):
         return "a word of Python"
     if name in sys.stdlib_module_names:
         return "a module of Python's own"
-    if name == "conftest":
-        return "what pytest loads before all tests"
     found = find_spec(name)
-    if found is None:
-        return ""
-    places = [*(found.submodule_search_locations or ()), *([found.origin] if found.origin else [])]
-    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places)
-    installed = "site-packages" in "".join(places) or not here
-    return "an installed package" if installed else ""
+    places = [] if found is None else [*(found.submodule_search_locations or ()), found.origin]
+    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
+    installed = "site-packages" in str(places) or not here
+    return "an installed package" if places and installed else ""
