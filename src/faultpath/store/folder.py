@@ -1,7 +1,6 @@
 """A run on disk."""
 
 import hashlib
-import os
 import shutil
 from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager, suppress
@@ -56,7 +55,10 @@ class RunFolder:
         `shared` lets studies with other arms use the folder one after the other. `UserError` when
         the folder cannot be written, or holds something else.
         """
-        self._create()
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise self._unwritable(error) from error
         with locked(self.path, notice):
             found = read_manifest(self.manifest)
             if found is not None:
@@ -145,18 +147,6 @@ class RunFolder:
     def files_of(self, key: str) -> list[Path]:
         """Return the files of a finished block."""
         return sorted(self.shards.glob(f"{key}-*.parquet"))
-
-    def _create(self) -> None:
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-        except FileExistsError as error:
-            raise UserError(
-                f"{self.path} is a file, and the run needs a folder: choose another path"
-            ) from error
-        except OSError as error:
-            raise self._unwritable(error) from error
-        if not os.access(self.path, os.W_OK | os.X_OK):
-            raise self._unwritable(PermissionError(0, "permission denied"))
 
     def _write(self, path: Path, data: bytes) -> None:
         try:

@@ -61,16 +61,11 @@ def rows_in(path: Path) -> int:
 
 def numbers_in(data: bytes) -> list[str]:
     """Return the columns of a Parquet file that hold numbers; `Unreadable` for anything else."""
-    return [name for name, kind in columns_in(data).items() if kind == NUMBER]
-
-
-def columns_in(data: bytes) -> dict[str, Any]:
-    """Return the columns of a Parquet file with their types; `Unreadable` for anything else."""
     try:
         schema = pq.read_schema(pa.BufferReader(data))
     except (pa.ArrowException, OSError) as error:
         raise Unreadable(str(error)) from error
-    return {field.name: field.type for field in schema}
+    return [field.name for field in schema if field.type == NUMBER]
 
 
 def decode(

@@ -14,7 +14,6 @@ from faultpath.store.parquet import (
     TEXT,
     Row,
     Unreadable,
-    columns_in,
     decode,
     encode,
 )
@@ -35,9 +34,8 @@ _SCHEMA = {
     **dict.fromkeys(("scene", "signal", "topic", "unit"), TEXT),
     "component": INTEGER,
     "values": NUMBERS,
+    "part": TEXT,
 }
-_NAMED = {**_SCHEMA, "part": TEXT}
-"""Since components have names."""
 
 
 @dataclass(frozen=True)
@@ -59,12 +57,12 @@ Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
 
 def encode_signals(signals: Signals) -> bytes:
     """Return the signals as a Parquet file."""
-    return encode(_NAMED, _rows(signals))
+    return encode(_SCHEMA, _rows(signals))
 
 
 def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
-    rows, _ = decode(data, _NAMED if "part" in columns_in(data) else _SCHEMA)
+    rows, _ = decode(data, _SCHEMA)
     found: dict[TrialAddress, list[Signal]] = {}
     for key, group in groupby(rows, key=_key):
         parts = tuple(group)
@@ -74,7 +72,7 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
         address, name, topic, unit = key
         if any(np.isinf(column).any() for column in columns):
             raise Unreadable(f"the signal '{name}' is infinite")
-        named = tuple(filter(None, (part.get("part") for part in parts)))
+        named = tuple(filter(None, (part["part"] for part in parts)))
         signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
         found.setdefault(address, []).append(signal)
     return {address: tuple(signals) for address, signals in found.items()}

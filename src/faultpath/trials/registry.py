@@ -89,8 +89,7 @@ def system_options(name: str) -> tuple[Option, ...]:
 def load_parts(names: Iterable[str]) -> dict[str, Factory]:
     """Return what builds each part of their own that users name to a system, as they name systems.
 
-    A module is loaded once, whatever number of factories it has. Raises as `load_system`, which
-    undoes what a failure leaves where the factory of a system asks.
+    A module is loaded once, whatever number of factories it has. Raises as `load_system`.
     """
     modules: dict[str, ModuleType] = {}
     found: dict[str, Factory] = {}
@@ -228,7 +227,7 @@ class _FromSource(SourceFileLoader):
 
 
 def _file(place: str) -> Path:
-    path = Path(os.path.realpath(place))  # `resolve` stumbles over links to themselves
+    path = Path(os.path.realpath(place))
     if not os.path.isfile(path):  # unlike Path.is_file, it bears names that are too long
         raise UserError(f"there is no file {place!r} to load from: check the path")
     return path
@@ -258,8 +257,7 @@ def _check_own(root: Root, folder: Path) -> None:
 
 @contextmanager
 def _undone_on_failure() -> Generator[None]:
-    """Put back what loading a system changed when it comes to nothing; modules of its own go too,
-    since whoever corrects one and loads again wants it as it then is."""
+    """Put back what loading a system changed when it comes to nothing, modules of its own too."""
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
         with redirect_stdout(sys.stderr):  # what a system prints is no output of a command
@@ -283,9 +281,7 @@ def _look_in(folder: str) -> None:
 
 
 def _look_beside(path: Path) -> None:
-    """Find the files beside one, which it may import."""
-    folder = str(path.parent)
-    _look_in(folder)
+    _look_in(folder := str(path.parent))
     fresh = (_FromSource, SOURCE_SUFFIXES)
     compiled = (ExtensionFileLoader, EXTENSION_SUFFIXES)
     sys.path_importer_cache[folder] = FileFinder(folder, compiled, fresh)
@@ -299,7 +295,8 @@ def _needing(name: str) -> Generator[None]:
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         hint = extra(package) if package in _EXTRAS else f"install {package!r}"
-        said = f"{name!r} needs the package {package!r}, not installed here: {hint}"
-        mistake = SystemMistake(said)
+        mistake = SystemMistake(
+            f"{name!r} needs the package {package!r}, not installed here: {hint}"
+        )
         mistake.place = where(error)
         raise mistake from error
