@@ -1,4 +1,4 @@
-"""What can be asked: every option of an audit, a map and a plan, declared once.
+"""What can be asked: every option of an audit, a map, a plan, a check and a trace, declared once.
 
 The flags of the command line, Python's keywords, their help, the study file and the checks follow
 from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
@@ -114,7 +114,84 @@ Place = Annotated[
 ]
 
 
-class Question(Frozen, strict=True, allow_inf_nan=False):
+Options = Annotated[
+    dict[str, Any],
+    BeforeValidator(_options),
+    Flag("--set", several=True),
+    Field(description="System option, key=value; where a flag has the same name, or in scripts."),
+]
+Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
+Workers = Annotated[
+    int | None,
+    Field(
+        description="Worker processes, 0 for this process alone; default one per core if that "
+        "helps."
+    ),
+]
+TimeLimit = Annotated[
+    float | None,
+    Field(
+        description="Seconds that a block of scenes may take; default what the system says, else "
+        "3600."
+    ),
+]
+
+
+class Request(Frozen, strict=True, allow_inf_nan=False):
+    """What is asked of a system."""
+
+    panel: ClassVar[str] = ""
+    """Heading in the help of the fields that a class declares."""
+
+    library: Scenes = "selection"
+    options: Options = Field(default_factory=dict)
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return ()
+
+
+class TraceQuestion(Request):
+    """What a trace shows."""
+
+    variant: str | None = Field(default=None, description="Variant; default the first.")
+    steps: int = Field(default=3, ge=1, description="Control steps to trace.")
+    scene: str | None = Field(default=None, description="Scene by its id; default the first.")
+    seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trial.")
+    fault: str | None = Field(
+        default=None, description="A fault, as in `audit`, to see whom it reaches."
+    )
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return (self.variant,) if self.variant else ()
+
+
+class CheckQuestion(Request):
+    """What is checked."""
+
+    variants: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        default=(),
+        description="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4.",
+    )
+    scenes: int = Field(default=4, description="Run the first N scenes.")
+    seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trials.")
+    workers: int | None = Field(
+        default=None,
+        description="Worker processes, by default 2 where that helps; 0 is this process alone, "
+        "which cannot see what differs from process to process.",
+    )
+    time_limit_s: TimeLimit = None
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return self.variants
+
+
+class Question(Request):
     """Two variants of a system, compared in scenes."""
 
     panel: ClassVar[str] = "What is compared"
@@ -123,17 +200,16 @@ class Question(Frozen, strict=True, allow_inf_nan=False):
         description="Variant to compare with; for the quadrotor also your file.py:factory."
     )
     repair: str = Field(description="Variant that is meant to help, named likewise.")
-    library: str = Field(default="held-out", description="Library of scenes, by name or file.")
+    library: Scenes = "held-out"
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
     seeds: Annotated[tuple[int, ...], BeforeValidator(_seeds)] = Field(
         default=(0,), description="Seeds of the noise, and of trained models where there are any."
     )
-    options: Annotated[dict[str, Any], BeforeValidator(_options), Flag("--set", several=True)] = (
-        Field(
-            default_factory=dict,
-            description="System option, key=value; where a flag has the same name, or in scripts.",
-        )
-    )
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return self.baseline, self.repair
 
     def audit_of(self, fault: str) -> "AuditQuestion":
         """Return the audit of the same variants and scenes under a fault."""
@@ -155,21 +231,13 @@ class Running(Question):
         description="Folder in which runs share trials; default runs/.shared, and none where the "
         "run folder is named.",
     )
-    workers: int | None = Field(
-        default=None,
-        description="Worker processes, 0 for this process alone; default one per core if that "
-        "helps.",
-    )
+    workers: Workers = None
     executor: str = Field(
         default="local",
         description="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs "
         "here, else one of its own; ray:HOST:PORT names it.",
     )
-    time_limit_s: float | None = Field(
-        default=None,
-        description="Seconds that a block of scenes may take; default what the system says, "
-        "else 3600.",
-    )
+    time_limit_s: TimeLimit = None
 
     @property
     def shared_in(self) -> Path | None:
@@ -296,10 +364,10 @@ def flag(model: type[Frozen], name: str) -> str:
     return f"--no-{dashed}" if field.default is True else f"--{dashed}"
 
 
-def panel(model: type[Question], name: str) -> str:
+def panel(model: type[Request], name: str) -> str | None:
     """Return under which heading the help shows a field."""
     for note in model.model_fields[name].metadata:
         if isinstance(note, Flag) and note.panel:
             return note.panel
     owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
-    return next(each.panel for each in owners if issubclass(each, Question))
+    return next(each.panel or None for each in owners if issubclass(each, Request))

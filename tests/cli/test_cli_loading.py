@@ -29,10 +29,10 @@ MAY_LOAD = {
 
 CODE = """
 import json, sys
-from faultpath.cli.main import command
+from faultpath.cli.main import main
 heavy = json.loads(sys.argv.pop(1))
 try:
-    command()
+    main()
 except SystemExit as stop:
     assert stop.code in (0, 2), stop.code
 print()

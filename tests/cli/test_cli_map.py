@@ -115,7 +115,7 @@ def test_a_map_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
         process.send_signal(stop)
         process.wait(timeout=60)
         assert not (tmp_path / "run" / "map.json").exists()
-    assert "run the same again to resume" in (tmp_path / "words").read_text()
+    assert "again to resume" in (tmp_path / "words").read_text()
     gate.unlink()
     assert faultpath(*line(tmp_path / "run", **options)).status == 0
     assert faultpath(*line(tmp_path / "whole", **options)).status == 0
@@ -126,8 +126,8 @@ def test_a_map_that_is_killed_goes_on_to_the_same_bytes(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        ({"spread": "wide"}, "--spread 'wide' is not a list of numbers"),
-        ({"mean": "0.1,x"}, "--mean '0.1,x' is not a list of numbers"),
+        ({"spread": "wide"}, "--spread: 'wide' is not a list of numbers"),
+        ({"mean": "0.1,x"}, "--mean: '0.1,x' is not a list of numbers"),
         ({"against": "controller"}, "--against needs two modules"),
         ({"fault": "gain:scale=0.6"}, "leave '=0.6' out"),
     ],

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from faultpath.errors import UserError
-from faultpath.review.check import Asked, check_system
+from faultpath.question import CheckQuestion
+from faultpath.review.check import check_system
 from faultpath.trials import SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -19,7 +20,7 @@ LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
 
 def check(name: str = BROKEN, workers: int = 0, library: str = "any", **options: str):
     spec = SystemSpec(name=name, options=options)
-    asked = Asked(workers=workers, library=library)
+    asked = CheckQuestion(workers=workers, library=library)
     return check_system(load_system(spec), spec, asked, lambda done, known: None)
 
 
@@ -117,8 +118,14 @@ def test_what_differs_from_process_to_process_takes_workers_to_see():
 @pytest.mark.parametrize(
     ("asked", "said"),
     [
-        (Asked(("bear",), workers=0), "unknown variant 'bear'; did you mean 'bare'?"),
-        (Asked(scenes=7, workers=0), "cannot check 7 scenes of library 'selection': choose 1 to 6"),
+        (
+            CheckQuestion(variants=("bear",), workers=0),
+            "unknown variant 'bear'; did you mean 'bare'?",
+        ),
+        (
+            CheckQuestion(scenes=7, workers=0),
+            "cannot check 7 scenes of library 'selection': choose 1 to 6",
+        ),
     ],
 )
 def test_what_cannot_be_checked_is_refused(asked, said):

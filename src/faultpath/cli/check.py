@@ -1,12 +1,13 @@
 """`faultpath check`: does a system keep what an audit takes for granted?"""
 
 import sys
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from faultpath.cli.options import SET, TimeLimit, read
-from faultpath.question import LARGEST, names, settings
+from faultpath.cli.flags import takes
+from faultpath.cli.options import SYSTEM
+from faultpath.question import CheckQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -16,44 +17,19 @@ if TYPE_CHECKING:
 FAILED = 1
 
 
+@takes(CheckQuestion)
 def command(
-    system: Annotated[
-        str, typer.Argument(help="`quadrotor`, `module:attribute` or `file.py:attribute`.")
-    ],
-    variants: Annotated[
-        str | None,
-        typer.Option(help="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4."),
-    ] = None,
-    library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
-    scenes: Annotated[int, typer.Option(help="Fly the first N scenes.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the trials.")] = 0,
-    options: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    system: Annotated[str, typer.Argument(help=SYSTEM)],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of lines.")] = False,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            help="Worker processes, by default 2 where that helps; 0 is this process alone, which "
-            "cannot see what differs from process to process."
-        ),
-    ] = None,
-    time_limit: TimeLimit = None,
+    **given: Any,
 ) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
     what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
     from faultpath.door import check
     from faultpath.door.display import Display, SafeConsole
 
-    report = check(
-        system,
-        variants=() if variants is None else read(names, variants, "--variants"),
-        library=library,
-        scenes=scenes,
-        seed=seed,
-        options=settings(options or []),
-        workers=workers,
-        time_limit_s=time_limit,
-        progress=Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:])),
-    )
+    display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
+    report = check(system, **given, progress=display)
     if as_json:
         typer.echo(report.model_dump_json(indent=2))
     else:

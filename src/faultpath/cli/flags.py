@@ -10,13 +10,13 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 import typer
 
 from faultpath.cli.options import path
-from faultpath.question import Flag, Question, flag, panel, settings
+from faultpath.question import Flag, Request, flag, panel, settings
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _PLAIN = (str, int, float, bool)
 
 
-def takes(model: type[Question], *without: str) -> Callable[[_Verb], _Verb]:
+def takes(model: type[Request], *without: str) -> Callable[[_Verb], _Verb]:
     """Give a verb the flags of a model.
 
     The verb has a last parameter `**given`, which gets what the line says, by the model's names.
@@ -49,7 +49,7 @@ def takes(model: type[Question], *without: str) -> Callable[[_Verb], _Verb]:
     return decorate
 
 
-def _parameter(model: type[Question], name: str) -> inspect.Parameter:
+def _parameter(model: type[Request], name: str) -> inspect.Parameter:
     field = model.model_fields[name]
     several = any(isinstance(note, Flag) and note.several for note in field.metadata)
     kind, extra = _kind(field.annotation), dict[str, Any]()
@@ -61,7 +61,7 @@ def _parameter(model: type[Question], name: str) -> inspect.Parameter:
     elif several or default in ("", (), None):
         default = None
     elif isinstance(default, tuple):
-        default = ",".join(f"{each:g}" for each in default)
+        default = ",".join(f"{each:g}" for each in field.default)
     elif default is True:
         default = False
     hint: Any = kind

@@ -4,12 +4,10 @@ It imports next to nothing itself, so that Ctrl-C while the rest loads ends in a
 """
 
 import faulthandler
-import math
 import os
 import re
 import signal
 import sys
-import time
 import warnings
 from collections.abc import Sequence
 from traceback import format_exception
@@ -30,25 +28,12 @@ INTERRUPTED = 130
 UNREAD = 141
 """What shells report for a program that nobody reads any more."""
 
-_TWICE_S = 0.3
-"""Two signals closer than this are one key: a terminal sends it to the parent too, which passes it
-on."""
-
 _TRACEBACK = "--traceback"
 _AGAIN = "interrupted; the same command goes on from what is stored."
 
 
-def main() -> None:
-    """Run the command line, in a process of its own where that is possible: see `cli.apart`."""
-    from faultpath.cli import apart
-
-    if apart.possible():
-        apart.run(command)
-    command()
-
-
-def command() -> NoReturn:
-    """Run the command line in this process; a user's mistake ends in one sentence and status 2.
+def main() -> NoReturn:
+    """Run the command line; a user's mistake ends in one sentence and status 2.
 
     So does an error in the code of a user's system. An error of faultpath's own code keeps
     its traceback; `faultpath.blame` tells the two apart.
@@ -98,15 +83,11 @@ class _CtrlC:
 
     def __init__(self) -> None:
         self.pressed = False
-        self._last_s = -math.inf
         self._before = None
         if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
             self._before = signal.signal(signal.SIGINT, self._press)
 
     def _press(self, number: int, frame: FrameType | None) -> None:
-        before, self._last_s = self._last_s, time.monotonic()
-        if self._last_s - before < _TWICE_S:
-            return
         self.pressed = True
         raise KeyboardInterrupt
 

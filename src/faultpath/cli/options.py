@@ -53,11 +53,6 @@ def check_arguments(arguments: Sequence[str]) -> None:
         if (flag and not argument) or re.fullmatch(r"--[\w-]+=", argument):
             said = argument or f"{flag}''"
             raise UserError(f"the argument {said} is empty: give a value, or leave it out.")
-        if foreign := next(filter(_foreign_number, re.split(r"[,=:/@]|\.\.", argument)), ""):
-            raise UserError(
-                f"the argument {flag}'{one_line(argument)}' holds the number {foreign}: write it "
-                "in the digits 0 to 9."
-            )
         if steers(argument):
             raise UserError(
                 f"the argument '{one_line(argument)}' holds control characters or is not UTF-8 "
@@ -67,16 +62,6 @@ def check_arguments(arguments: Sequence[str]) -> None:
             raise UserError(
                 f"the argument '{one_line(argument)}' is too long: write at most {_LONGEST} bytes."
             )
-
-
-def _foreign_number(text: str) -> bool:
-    if text.isascii():
-        return False
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 _Read = TypeVar("_Read")

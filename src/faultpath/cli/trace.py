@@ -1,42 +1,37 @@
 """`faultpath trace`: who reads what, as declared and over a few steps."""
 
-from typing import Annotated
+import sys
+from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli.options import SET
-from faultpath.question import LARGEST, settings
+from faultpath.cli.flags import takes
+from faultpath.cli.options import SYSTEM
+from faultpath.question import TraceQuestion, ask
 
 FOUND = 1
 
 
+@takes(TraceQuestion)
 def command(
-    system: Annotated[
-        str, typer.Argument(help="`quadrotor`, `module:attribute` or `file.py:attribute`.")
-    ],
-    variant: Annotated[str | None, typer.Option(help="Variant; default the first.")] = None,
-    steps: Annotated[int, typer.Option(min=1, help="Control steps to trace.")] = 3,
-    scene: Annotated[str | None, typer.Option(help="Scene by its id; default the first.")] = None,
-    library: Annotated[str, typer.Option(help="Library of scenes.")] = "selection",
-    seed: Annotated[int, typer.Option(min=0, max=LARGEST, help="Seed of the trial.")] = 0,
-    fault: Annotated[
-        str | None, typer.Option(help="A fault, as in `audit`, to see whom it reaches.")
-    ] = None,
-    options: Annotated[list[str] | None, typer.Option("--set", help=SET)] = None,
+    system: Annotated[str, typer.Argument(help=SYSTEM)],
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of tables.")] = False,
+    **given: Any,
 ) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
-    from faultpath.door.display import SafeConsole
+    from faultpath.door.asking import begin
+    from faultpath.door.display import Display, SafeConsole
     from faultpath.door.reviewing import traced
-    from faultpath.door.systems import choose
     from faultpath.report.terminal import interface_table
     from faultpath.report.trace import trace_table
     from faultpath.tables.terminal import STYLES, Parted
 
-    chosen = choose(system, settings(options or []), None, (variant,) if variant else ())
-    trace = traced(chosen, variant, library, scene, steps, seed, fault)
+    asked = ask(TraceQuestion, given, command=True)
+    display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
+    chosen = begin("trace", system, asked, display).chosen
+    trace = traced(chosen, asked)
     console = SafeConsole()
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))

@@ -9,14 +9,14 @@ from typing import Any, TypeVar
 
 from faultpath.door.display import Display, display
 from faultpath.door.systems import Chosen, choose
-from faultpath.question import Question, Running, ask
+from faultpath.question import Request, ask
 from faultpath.trials import Library, System, library_of
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
-_Asked = TypeVar("_Asked", bound=Question)
+_Asked = TypeVar("_Asked", bound=Request)
 
 
-def asks(model: type[Question]) -> Callable[[_Call], _Call]:
+def asks(model: type[Request]) -> Callable[[_Call], _Call]:
     """Give a function whose last parameter is `**given` the signature and the help of a model."""
 
     def described(function: _Call) -> _Call:
@@ -63,18 +63,16 @@ class Begun:
 def begin(
     call: str,
     system: str | PathLike[str] | System,
-    asked: Question,
+    asked: Request,
     progress: bool | Display,
 ) -> Begun:
     """Build the system of a question.
 
     Raises as `choose`, and for a library that does not exist. `call` is the name of the function.
     """
-    workers, executor = None, "local"
-    if isinstance(asked, Running):
-        workers, executor = asked.workers, asked.executor
-    arms = (asked.baseline, asked.repair)
-    chosen = choose(system, asked.options, workers, arms, executor)
+    how: dict[str, Any] = vars(asked)
+    executor = how.get("executor", "local")
+    chosen = choose(system, asked.options, how.get("workers"), asked.arms, executor)
     library = library_of(chosen.system, asked.library)
     said = {"system": chosen.spec.name, **asked.model_dump(exclude_unset=True)}
     told = display(progress, call, said | {"options": chosen.spec.options})

@@ -1,29 +1,22 @@
 """`check` and `trace` from Python: what `faultpath check` and `faultpath trace` print, as data."""
 
-from collections.abc import Mapping, Sequence
 from os import PathLike
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from faultpath.door.asking import asked_for, asks, begin
+from faultpath.door.display import Display
+from faultpath.door.systems import Chosen
+from faultpath.question import CheckQuestion, TraceQuestion
 from faultpath.trials import System
 
 if TYPE_CHECKING:
-    from faultpath.door.display import Display
-    from faultpath.door.systems import Chosen
     from faultpath.review.check import Report
     from faultpath.review.tracing import TraceReport
 
 
+@asks(CheckQuestion)
 def check(
-    system: str | PathLike[str] | System,
-    *,
-    variants: Sequence[str] = (),
-    library: str = "selection",
-    scenes: int = 4,
-    seed: int = 0,
-    options: Mapping[str, object] | None = None,
-    workers: int | None = None,
-    time_limit_s: float | None = None,
-    progress: "bool | Display" = True,
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
 ) -> "Report":
     """Check that a system keeps what an audit takes for granted.
 
@@ -31,53 +24,34 @@ def check(
     comes back has `checks`, each with its `status`, and all `failures` in a sentence each.
 
     Args:
-        system: As for `faultpath.audit`.
-        variants: Which to check; none named: all, or the first two of more than four.
-        library: Library of scenes, by name or file.
-        scenes: How many of its first scenes.
-        seed: Of the trials.
-        options: The system's own options.
-        workers: Worker processes, by default two where that helps; 0, and an object of your own,
-            cannot show what differs from process to process.
-        time_limit_s: Seconds that a flight may take in a worker.
+        system: As for `faultpath.audit`; an object of your own is checked in this process.
         progress: As for `faultpath.audit`.
+        **given: ...
 
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.door.display import display
-    from faultpath.door.systems import choose
-    from faultpath.review.check import Asked, check_system
+    from faultpath.review.check import check_system
     from faultpath.work import Progress
 
-    given = dict(locals())
-    chosen = choose(system, options or {}, workers, variants)
-    helpful = 2 if chosen.system.parallel else 1
-    count = helpful if chosen.workers is None else chosen.workers
-    told = display(progress, "check", given | {"system": chosen.spec.name})
+    asked = asked_for(CheckQuestion, given, progress)
+    begun = begin("check", system, asked, progress)
+    chosen, told = begun.chosen, begun.told
     if chosen.notice:
         told.say(chosen.notice)
+    if chosen.own:
+        asked = asked.model_copy(update={"workers": 0})
     with told.progress("Checking") as show:
 
         def note(done: int, known: int | None) -> None:
-            show(
-                Progress(done, known, f"{done} of {known} flights" if known else f"{done} flights")
-            )
+            show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        asked = Asked(tuple(variants), library, scenes, seed, count, time_limit_s)
         return check_system(chosen.system, chosen.spec, asked, note)
 
 
+@asks(TraceQuestion)
 def trace(
-    system: str | PathLike[str] | System,
-    *,
-    variant: str | None = None,
-    steps: int = 3,
-    scene: str | None = None,
-    library: str = "selection",
-    seed: int = 0,
-    fault: str | None = None,
-    options: Mapping[str, object] | None = None,
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **given: Any
 ) -> "TraceReport":
     """Run a variant for a few steps, and tell who read what, when, and from whom.
 
@@ -85,39 +59,24 @@ def trace(
 
     Args:
         system: As for `faultpath.audit`.
-        variant: Default the first.
-        steps: Control steps.
-        scene: By its id; default the first of the library.
-        library: Library of scenes, by name or file.
-        seed: Of the trial.
-        fault: As for `faultpath.audit`, to see whom it reaches.
-        options: The system's own options.
+        progress: As for `faultpath.audit`.
+        **given: ...
 
     Raises:
-        UserError: There is no such system, variant, library or scene, the fault strikes nobody, or
+        UserError: There is no such system, variant, library or scene, the fault reaches nobody, or
             the run fails.
     """
-    from faultpath.door.systems import choose
-
-    chosen = choose(system, options or {}, None, (variant,) if variant else ())
-    return traced(chosen, variant, library, scene, steps, seed, fault)
+    asked = asked_for(TraceQuestion, given, progress)
+    return traced(begin("trace", system, asked, progress).chosen, asked)
 
 
-def traced(
-    chosen: "Chosen",
-    variant: str | None,
-    library: str,
-    scene: str | None,
-    steps: int,
-    seed: int,
-    fault: str | None,
-) -> "TraceReport":
+def traced(chosen: Chosen, asked: TraceQuestion) -> "TraceReport":
     """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.review.tracing import trace_system
 
-    built = chosen.system
-    struck = None
-    if fault is not None:
-        struck = built.fault(fault)
-    name = variant or next(iter(built.variants))
-    return trace_system(built, chosen.spec, name, library, scene, steps, seed, struck)
+    system = chosen.system
+    fault = None if asked.fault is None else system.fault(asked.fault)
+    name = asked.variant or next(iter(system.variants))
+    return trace_system(
+        system, chosen.spec, name, asked.library, asked.scene, asked.steps, asked.seed, fault
+    )

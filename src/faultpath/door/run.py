@@ -122,7 +122,7 @@ class MapRun:
         return f"<MapRun in {self.folder}: {self.headline}>"
 
     def _repr_html_(self) -> str:
-        return self.record._repr_html_()
+        return self.record._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ReproductionRun":

@@ -1,7 +1,6 @@
 """Run a system as a careful reviewer would, and judge what was seen."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Literal
 
@@ -10,6 +9,7 @@ from faultpath.execution.dispatch import Dispatch, block_limit_s
 from faultpath.execution.worker import Job
 from faultpath.faults import Fault, Offset, Replace, Scale
 from faultpath.faults import Sequence as InTurn
+from faultpath.question import CheckQuestion
 from faultpath.results import Result
 from faultpath.review import judging
 from faultpath.review.flights import Flight, Flown, Read, fly, fly_here, unflown
@@ -30,20 +30,6 @@ _AFTER = 20
 """Control steps for which a tap is struck."""
 
 
-@dataclass(frozen=True)
-class Asked:
-    """What to check, and with what."""
-
-    variants: tuple[str, ...] = ()
-    """Empty: all of them, or the first two of more than `MOST`."""
-    library: str = "selection"
-    scenes: int = 4
-    seed: int = 0
-    workers: int = 2
-    """0: this process alone, which cannot see what differs from process to process."""
-    time_limit_s: float | None = None
-
-
 class Report(Result):
     """A check of a system; what `faultpath check --json` prints."""
 
@@ -62,7 +48,7 @@ class Report(Result):
         return tuple(said for check in self.checks for said in check.failures)
 
 
-def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> Report:
+def check_system(system: System, spec: SystemSpec, asked: CheckQuestion, note: Note) -> Report:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
     Raises `UserError` for a variant, library or number of scenes that there is not, and where the
@@ -76,13 +62,14 @@ def check_system(system: System, spec: SystemSpec, asked: Asked, note: Note) -> 
         )
     scenes = tuple(scene.id for scene in library.scenes[: asked.scenes])
     variants = chosen_variants(system, asked.variants)
-    seen = Seen(system, variants, scenes, asked.seed, asked.workers > 0)
+    workers = (2 if system.parallel else 1) if asked.workers is None else asked.workers
+    seen = Seen(system, variants, scenes, asked.seed, workers > 0)
     limit_s = block_limit_s(system, asked.time_limit_s)
     crew = _Crew(system, spec, library, limit_s, note)
-    with local(asked.workers) as held:
+    with local(workers) as held:
         arms = [Arm(variant=variant.name, seed=asked.seed) for variant in variants]
         crew.fly(held, [Flight("first", arm, scenes) for arm in arms], seen)
-    with local(asked.workers) as held:  # new processes: what is kept in one is not in the other
+    with local(workers) as held:  # new processes: what is kept in one is not in the other
         crew.fly(held, list(_again(seen)), seen)
     return Report(
         system=spec.name,
