@@ -8,7 +8,7 @@ from flights import HELD_OUT, bits, fault, fly, quadrotor
 
 from faultpath.errors import UserError
 
-FILTER = f"{Path(__file__).with_name('own_filter.py')}:create"
+FILTER = f"{Path(__file__).parents[2] / 'examples' / 'own_filter.py'}:create"
 
 
 @pytest.fixture(autouse=True)
