@@ -9,8 +9,8 @@ from flown_code import flown_by
 from pictures import IMAGES, standing
 
 from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
-from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.reproduction.terminal import ledger_markdown
+from faultpath.report.sweep import sweep_plot
 from faultpath.store import read_outcomes
 from faultpath.studies.cells import SYSTEM, Setting
 from faultpath.studies.central import ELSEWHERE, central, of_run, state

@@ -8,11 +8,11 @@ from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
 from faultpath.record import RunProvenance
-from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.inputs import ReportInput
 from faultpath.report.reproduction import words
 from faultpath.report.reproduction.page import reproduction_page
 from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
+from faultpath.report.sweep import sweep_plot
 from faultpath.tables import Entry, Line, Table
 
 CENTRAL = Table(
@@ -122,11 +122,10 @@ def test_a_page_without_tables_figures_and_provenance() -> None:
 
 
 def test_sweep_draws_every_point_and_band() -> None:
-    for narrow in (False, True):
-        drawn = sweep_plot(sweep(), narrow)
-        assert drawn.count('class="spot') == 2 + 10  # the key's, and the points
-        assert drawn.count('class="spread') == 2
-        assert NASTY not in drawn
+    drawn = sweep_plot(sweep())
+    assert drawn.count('class="spot') == 2 + 10  # the key's, and the points
+    assert drawn.count('class="spread') == 2
+    assert NASTY not in drawn
     assert "<svg" in sweep_plot(sweep().model_copy(update={"series": ()}))
 
 

@@ -180,7 +180,7 @@ def _arm(svg: Svg, arm: Lines, x: Axis, y: Axis, shown: Adding) -> None:
     svg.text(_WIDTH, y.end - 10, arm.ended, "small soft", "end")
     draw_levels(svg, x, y, 4, zero="zero")
     svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
-    steps: NDArray[np.float64] = shown.dt_s * np.arange(arm.values.shape[1])
+    steps = shown.dt_s * np.arange(arm.values.shape[1], dtype=np.float64)
     lines: list[list[Point]] = []
     for values in np.clip(arm.values, y.low, y.high):
         known = np.isfinite(values)

@@ -1,4 +1,4 @@
-"""What a recorded flight shows of compensation, as sentences, a table, a picture and a page."""
+"""What a recorded flight shows of compensation, as sentences, a table and a page."""
 
 from math import exp
 
@@ -21,52 +21,23 @@ def sentences(found: Compensation) -> tuple[str, ...]:
     """Return what is decided, a sentence for each size of the error, and what is not."""
     if found.too_short:
         return (found.too_short,)
-    return tuple(_sentence(found, each.error) for each in found.shared)
-
-
-def _sentence(found: Compensation, error: float) -> str:
-    alone = _of(found, error, 0.0)
-    both = _of(found, error, error)
-    shared = next(each for each in found.shared if each.error == error)
-    said = (
-        f"Mass {_percent(error)}, thrust {_percent(-error)}: with the observer alone wrong, "
-        f"{_against(alone)}; with observer and predictor wrong alike, {_against(both)}"
-    )
-    if shared.decided == "less":
-        left = _times(shared.log_ratio).replace(" times", "", 1)
-        return f"{said}. Sharing compensates: the error is {left} of that of the observer alone."
-    if shared.decided == "more":
-        more = _times(shared.log_ratio)
-        return f"{said}. Sharing makes it worse: the error is {more} that of the observer alone."
-    return f"{said}. Whether sharing the error compensates for it is not decided."
-
-
-def _against(each: Combination) -> str:
-    if each.log_ratio is None or each.decided == "not decided":
-        return "no change of the acceleration error is decided"
-    return f"the acceleration error is {_times(each.log_ratio)} that with correct calibration"
-
-
-def _times(log: Estimate) -> str:
-    return f"{exp(log.value):.2f} times {_range(log)}".rstrip()
+    told: list[str] = []
+    for each in found.shared:
+        high, low = ("high", "low") if each.error > 0 else ("low", "high")
+        size = f"{abs(100 * each.error):g} %"
+        said = "whether sharing the error compensates for it is not decided"
+        if each.decided != "not decided":
+            said = "sharing compensates" if each.decided == "less" else "sharing makes it worse"
+            ratio = f"{exp(each.log_ratio.value):.2f} times {_range(each.log_ratio)}".rstrip()
+            said += f": the error is {ratio} that with the observer alone wrong"
+        told.append(f"With mass {size} too {high} and thrust {size} too {low}, {said}.")
+    return tuple(told)
 
 
 def _range(log: Estimate) -> str:
     if log.low is None or log.high is None:
         return ""
     return f"[{exp(log.low):.2f}, {exp(log.high):.2f}]"
-
-
-def _of(found: Compensation, observer: float, predictor: float) -> Combination:
-    return next(
-        each
-        for each in found.combinations
-        if (each.observer, each.predictor) == (observer, predictor)
-    )
-
-
-def _percent(error: float) -> str:
-    return f"{abs(100 * error):g} % too {'high' if error > 0 else 'low'}"
 
 
 def _label(each: Combination) -> str:

@@ -4,9 +4,9 @@ from markupsafe import Markup
 
 from faultpath.record import RunProvenance, wording
 from faultpath.record.reproduction import Reproduction
-from faultpath.report.figures.sweep import sweep_plot
 from faultpath.report.frame import render
 from faultpath.report.reproduction import words
+from faultpath.report.sweep import sweep_plot
 from faultpath.tables import Table
 from faultpath.tables.html import html
 
@@ -35,14 +35,7 @@ def reproduction_page(
         },
         tables=[(table, Markup(html(table, "beside", caption=False))) for table in found.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},
-        sweeps=[
-            {
-                "sweep": sweep,
-                "wide": Markup(sweep_plot(sweep)),
-                "narrow": Markup(sweep_plot(sweep, narrow=True)),
-            }
-            for sweep in found.figures
-        ],
+        sweeps=[{"sweep": sweep, "picture": Markup(sweep_plot(sweep))} for sweep in found.figures],
         provenance=provenance,
         w=wording,
         words=words,

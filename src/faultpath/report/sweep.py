@@ -11,9 +11,9 @@ LOOKS = 4
 _KEY_ROW, _SAMPLE = 20.0, 28.0
 
 
-def sweep_plot(sweep: Sweep, narrow: bool = False) -> str:
-    """Return the lines of a sweep with their bands; `narrow` has the width of a telephone."""
-    width, height = (350.0, 240.0) if narrow else (880.0, 280.0)
+def sweep_plot(sweep: Sweep) -> str:
+    """Return the lines of a sweep with their bands."""
+    width, height = 560.0, 250.0
     key = _key_rows(sweep.series, width)
     top = _KEY_ROW * len(key) + 34
     told = "; ".join(f"{line.label}: {', '.join(map(_told, line.points))}" for line in sweep.series)
@@ -23,7 +23,7 @@ def sweep_plot(sweep: Sweep, narrow: bool = False) -> str:
     y = _upward(sweep.series).at(top + height, top)
     svg.text(0, top - 12, sweep.y_title, "small soft")
     draw_levels(svg, x, y, 6)
-    for tick in x.ticks(4 if narrow else 8):
+    for tick in x.ticks(6):
         if tick == 0:
             svg.line((x(0.0), y.start), (x(0.0), y.end), "axis")
         draw_tick(svg, x, y, tick, tick_label(round(tick, 9)))

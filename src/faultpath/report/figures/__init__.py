@@ -1,1 +1,0 @@
-"""Pictures as pure functions: data in, SVG markup out."""
