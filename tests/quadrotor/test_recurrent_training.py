@@ -8,7 +8,8 @@ import torch
 
 from faultpath.errors import UserError
 from faultpath.quadrotor import so3
-from faultpath.quadrotor.training.corruption import Corruption, dcc
+from faultpath.quadrotor.training import corruption
+from faultpath.quadrotor.training.corruption import dcc
 from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
 from faultpath.quadrotor.training.windows import Windows
 
@@ -143,9 +144,8 @@ def test_unknown_model_is_a_users_mistake():
 
 def corrupted(faults, consumers=(HEAD,), epoch=0, seed=0, count=COUNT):
     few = windows(count=count)
-    corruption = Corruption(faults, consumers, few.ids, seed)
     readings = {"mass": few.mass_kg, "thrust_scale": few.thrust_scale}
-    return readings, corruption.deliver(epoch, readings)
+    return readings, corruption.corrupted(faults, consumers, few.ids, seed, epoch, readings)
 
 
 def test_mass_and_thrust_scale_err_independently_within_the_half_range():

@@ -1,6 +1,6 @@
 """What a module is fitted to: windows of readings by channel, through the taps of its interface."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import blake2b, sha256
@@ -177,15 +177,14 @@ def delivered(
     where a fault missed a consumer that it names.
     """
     steps, interface = windows.steps, windows.interface
-    privileged = {s.name for s in interface.sources if s.provenance is Provenance.PRIVILEGED}
-    taps = Taps(
+    taps = window_taps(
         interface,
         faults,
-        scenes=tuple(windows.ids[i] for i in index),
-        dt_s=windows.dt_s,
-        seed=_EPOCHS * seed + epoch,
-        consumers=windows.consumers,
-        privileged=privileged,
+        tuple(windows.ids[i] for i in index),
+        windows.dt_s,
+        seed,
+        epoch,
+        windows.consumers,
     )
     ports = windows.ports
     got: dict[Port, list[Array]] = {port: [] for port in ports}
@@ -202,6 +201,27 @@ def delivered(
         for port, values in got.items()
     }
     return stacked, taps.receipts().counts()
+
+
+def window_taps(
+    interface: Interface,
+    faults: Iterable[AnyFault],
+    ids: tuple[str, ...],
+    dt_s: float,
+    seed: int,
+    epoch: int,
+    consumers: Collection[str],
+) -> Taps:
+    """Return taps for which windows are scenes, with draws of their own in each epoch of a fit."""
+    return Taps(
+        interface,
+        faults,
+        scenes=ids,
+        dt_s=dt_s,
+        seed=_EPOCHS * seed + epoch,
+        consumers=consumers,
+        privileged={s.name for s in interface.sources if s.provenance is Provenance.PRIVILEGED},
+    )
 
 
 def sha256_of(array: HostArray) -> str:

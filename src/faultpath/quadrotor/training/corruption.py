@@ -4,17 +4,15 @@ from collections.abc import Collection, Iterable, Mapping
 
 from torch import Tensor
 
-from faultpath.faults import Coupled, Fault, UniformScale
+from faultpath.faults import AnyFault, Coupled, Fault, UniformScale
 from faultpath.quadrotor.interface import quadrotor_interface
 from faultpath.quadrotor.training.replay import DeliveredInputs
 from faultpath.quadrotor.vehicle import CONTROL_DT_S
-from faultpath.taps import Reading, Taps
+from faultpath.repairs.windows import window_taps
+from faultpath.taps import Reading
 
 CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
-
-_EPOCHS = 100_000
-"""Seeds of the faults' random numbers lie this far apart from one model seed to the next."""
 
 
 def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled:
@@ -34,61 +32,41 @@ def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled
     return Coupled(name="dcc", faults=faults).striking(*sorted(readers & set(consumers)))
 
 
-class Corruption:
-    """What the consumers of a model under training get of each window's readings.
+def corrupted(
+    faults: Iterable[AnyFault],
+    consumers: Collection[str],
+    windows: tuple[str, ...],
+    seed: int,
+    epoch: int,
+    readings: Mapping[str, Tensor],
+) -> DeliveredInputs:
+    """Return what each consumer gets of each window's readings, by (channel, consumer), `[W]`.
 
     Windows are the scenes of the taps and an epoch is one control step: every window has one draw
-    an epoch, held throughout it, keyed by its id, the seed and the epoch. The draws come from
-    streams of the faults' own, so initial weights and the order of minibatches are untouched.
+    an epoch, held throughout it, keyed by its id, the model's seed and the epoch. The draws come
+    from streams of the faults' own, so initial weights and the order of minibatches are untouched.
 
     Args:
         faults: What is done to the readings; none: every consumer gets the readings themselves.
         consumers: Consumers that the model under training has.
         windows: Ids, one a row of every reading.
         seed: Seed of the model.
+        epoch: Counted from 0.
+        readings: Values by channel, `[W]`.
 
     Raises:
-        UserError: A name is unknown, or a fault strikes nobody here.
+        UserError: A name is unknown, or a fault acts on nobody here.
+        NotDelivered: A fault missed a consumer that it names.
     """
-
-    def __init__(
-        self,
-        faults: Iterable[Fault | Coupled],
-        consumers: Collection[str],
-        windows: tuple[str, ...],
-        seed: int,
-    ) -> None:
-        self._interface = quadrotor_interface()
-        self._faults = tuple(faults)
-        self._consumers = frozenset(consumers)
-        self._windows = windows
-        self._seed = seed
-        self._taps(0)
-
-    def deliver(self, epoch: int, readings: Mapping[str, Tensor]) -> DeliveredInputs:
-        """Return what each consumer gets in an epoch, by (channel, consumer), each `[W]`.
-
-        `readings` `[W]` are the values by channel. Raises `NotDelivered` where a fault missed a
-        consumer that it names.
-        """
-        taps = self._taps(epoch)
-        delivered = {
-            (channel, consumer): taps.deliver(
-                channel, consumer, Reading(value, taps.bindings[channel], 0), 0
-            )
-            for channel, value in readings.items()
-            for consumer in self._interface.channel(channel).consumers
-            if consumer in self._consumers
-        }
-        taps.verify(last_step=0)
-        return delivered
-
-    def _taps(self, epoch: int) -> Taps:
-        return Taps(
-            self._interface,
-            self._faults,
-            scenes=self._windows,
-            dt_s=CONTROL_DT_S,
-            seed=_EPOCHS * self._seed + epoch,
-            consumers=self._consumers,
+    interface = quadrotor_interface()
+    taps = window_taps(interface, faults, windows, CONTROL_DT_S, seed, epoch, consumers)
+    delivered = {
+        (channel, consumer): taps.deliver(
+            channel, consumer, Reading(value, taps.bindings[channel], 0), 0
         )
+        for channel, value in readings.items()
+        for consumer in interface.channel(channel).consumers
+        if consumer in consumers
+    }
+    taps.verify(last_step=0)
+    return delivered

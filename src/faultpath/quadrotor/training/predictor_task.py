@@ -23,7 +23,7 @@ from faultpath.quadrotor.predictors import (
 )
 from faultpath.quadrotor.predictors.network import features
 from faultpath.quadrotor.state import State
-from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
+from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath.quadrotor.training.fitting import ModelTask
 from faultpath.quadrotor.training.provenance import rows_sha256
 from faultpath.quadrotor.training.replay import DeliveredInputs, correct, predict
@@ -91,8 +91,7 @@ class PredictorTask(ModelTask):
         self._train = training
         self._scales = scales(training)
         self._consumers = self._blank().consumers()
-        faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
-        self._corruption = Corruption(faults, self._consumers, training.ids, self.seed)
+        self._faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
         self._delivered: DeliveredInputs = {}
 
     @property
@@ -120,7 +119,14 @@ class PredictorTask(ModelTask):
 
     def begin_epoch(self, epoch: int) -> None:
         """Draw what each window's consumers get of the calibration in this epoch."""
-        self._delivered = self._corruption.deliver(epoch, self._train.calibration)
+        self._delivered = corrupted(
+            self._faults,
+            self._consumers,
+            self._train.ids,
+            self.seed,
+            epoch,
+            self._train.calibration,
+        )
 
     @override
     def loss(self, net: nn.Module, index: LongTensor) -> Tensor:

@@ -17,7 +17,7 @@ from typing_extensions import override
 from faultpath.errors import UserError
 from faultpath.quadrotor.platform import PLATFORM
 from faultpath.quadrotor.reconstruction.network import INTERVALS, WindNetwork
-from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, Corruption, dcc
+from faultpath.quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath.quadrotor.training.fitting import ModelTask
 from faultpath.quadrotor.training.provenance import rows_sha256
 from faultpath.quadrotor.training.windows import HISTORY, Windows, windows_of
@@ -112,7 +112,6 @@ class ReconstructionTask(ModelTask):
         self._scaled.measure(*history, _calibration(training), _wind(training))
         self._training = _Samples.of(training, self._scaled)
         self._validation = _Samples.of(validation, self._scaled)
-        self._corruption = self._corrupted(training.ids)
         self._known = self._delivered = torch.empty(0)
 
     @property
@@ -138,9 +137,12 @@ class ReconstructionTask(ModelTask):
         short = stream.random(self.count) < SHORT_HISTORIES
         lengths = stream.integers(1, INTERVALS, size=self.count)
         self._known = torch.from_numpy(lengths).masked_fill(torch.from_numpy(~short), INTERVALS)
-        if self._corruption is not None:
+        if self._model.calibrated:
+            half_range = self._model.half_range
+            faults = () if half_range is None else (dcc([HEAD], half_range),)
             mass, scale = self._training.calibration
-            delivered = self._corruption.deliver(epoch, {"mass": mass, "thrust_scale": scale})
+            readings = {"mass": mass, "thrust_scale": scale}
+            delivered = corrupted(faults, [HEAD], self._training.ids, self.seed, epoch, readings)
             got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
             self._delivered = self._scaled.calibration(got)
 
@@ -150,7 +152,7 @@ class ReconstructionTask(ModelTask):
         estimate = net(
             samples.intervals.index_select(2, index),
             samples.latest.index_select(1, index),
-            None if self._corruption is None else self._delivered.index_select(1, index),
+            self._delivered.index_select(1, index) if self._model.calibrated else None,
             self._known[index],
         )
         return functional.mse_loss(estimate, samples.target.index_select(1, index))
@@ -176,13 +178,6 @@ class ReconstructionTask(ModelTask):
             "calibration_noise_half_range": self._model.half_range,
             "short_histories": SHORT_HISTORIES,
         }
-
-    def _corrupted(self, windows: tuple[str, ...]) -> Corruption | None:
-        if not self._model.calibrated:
-            return None
-        half_range = self._model.half_range
-        faults = () if half_range is None else (dcc([HEAD], half_range),)
-        return Corruption(faults, [HEAD], windows, self.seed)
 
 
 def _history(windows: Windows) -> tuple[Tensor, Tensor]:
