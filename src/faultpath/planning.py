@@ -5,9 +5,12 @@ from dataclasses import dataclass
 
 from faultpath import question as asking
 from faultpath.errors import UserError
-from faultpath.paths import arm_struck, path_struck, strikes_of
+from faultpath.faults import AnyFault, Fault
+from faultpath.interface import module_of
 from faultpath.question import AuditQuestion, StopWhen
 from faultpath.record import (
+    CORRECT,
+    SHARED,
     DecisionRecord,
     Path,
     Question,
@@ -21,6 +24,7 @@ from faultpath.streams import generator
 from faultpath.taps import TapCount
 from faultpath.text import unknown
 from faultpath.trials import (
+    Arm,
     Deliveries,
     Library,
     OutcomeTable,
@@ -95,16 +99,24 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
     sequential = asked.stop_when is not None
     chosen = scenes_of(library, asked.scenes, in_order=not sequential)
     fault = system.fault(asked.fault)
-    strikes = strikes_of(system.interface, fault, variants)
+    strikes = _strikes(system, fault, variants)
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     paths = [
-        path_struck(name, system.interface, struck, variants) for name, struck in strikes.items()
+        Path(
+            name=name,
+            title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
+            consumers=_consumers(system, struck, variants[1]),
+            baseline_consumers=_consumers(system, struck, variants[0]),
+        )
+        for name, struck in strikes.items()
     ]
+    # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
     rows = [
         Row(
             variant=variant.name,
             path=path,
             seed=seed,
-            arm=arm_struck(system, variant, struck, seed),
+            arm=Arm(variant=variant.name, faults=_faults(system, struck, variant), seed=seed),
         )
         for path, struck in strikes.items()
         for variant in variants
@@ -142,6 +154,46 @@ def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: 
         rule=asked.rule,
     )
     return Audit(question, tuple(paths), study)
+
+
+def _strikes(
+    system: System, fault: AnyFault, variants: Sequence[Variant]
+) -> dict[str, AnyFault | None]:
+    """Return the fault of each path; `None` under correct inputs. With a single module there is
+    nothing to share: the isolated fault is all of it.
+
+    `UserError` for a fault that reaches no variant, and a module named like a path.
+    """
+    reached = [c for variant in variants for c in _consumers(system, fault, variant)]
+    if not reached:
+        names = " nor ".join(f"'{variant.name}'" for variant in variants)
+        raise UserError(
+            f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
+        )
+    by_module: dict[str, list[str]] = {}
+    for consumer in reached:
+        places = by_module.setdefault(module_of(consumer), [])
+        if consumer not in places:
+            places.append(consumer)
+    for reserved in {CORRECT, SHARED} & set(by_module):
+        raise UserError(
+            f"the interface calls a module '{reserved}', which is the name of a path of every "
+            "audit: rename the module."
+        )
+    paths: dict[str, AnyFault | None] = {CORRECT: None}
+    paths |= {module: fault.striking(*by_module[module]) for module in sorted(by_module)}
+    if len(by_module) > 1:
+        paths[SHARED] = fault.striking(*(c for name in sorted(by_module) for c in by_module[name]))
+    return paths
+
+
+def _faults(system: System, fault: AnyFault | None, variant: Variant) -> tuple[Fault, ...]:
+    return () if fault is None else fault.resolved(system.interface, variant.consumers)
+
+
+def _consumers(system: System, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:
+    struck = (c for each in _faults(system, fault, variant) for c in each.consumers)
+    return tuple(dict.fromkeys(struck))
 
 
 def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:

@@ -67,14 +67,6 @@ def test_nothing_that_is_decided_depends_on_it():
     assert found.verdict.headline == plain.verdict.headline
 
 
-def test_where_success_is_saturated_the_metric_is_told():
-    said = told("less", {"old": 0.0, "new": 0.25}).verdict.sentences
-    (sentence,) = [each for each in said if "saturated" in each]
-    assert "under correct inputs: error of new minus that of old is +0.25 rad" in sentence
-    assert "less is better; secondary, nothing is decided from it" in sentence
-    assert not [each for each in record(CELLS).verdict.sentences if "saturated" in each]
-
-
 @pytest.mark.parametrize(
     ("asked", "said"),
     [

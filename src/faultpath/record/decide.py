@@ -30,7 +30,7 @@ from faultpath.statistics import (
     only,
 )
 from faultpath.statistics.distributions import sign_p_value
-from faultpath.statistics.rules import EM
+from faultpath.statistics.estimate import EM
 from faultpath.trials.pairing import mismatch_words
 from faultpath.trials.table import OutcomeTable
 

@@ -20,8 +20,7 @@ from faultpath.record.wording import (
 from faultpath.statistics import Region
 
 FEW_TRAININGS = 10
-"""With fewer, an interval for newly trained models rests on how trainings are distributed: see
-docs/design/statistics.md."""
+"""With fewer, an interval for newly trained models rests on how trainings are distributed."""
 
 
 def estimand(question: Question) -> str:
@@ -233,21 +232,6 @@ def hardly_acted(record: DecisionRecord) -> Iterator[str]:
             )
 
 
-def saturated(record: DecisionRecord) -> Iterator[str]:
-    """Say what the chosen metric shows where success can hardly tell the arms apart."""
-    asked = record.question
-    for each in record.effects:
-        found = each.metrics.get(asked.metric)
-        if each.extreme and found is not None:
-            metric = asked.metrics[asked.metric]
-            shown = f"{signed(found.value, 2)} {metric.unit} {interval(found, 2)}".rstrip()
-            yield (
-                f"Success is saturated {where(each.path)}: {metric.said(asked.metric)} of "
-                f"{asked.repair} minus that of {asked.baseline} is {shown} there "
-                f"({metric.better} is better; secondary, nothing is decided from it)."
-            )
-
-
 def would_change(record: DecisionRecord) -> Iterator[str]:
     """Say what would change the verdict."""
     held, tested = record.stopped, [each for each in record.effects if each.acted]
@@ -277,10 +261,7 @@ def would_change(record: DecisionRecord) -> Iterator[str]:
             "allows for looks: a smaller true difference than these is found with less than 80 % "
             f"power: {listed}. Adding scenes to this audit would break its 5 %."
         )
-    yield (
-        "Another size or sign of the fault, another library or another wiring of the system: the "
-        "record speaks of the one that was run."
-    )
+    yield "Another size or sign of the fault, another library or wiring: none of these was run."
 
 
 def no_pair(path: str) -> str:
@@ -313,7 +294,6 @@ def verdict(record: DecisionRecord, headline: str) -> Verdict:
             *(change(record, each) for each in record.changes),
             *frequencies(record.break_even),
             *hardly_acted(record),
-            *saturated(record),
         ),
         would_change=tuple(would_change(record)),
     )

@@ -4,12 +4,19 @@ from faultpath.statistics.breakeven import break_even, mixture_curve, only
 from faultpath.statistics.clustered import WindowQuantiles
 from faultpath.statistics.contrast import Contrast, change, percentile_interval, weighted_sum
 from faultpath.statistics.decisions import Turn, decide_family, turn, with_test
-from faultpath.statistics.detectable import detectable
 from faultpath.statistics.effects import mean_effect, median_effect, success_effect, success_rate
-from faultpath.statistics.estimate import BreakEven, Estimate, Region, SeedCounts, Sign
-from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.estimate import (
+    IN_FORCE,
+    RULES,
+    BreakEven,
+    Estimate,
+    Region,
+    RuleName,
+    SeedCounts,
+    Sign,
+)
+from faultpath.statistics.power import detectable, fewest_scenes
 from faultpath.statistics.resamples import Resamples
-from faultpath.statistics.rules import IN_FORCE, RULES, RuleName
 
 __all__ = [
     "IN_FORCE",

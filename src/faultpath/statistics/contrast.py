@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from faultpath.statistics.detectable import detectable
 from faultpath.statistics.distributions import normal_quantile, t_interval
 from faultpath.statistics.estimate import (
     SCENES,
@@ -23,7 +22,7 @@ from faultpath.statistics.estimate import (
     Sign,
 )
 from faultpath.statistics.inputs import Floats
-from faultpath.statistics.power import fewest_scenes
+from faultpath.statistics.power import detectable, fewest_scenes
 from faultpath.statistics.resamples import Resamples
 from faultpath.statistics.score import SceneValues, combined
 

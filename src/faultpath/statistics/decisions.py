@@ -9,8 +9,16 @@ import numpy as np
 from faultpath.statistics import betting, score, signflip, unconditional
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.distributions import sign_p_value, t_p_value
-from faultpath.statistics.estimate import ALPHA, SCENES_AND_SEEDS, Decision, PairedTest, Sign
-from faultpath.statistics.rules import EM, FLIPS, RuleName
+from faultpath.statistics.estimate import (
+    ALPHA,
+    EM,
+    FLIPS,
+    SCENES_AND_SEEDS,
+    Decision,
+    PairedTest,
+    RuleName,
+    Sign,
+)
 
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast, check_scenes
-from faultpath.statistics.estimate import SCENES, SCENES_AND_SEEDS
+from faultpath.statistics.estimate import RULES, SCENES, SCENES_AND_SEEDS, RuleName
 from faultpath.statistics.inputs import (
     Floats,
     Numbers,
@@ -16,7 +16,6 @@ from faultpath.statistics.inputs import (
     paired_binary,
 )
 from faultpath.statistics.resamples import Resamples
-from faultpath.statistics.rules import RULES, RuleName
 from faultpath.statistics.score import SceneValues
 
 BETTING = "confidence sequence by betting on scene means"
