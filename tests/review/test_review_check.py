@@ -31,8 +31,8 @@ def failed(report) -> dict[str, tuple[str, ...]]:
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
     "never repeats": ("determinism", "first at step 1 in tap range -> pilot.approach, scene 'w0'"),
-    "by place": ("scene independence", "Variant 'bare' flown in another order differs in 4 of 4"),
-    "crowded": ("scene independence", "flown without some of the scenes beside it differs"),
+    "by place": ("scene independence", "Variant 'bare' flown in another order, without"),
+    "crowded": ("scene independence", "without some of the scenes beside it, differs"),
     "barely crowded": ("scene independence", "differs in"),
     "unpaired": ("pairing", "their disturbances differ"),
     "hashless": ("pairing", "All 4 scenes carry the same hashes"),

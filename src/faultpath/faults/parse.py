@@ -68,7 +68,6 @@ def parse_fault(
         if len(parts.sizes) > 1:
             raise UserError("it has several sizes: audit each with faultpath.audits")
         when, rest = _timing(parts.options, dt_s)
-        when |= _coming_and_going(rest, dt_s)
         correlation = _correlation(rest)
         size = parts.sizes[0] if parts.sizes else None
         if parts.kind is None:
@@ -85,36 +84,31 @@ def parse_fault(
 
 
 def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return the fields of a fault that say when it is in force, and the other options."""
     when: dict[str, Any] = {}
+    means: dict[str, float] = {}
     rest: dict[str, str] = {}
     for key, given in options.items():
         plain = key.removesuffix("_s")
-        if plain not in _WINDOW:
+        if plain not in _WINDOW and plain not in _PHASES:
             rest[key] = given
             continue
-        field, least = _WINDOW[plain]
-        if field in when:
+        field = _PHASES.get(plain) or _WINDOW[plain][0]
+        if field in when or field in means:
             raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
-        when[field] = _steps(key, given, least, dt_s if plain != key else None)
+        if plain in _WINDOW:
+            when[field] = _steps(key, given, _WINDOW[plain][1], dt_s if plain != key else None)
+            continue
+        means[field] = _number(key, given) * (dt_s if plain == key else 1.0)
+        if means[field] <= 0:
+            raise UserError(f"'{key}' needs a mean time above 0")
     if "recovery_steps" in when and "duration_steps" not in when:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
-    return when, rest
-
-
-def _coming_and_going(options: dict[str, str], dt_s: float) -> dict[str, Any]:
-    """Take the options on intermittence out, and return the field of a fault."""
-    means: dict[str, float] = {}
-    for key in [key for key in options if key.removesuffix("_s") in _PHASES]:
-        plain = key.removesuffix("_s")
-        if _PHASES[plain] in means:
-            raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
-        mean = _number(key, options.pop(key)) * (dt_s if plain == key else 1.0)
-        if mean <= 0:
-            raise UserError(f"'{key}' needs a mean time above 0")
-        means[_PHASES[plain]] = mean
     if len(means) == 1:
         raise UserError("an intermittent fault needs both mean times; give on_s= and off_s=")
-    return {"intermittence": Intermittence.model_validate(means)} if means else {}
+    if means:
+        when["intermittence"] = Intermittence.model_validate(means)
+    return when, rest
 
 
 def _correlation(options: dict[str, str]) -> float | None:

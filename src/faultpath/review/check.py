@@ -128,8 +128,7 @@ def _again(seen: Seen) -> Iterator[Flight]:
         arm = Arm(variant=name, seed=seen.seed)
         yield Flight("again", arm, scenes)
         if len(scenes) > 1:
-            yield Flight("turned", arm, scenes[::-1])
-            yield Flight("part", arm, scenes[1::2])
+            yield Flight("part", arm, scenes[::-2])
         begins: dict[tuple[str, str], Read] = {}
         for read in first.reads:
             if read.given:

@@ -129,25 +129,22 @@ def _independence(seen: Seen) -> Check:
     coarsest = max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
     failures, remarks = list[str](), list[str]()
     for variant, first in seen.firsts():
-        ways = {"turned": "in another order", "part": "without some of the scenes beside it"}
-        for why, how in ways.items():
-            if not (differs := _differs(seen, variant, why)):
-                continue
-            gap = _gap(first.outcomes, seen.of(variant, why).outcomes)
-            if gap <= max(_FEW, 4 * coarsest):
-                remarks.append(
-                    f"Variant '{variant}' flown {how} differs by rounding alone, at most {gap:.1g} "
-                    "of a number's size: only with blocks of the same scenes does an audit repeat "
-                    "to the bit."
-                )
-            else:
-                failures.append(
-                    f"Variant '{variant}' flown {how} {differs}; let nothing that scenes of one "
-                    "call of run() share decide a result, and draw by scene."
-                )
-    says = (
-        f"in another order and without some others, the same {'to rounding' if remarks else 'bits'}"
-    )
+        if not (differs := _differs(seen, variant, "part")):
+            continue
+        gap = _gap(first.outcomes, seen.of(variant, "part").outcomes)
+        flown = f"Variant '{variant}' flown in another order, without some of the scenes beside it,"
+        if gap <= max(_FEW, 4 * coarsest):
+            remarks.append(
+                f"{flown} differs by rounding alone, at most {gap:.1g} of a number's size: only "
+                "with blocks of the same scenes does an audit repeat to the bit."
+            )
+        else:
+            failures.append(
+                f"{flown} {differs}; let nothing that scenes of one call of run() share decide a "
+                "result, and draw by scene."
+            )
+    bits = "to rounding" if remarks else "bits"
+    says = f"in another order and without some others, the same {bits}"
     return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
 
 
