@@ -100,30 +100,6 @@ def _said(asked: MapQuestion, size: float | None) -> str:
     return MISSING if size is None else asked.said(size)
 
 
-def every_point(record: MapRecord) -> Table:
-    """Return all pairs of errors with what was seen there."""
-    asked = record.question
-    ahead = {1: asked.repair, -1: asked.baseline, 0: MISSING}
-    return Table(
-        name="points",
-        title="Every pair of errors flown",
-        corner=asked.against[0],
-        columns=(asked.against[1], asked.baseline, asked.repair, "Difference", "Won:lost", "Ahead"),
-        lines=tuple(
-            line(
-                _said(asked, point.errors[0]),
-                _said(asked, point.errors[1]),
-                wording.plain(point.baseline_percent),
-                wording.plain(point.repair_percent),
-                _difference(point),
-                f"{point.won}:{point.lost}",
-                ahead[point.sign],
-            )
-            for point in record.points
-        ),
-    )
-
-
 def shown(record: MapRecord) -> RenderableType:
     """Return the record for a terminal."""
     parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
@@ -152,7 +128,6 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         flips_notes=turns[0].notes if turns else (),
         paths=Markup(html(paths)),
         paths_notes=paths.notes,
-        points=Markup(html(every_point(record))),
         w=wording,
     )
 
@@ -175,4 +150,4 @@ def _files(record: MapRecord, provenance: RunProvenance) -> Iterator[tuple[str, 
 
 def table_markdown(record: MapRecord) -> str:
     """Return all tables as Markdown."""
-    return "\n\n".join(map(block, (*tables(record), every_point(record)))) + "\n"
+    return "\n\n".join(map(block, tables(record))) + "\n"
