@@ -119,7 +119,7 @@ def test_bad_input_is_one_sentence(make, said) -> None:
     [
         (uncertainty_training("gain"), "gain"),
         (uncertainty_training("wind:scale=2"), "unknown channel 'wind'"),
-        (uncertainty_training("gain:scale=2@controller"), "strikes none of observer"),
+        (uncertainty_training("gain:scale=2@controller"), "acts on none of observer"),
         (withholding("heading", value=0.0), r"shape \[3\]"),
         (withholding("gain", "pilot"), "does not read it"),
     ],

@@ -40,9 +40,9 @@ class Repair(Frozen):
         return f"uncertainty training: {said}"
 
     def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
-        """Return the repair as it strikes the consumers that are `present`, all spelled out.
+        """Return the repair as it acts on the consumers that are `present`, all spelled out.
 
-        Raises `UserError` where it does not fit, or strikes none of them.
+        Raises `UserError` where it does not fit, or acts on none of them.
         """
         if self.channel is not None:
             interface.channel(self.channel)
@@ -50,13 +50,13 @@ class Repair(Frozen):
         for fault in understood(self.faults, interface, dt_s):
             if self.kind == "withholding":
                 _check_shaped(fault, interface)
-            struck = fault.resolved(interface, present)
-            if not struck:
+            faults = fault.resolved(interface, present)
+            if not faults:
                 raise UserError(
-                    f"{self.kind}: '{fault.describe()}' strikes none of {listed(present)}, which "
+                    f"{self.kind}: '{fault.describe()}' acts on none of {listed(present)}, which "
                     "are fitted; name one of these, or another reader"
                 )
-            found += struck
+            found += faults
         return self.model_copy(update={"faults": tuple(found)})
 
 

@@ -140,7 +140,7 @@ class WindowTaps:
 
 @dataclass(frozen=True)
 class Present:
-    """What the modules were told at the present of windows, and what they make of it."""
+    """What the modules got at the present of windows, and what they make of it."""
 
     windows: Windows
     """Filled up with the first one to a multiple of 32."""
@@ -188,12 +188,12 @@ def at_present(
         predictor: Whose rollouts may be asked for; `None` where only the wind is.
         reconstruction: What estimates the wind, if anything does.
         bindings: Channel to source, where it is not the channel's first.
-        faults: What strikes windows one by one.
+        faults: What acts on windows one by one.
         seed: Of the faults' random numbers.
         exchange: What is done to the history codes of the whole recording, `[W, 32]`.
 
     Raises:
-        UserError: A fault does not fit, or strikes nobody here.
+        UserError: A fault does not fit, or acts on nobody here.
     """
     lanes = padded_lanes(len(windows))
     wide = windows.take(lanes)

@@ -2,7 +2,7 @@
 
 `playback` steps the modules through a window's history, as a flight does. A fit needs one history
 code of the thirteen that they compute on the way, so here the predictor is called at the present
-alone. What it is told comes from the same map (`predictors.places`), and the same code encodes
+alone. What it gets comes from the same map (`predictors.places`), and the same code encodes
 histories and rolls out.
 """
 
