@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
-from cli_runs import HERE, ROOT, TOY, audit, faultpath, shards
+from cli_runs import HERE, ROOT, audit, faultpath, shards
 
 from faultpath.door.listing import runs
 from faultpath.door.run import open_run
@@ -79,12 +79,6 @@ def _columns(file: str) -> list[list[str]]:
     return [table.column(name).to_pylist() for name in ("variant", "path", "scene")]
 
 
-@pytest.mark.parametrize("verb", ["trace", "check"])
-def test_a_file_alone_is_a_system_for_every_verb(verb):
-    ended = faultpath(verb, TOY.removesuffix(":create"))
-    assert ended.status == 0, ended.err
-
-
 def _again(folder: Path, **options: object):
     return audit(scenes=100, out=folder, system="examples/toy.py:create", **options)
 
@@ -101,35 +95,6 @@ def test_the_toy_shows_the_reversal(toy_run):
     assert effects[SHARED].detected
     assert effects[SHARED].success.value < 0
     assert "observer" in record.verdict.headline
-
-
-def test_files_of_a_run_agree_with_each_other(toy_run):
-    record = open_run(toy_run).record
-    rows = pq.read_table(toy_run / "outcomes.parquet").to_pylist()
-    assert len(rows) == 2 * 4 * 100
-    for cell in record.cells:
-        mine = [r for r in rows if (r["variant"], r["path"]) == (cell.variant, cell.path)]
-        assert len(mine) == cell.trials
-        assert sum(r["status"] == "success" for r in mine) == cell.success
-        assert sum(r["struck_steps"] > 0 for r in mine) == cell.struck_trials
-    page = (toy_run / "report.html").read_text()
-    for name in ("report.html", "table.tex", "table.md"):
-        assert "calibrated" in (toy_run / name).read_text()
-    assert record.verdict.headline in page
-    provenance = json.loads((toy_run / "provenance.json").read_text())
-    assert provenance["command"][1:3] == ["audit", "examples/toy.py:create"]
-    assert provenance["blocks_kept"] == 0
-    assert provenance["library_hash"] == record.question.library_hash
-
-
-def test_the_page_draws_what_receipts_show_in_either_variant(toy_run):
-    page = (toy_run / "report.html").read_text()
-    for words in (
-        "Controller only: struck 1 tap in both variants",
-        "Observer only: struck 1 tap in the baseline alone",
-        "Shared fault: struck 1 tap in both variants, 1 tap in the baseline alone",
-    ):
-        assert f">{words}<" in page
 
 
 def test_reports_are_made_again_from_what_is_stored(run, monkeypatch):
@@ -229,19 +194,6 @@ def test_a_quick_look_grows_into_the_whole(toy_run, tmp_path, monkeypatch):
     assert json.loads((out / "provenance.json").read_text())["blocks_kept"] > 0
 
 
-def test_a_file_in_the_place_of_the_folder(tmp_path):
-    place = tmp_path / "taken"
-    place.write_text("mine")
-    assert str(place) in audit(out=place).refused()
-    assert str(place) in audit(out=place / "below").refused()
-    assert place.read_text() == "mine"
-
-
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a place where nobody may write")
-def test_a_folder_where_nobody_may_write():
-    assert "/proc/none" in audit(out="/proc/none/run").refused()
-
-
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_that_may_not_be_written(tmp_path):
     place = tmp_path / "locked"
@@ -281,12 +233,6 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     assert (before / "outcomes.parquet").read_bytes() == outcomes
     assert (after / "outcomes.parquet").read_bytes() != outcomes
     assert open_run(after).record.cells != open_run(before).record.cells
-
-
-def test_brackets_in_names_are_no_markup(tmp_path):
-    ended = audit(out=tmp_path / "[bold]run[/red]")
-    assert (ended.status, ended.err) == (0, "")
-    assert str(tmp_path / "[bold]run[/red]" / "report.html") in ended.out
 
 
 def test_a_failed_trial_is_shown_and_the_status_says_so(tmp_path):

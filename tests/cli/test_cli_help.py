@@ -30,11 +30,6 @@ def test_an_example_can_be_typed(verb: str) -> None:
     assert not left  # an option that does not exist raises
 
 
-def test_help_wraps_as_the_terminal_is_wide() -> None:
-    shown = " ".join(faultpath("check", "--help").out.split())
-    assert "and that a fault reaches every tap. Exits with 1 where a check fails." in shown
-
-
 WRITTEN = """
 from typing import Annotated, Literal
 def create(

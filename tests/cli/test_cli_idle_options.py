@@ -73,11 +73,3 @@ def test_a_time_limit_that_cannot_be_kept(limit, workers, says, tmp_path):
 @pytest.mark.parametrize("seeds", [str(2**63), "-1", "9" * 4000, "٣", "1_0"])
 def test_seeds_that_no_table_holds(seeds):
     assert "--seeds" in audit(seeds=seeds).refused()
-
-
-def test_a_long_question_gets_a_folder_of_a_length_that_disks_take(tmp_path):
-    fault = "gain:scale=1." + "0" * 400
-    ended = audit(fault=fault, scenes=1)
-    assert ended.status == 0, ended.err
-    (folder,) = (tmp_path / "runs").iterdir()
-    assert (folder / "record.json").is_file()

@@ -1,7 +1,6 @@
 """`faultpath map` from end to end: its files, its words, and what is left after it was stopped."""
 
 import json
-import shutil
 import signal
 import subprocess
 import sys
@@ -72,17 +71,6 @@ def test_a_map_leaves_its_record_pictures_and_page(run: Path) -> None:
     assert provenance["blocks_computed"] == len(shards(run))
 
 
-def test_another_spread_flies_nothing_anew_and_json_stands_alone(run: Path, tmp_path: Path) -> None:
-    run = shutil.copytree(run, tmp_path / "run")
-    before = {path.name for path in shards(run)}
-    ended = faultpath(*line(run, scenes=12, spread="0.05,0.1"), "--json")
-    assert ended.status == 0
-    record = MapRecord.model_validate_json(ended.out)
-    assert record.question.spreads == (0.05, 0.1)
-    assert {path.name for path in shards(run)} == before
-    assert "Kept" in ended.err
-
-
 def test_the_pages_are_made_again_and_a_changed_record_is_refused(
     run: Path, tmp_path: Path
 ) -> None:
@@ -137,22 +125,3 @@ def test_a_mistake_is_one_sentence_and_leaves_nothing(
 ) -> None:
     assert said in faultpath(*line(tmp_path / "run", **options)).refused()
     assert not (tmp_path / "run").exists()
-
-
-def test_a_map_from_python_is_that_of_the_command_line(run: Path, tmp_path: Path) -> None:
-    made = library.reversal_map(
-        TOY,
-        baseline="calibrated",
-        repair="blind",
-        fault="gain",
-        against=("controller", "observer"),
-        up_to=0.4,
-        points=30,
-        library="carts",
-        scenes=12,
-        workers=0,
-        progress=False,
-    )
-    assert made.folder.parts[0] == "runs"
-    assert made.record == record_of(run)
-    assert made.record.headline in repr(made)

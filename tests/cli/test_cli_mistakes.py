@@ -144,18 +144,6 @@ def test_without_a_verb_there_is_help_and_no_traceback(arguments):
     assert ended.err == ""
 
 
-@pytest.mark.parametrize("verb", [[], ["audit"], ["trace"], ["report"], ["train"]])
-def test_help_is_whole(verb):
-    """Square brackets in a help text would be taken for markup and vanish."""
-    ended = faultpath(*verb, "--help")
-    assert ended.status == 0
-    assert ended.err == ""
-    assert "[]" not in ended.out
-    if verb == ["audit"]:
-        assert "@predictor" in ended.out
-        assert ",onset=20" in ended.out
-
-
 YAMLS = {
     "not YAML": ("name: [", "not plain YAML"),
     "nothing": ("", "no interface"),
@@ -183,8 +171,3 @@ def test_a_malformed_or_unsafe_interface_file(text, says, tmp_path):
     assert "interface.yaml" in sentence
     assert says in sentence
     assert not (tmp_path / "harm").exists()
-
-
-def test_a_missing_interface_file():
-    system = f"{SLOW_TOY}:from_yaml"
-    assert "none.yaml" in faultpath("trace", system, "--set", "interface=none.yaml").refused()

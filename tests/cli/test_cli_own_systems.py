@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 from textwrap import dedent
-from unittest.mock import Mock
 
 import pytest
 from cli_runs import ROOT, audit, faultpath
@@ -171,13 +170,6 @@ def test_a_module_that_does_what_it_does_not_declare(code, says, tmp_path):
         """
     system, place = _system(tmp_path, dedent(module))
     _check(audit(system=system, out=tmp_path / "run").refused(), place, says)
-
-
-def test_an_error_of_ours_keeps_its_traceback(monkeypatch, tmp_path):
-    broken = Mock(side_effect=AssertionError("a bug of faultpath"))
-    monkeypatch.setattr("faultpath.door.run.write_report", broken)
-    with pytest.raises(AssertionError, match="a bug of faultpath"):
-        audit(out=tmp_path / "run")
 
 
 def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):

@@ -56,21 +56,6 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
         assert not [name for name in sys.modules if "evil" in name]
 
 
-def test_the_folder_is_enough_where_the_system_is_not(run: Path, monkeypatch) -> None:
-    """Neither the file of the system nor the options that it was built with are needed."""
-
-    def never(*_: object, **__: object) -> None:
-        raise AssertionError("a system was loaded")
-
-    monkeypatch.setattr("faultpath.trials.load_system", never)
-    monkeypatch.setattr("faultpath.trials.registry.load_system", never)
-    before = (run / "report.html").read_bytes()
-    (run / "report.html").unlink()
-    ended = faultpath("report", run)
-    assert (ended.status, ended.err) == (0, "")
-    assert (run / "report.html").read_bytes() == before
-
-
 @pytest.mark.parametrize("name", FILES)
 def test_a_changed_file_is_named_and_nothing_is_written(name: str, run: Path) -> None:
     path = run / name

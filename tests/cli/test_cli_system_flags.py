@@ -74,14 +74,6 @@ def test_a_flag_is_what_set_would_be(tmp_path):
     assert records[0]["question"]["options"] == {"gear": "high", "steps": "4"}
 
 
-def test_a_flag_may_stand_before_the_system():
-    assert (
-        "'nowhere'"
-        in faultpath("trace", "--gear=high", "mine.py:create", "--scene=nowhere").refused()
-    )
-    assert "'third'" in faultpath("trace", "--gear", "third", "mine.py:create").refused()
-
-
 def test_a_flag_of_the_verb_keeps_its_meaning():
     assert audit("--set", "scenes=x", system="mine.py:create", scenes=2, out="run").status == 0
 

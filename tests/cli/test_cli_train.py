@@ -163,23 +163,8 @@ def test_a_mistake_is_one_sentence(arguments, says, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_number_of_workers_below_zero_is_refused() -> None:
-    assert "-2" in faultpath("train", "quadrotor", "one", "--workers", -2).refused()
-
-
 def test_the_list_names_every_model() -> None:
     ended = faultpath("train", "quadrotor", "--list")
     assert ended.status == 0
     assert "one+dcc" in ended.out
     assert "0,1" in ended.out
-
-
-def test_a_system_without_models_is_a_mistake() -> None:
-    assert "'toy'" in faultpath("train", "toy").refused()
-
-
-def test_help_is_whole() -> None:
-    for verb in (["train"], ["train", "quadrotor"]):
-        ended = faultpath(*verb, "--help")
-        assert (ended.status, ended.err) == (0, "")
-        assert "quadrotor" in ended.out

@@ -1,40 +1,9 @@
 """An option that takes one value is given once: of two, one would be dropped without a word."""
 
 import subprocess
-from collections.abc import Iterator
 
 import pytest
 from cli_runs import ROOT, audit
-from typer.core import TyperCommand, TyperGroup, TyperOption
-from typer.main import get_command
-
-from faultpath.cli.app import build
-from faultpath.errors import UserError
-
-
-def _options(command, *words: str) -> Iterator[tuple[str, TyperCommand, TyperOption]]:
-    if isinstance(command, TyperGroup):
-        for name, verb in command.commands.items():
-            yield from _options(verb, *words, name)
-    else:
-        for option in command.params:
-            if isinstance(option, TyperOption) and not option.multiple:
-                yield " ".join((*words, option.opts[0])), command, option
-
-
-OPTIONS = list(_options(get_command(build())))
-
-
-@pytest.mark.parametrize(("_name", "verb", "option"), OPTIONS, ids=[name for name, *_ in OPTIONS])
-def test_an_option_given_twice_is_refused(_name, verb, option):
-    given = [option.opts[0]] if option.is_flag else [option.opts[0], "1"]
-    with pytest.raises(UserError, match=f"{option.opts[0]} is given twice: give it once"):
-        verb.make_context("verb", [*given, *given])
-
-
-def test_every_verb_is_among_them():
-    named = {name.split()[0] for name, *_ in OPTIONS}
-    assert named >= {"audit", "report", "reproduce", "train"}
 
 
 @pytest.mark.parametrize("again", [["--library", "carts"], ["--library=carts"]])

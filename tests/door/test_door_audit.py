@@ -92,13 +92,6 @@ def test_without_pandas_a_sentence_names_the_table(run, monkeypatch):
         run.trials()
 
 
-def test_a_report_goes_where_it_is_asked_for(run, tmp_path):
-    written = run.report("out")
-    assert [path.name for path in written] == ["report.html", "table.tex", "table.md"]
-    pages = [(folder / "report.html").read_bytes() for folder in (tmp_path / "out", run.folder)]
-    assert pages[0] == pages[1]
-
-
 def test_a_folder_opens_again(run):
     again = faultpath.open_run(str(run.folder))
     assert again.record == run.record
@@ -114,12 +107,6 @@ def test_a_notebook_shows_verdict_effects_and_table(run):
     assert "Won:lost" in shown
     assert "<script" not in shown
     assert ":root" not in shown  # its colours are not those of the notebook
-
-
-def test_a_notebook_shows_a_mistake_as_its_sentence():
-    with pytest.raises(faultpath.UserError, match="nobody") as caught:
-        faultpath.audit(FILE, baseline="nobody", repair="blind", fault="gain:scale=0.6")
-    assert caught.value._render_traceback_() == [str(caught.value)]  # IPython asks for this
 
 
 def test_name_file_path_and_object_fly_the_same(run, toy):
@@ -264,18 +251,6 @@ def test_a_sequential_audit_stops_and_says_so(early):
     assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
     assert "ahead" in record.verdict.headline
     assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.verdict.sentences)
-
-
-def test_nothing_of_a_sequential_audit_is_shown_as_if_its_number_of_scenes_were_fixed(early):
-    early.report()
-    shown = [(early.folder / name).read_text() for name in ("report.html", "table.md", "table.tex")]
-    console = Console(file=io.StringIO(), width=120)
-    console.print(decision(early.record))
-    for page in (*shown, console.file.getvalue()):
-        for fixed in ("Holm", "80 % power", "McNemar", "mid-p", "Tango", "bootstrap"):
-            assert fixed not in page
-        assert "sequential" in page
-    assert "bets on the mean" in shown[0]
 
 
 def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
