@@ -33,13 +33,18 @@ def write(path: Path, data: bytes, inside: Path | None = None) -> None:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(name, 0o666 & ~_umask())  # mkstemp hides the file from other users
+        os.umask(mask := os.umask(0o022))
+        os.chmod(name, 0o666 & ~mask)  # mkstemp hides the file from other users
         os.replace(name, place)
     except BaseException:
         with suppress(OSError):
             os.unlink(name)
         raise
-    _sync_folder(place.parent)
+    folder = os.open(place.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
 
 
 def write_file(path: Path, data: bytes, inside: Path | None = None) -> None:
@@ -102,17 +107,3 @@ def _place(path: Path, inside: Path | None) -> Path:
     if inside is not None and path.is_symlink() and not place.is_relative_to(inside.resolve()):
         raise OSError(errno.ELOOP, f"it is a link out of {inside}")
     return place
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask
-
-
-def _sync_folder(folder: Path) -> None:
-    descriptor = os.open(folder, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)

@@ -112,7 +112,7 @@ class RunFolder:
             else:
                 found.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
-        return min(found, key=_failed, default=None)
+        return min(found, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
 
     def take_over(self, other: "RunFolder", keys: Iterable[str]) -> None:
         """Copy the blocks that another run has and this one has not, with the times of theirs."""
@@ -159,10 +159,6 @@ class RunFolder:
             f"cannot write to {self.path} ({error.strerror}): choose a folder that you may write "
             "to and that has room"
         )
-
-
-def _failed(shard: Shard) -> int:
-    return sum(outcome.failed for outcome in shard.outcomes)
 
 
 def _digest(data: bytes) -> str:

@@ -29,22 +29,18 @@ def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
     try:
         if kind := unlike_file(os.fstat(descriptor).st_mode):
             raise UserError(f"{path} is {kind}, not a file: remove it, or choose another folder")
-        _acquire(descriptor, folder, notice)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            holder = os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
+            notice(f"another faultpath process (id {holder}) works in {folder}; waiting for it")
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        except OSError as error:
+            raise UserError(
+                f"cannot lock {folder} ({error.strerror}): choose a folder on a local disk"
+            ) from error
         os.truncate(descriptor, 0)
         os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
         yield
     finally:
         os.close(descriptor)
-
-
-def _acquire(descriptor: int, folder: Path, notice: Say) -> None:
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        holder = os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
-        notice(f"another faultpath process (id {holder}) works in {folder}; waiting for it")
-        fcntl.flock(descriptor, fcntl.LOCK_EX)
-    except OSError as error:
-        raise UserError(
-            f"cannot lock {folder} ({error.strerror}): choose a folder on a local disk"
-        ) from error

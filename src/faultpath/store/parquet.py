@@ -89,11 +89,10 @@ def decode(
             raise Unreadable(f"a column is {column.type}, not {kind}")
         if column.null_count and name not in may_lack:
             raise Unreadable(f"column {name!r} has gaps")
-        columns.append(_arrays(column) if kind is NUMBERS else column.to_pylist())
+        if kind is NUMBERS:
+            columns.append([each.values.to_numpy() if each.is_valid else None for each in column])
+        else:
+            columns.append(column.to_pylist())
     rows = (dict(zip(schema, row, strict=True)) for row in zip(*columns, strict=True))
     notes = table.schema.metadata or {}
     return rows, {key.decode(): text.decode() for key, text in notes.items()}
-
-
-def _arrays(column: Any) -> list[Any]:
-    return [scalar.values.to_numpy() if scalar.is_valid else None for scalar in column]

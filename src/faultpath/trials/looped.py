@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from typing_extensions import override
 
-from faultpath.arrays import Array, HostArray, namespace, to_numpy
-from faultpath.interface import Interface, Provenance
+from faultpath.arrays import Array, namespace, to_numpy
+from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, consumers, graph
 from faultpath.taps import Taps
 from faultpath.trials.outcome import Outcome, Status
@@ -56,7 +56,22 @@ class LoopSystem(System):
 
     @cached_property
     def _variants(self) -> Mapping[str, Variant]:
-        return {name: self._variant(name, wiring) for name, wiring in self.wirings.items()}
+        found: dict[str, Variant] = {}
+        for name, wiring in self.wirings.items():
+            parts = self._graph(name, None)
+            bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
+            found[name] = Variant(
+                name=name,
+                description=wiring.description,
+                consumers=consumers(parts.parts),
+                bindings=wiring.bindings,
+                privileged=frozenset(
+                    source
+                    for source in bound
+                    if self.interface.source(source).provenance is Provenance.PRIVILEGED
+                ),
+            )
+        return found
 
     def loop(self, variant: str, seed: int | None) -> Loop:
         """Return the executable loop of a variant.
@@ -81,35 +96,14 @@ class LoopSystem(System):
         for instant in loop.execute(batch, taps):
             state = instant.state
             path.append(plant.position(state))
-        return _outcomes(plant, state, batch, path, _noise(loop.graph, batch))
+        hashes = [each.noise_hashes(batch) for each in loop.graph.modules]
+        drawn = [each for each in hashes if each is not None]
+        noise = ["-".join(each) for each in zip(*drawn, strict=True)] or ["none"] * len(scenes)
+        return _outcomes(plant, state, batch, path, noise)
 
     def _graph(self, variant: str, seed: int | None) -> Graph:
         bindings = self.wirings[variant].bindings
         return graph(self.interface, self.plant(), self.modules(variant, seed), bindings)
-
-    def _variant(self, name: str, wiring: Wiring) -> Variant:
-        parts = self._graph(name, None)
-        return Variant(
-            name=name,
-            description=wiring.description,
-            consumers=consumers(parts.parts),
-            bindings=wiring.bindings,
-            privileged=_privileged(self.interface, parts),
-        )
-
-
-def _privileged(interface: Interface, parts: Graph) -> frozenset[str]:
-    bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
-    return frozenset(
-        name for name in bound if interface.source(name).provenance is Provenance.PRIVILEGED
-    )
-
-
-def _noise(parts: Graph, batch: Batch) -> Sequence[str]:
-    drawn = [found for each in parts.modules if (found := each.noise_hashes(batch)) is not None]
-    if not drawn:
-        return ["none"] * len(batch.scenes)
-    return ["-".join(hashes) for hashes in zip(*drawn, strict=True)]
 
 
 def _outcomes(
@@ -122,7 +116,8 @@ def _outcomes(
         to_numpy(part) for part in (end.succeeded, end.crashed, end.time_s)
     )
     metrics = {name: to_numpy(values) for name, values in end.metrics.items()}
-    traces = _traces(path)
+    there = path[0] is not None
+    traces = to_numpy(namespace(path[0]).stack(list(path))) if there else None
     outcomes: list[Outcome] = []
     for i, scene in enumerate(batch.scenes):
         time_s = float(times[i])
@@ -141,9 +136,3 @@ def _outcomes(
             )
         )
     return outcomes
-
-
-def _traces(path: Sequence[Array]) -> HostArray | None:
-    if path[0] is None:
-        return None
-    return to_numpy(namespace(path[0]).stack(list(path)))

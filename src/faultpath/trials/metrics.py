@@ -25,11 +25,6 @@ class Metric(Frozen):
         """Return its words, given its name."""
         return self.words or name.removesuffix(f"_{self.unit}").replace("_", " ")
 
-    def headed(self, name: str) -> str:
-        """Return its title, given its name."""
-        said = self.said(name)
-        return self.title or said[:1].upper() + said[1:]
-
 
 VEHICLE = {
     "terminal_distance_m": Metric(

@@ -2,6 +2,7 @@
 
 import inspect
 import sys
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -17,43 +18,36 @@ _FLIES = Root("faultpath.trials.attempt")
 
 
 def system_code(system: System, spec: SystemSpec) -> Code:
-    """Return the code and data that `system`, built from `spec`, flies with, in their state.
+    """Return the code and data that `system`, built from `spec`, runs with, in their state.
 
     Its own modules and all that they import, faultpath's included, those of parts that the user
     named, the data files that it names, and what its `fingerprint()` says. Of an object that
     nothing can build again, that is the file of its class, or its source where it was typed into a
     notebook. `UserError` for a data file that cannot be read.
     """
-    root = _class_root(system) if spec.is_object else factory_root(spec)
+    given = fingerprint_of(system)
+    if not spec.is_object:
+        root = factory_root(spec)
+    else:
+        name = type(system).__module__
+        file = _file(sys.modules.get(name))
+        root = None if file is None else Root(name, file)
+        if root is None:
+            with suppress(OSError, TypeError):
+                given = inspect.getsource(type(system)) + given
+    parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
     code = read_code(
-        ((root,) if root else ()) + (*_classes(system, root), *_parts(system), _FLIES),
+        ((root,) if root else ()) + (*_classes(system, root), *parts, _FLIES),
         data=map(Path, paths_of(system, "data_files")),
         base=root.path.parent if root and root.path else None,
-        given=fingerprint_of(system) if root else f"{_source(system)}{fingerprint_of(system)}",
+        given=given,
     )
     return code if root else replace(code, main=None)
-
-
-def _class_root(system: System) -> Root | None:
-    name = type(system).__module__
-    file = _file(sys.modules.get(name))
-    return None if file is None else Root(name, file)
 
 
 def _file(module: ModuleType | None) -> Path | None:
     name = getattr(module, "__file__", None)
     return Path(name) if name and Path(name).is_file() else None
-
-
-def _source(system: System) -> str:
-    try:
-        return inspect.getsource(type(system))
-    except (OSError, TypeError):
-        return ""
-
-
-def _parts(system: System) -> tuple[Root, ...]:
-    return tuple(factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
 
 
 def source_state(spec: SystemSpec) -> CodeState:
