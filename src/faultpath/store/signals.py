@@ -72,7 +72,7 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
         address, name, topic, unit = key
         if any(np.isinf(column).any() for column in columns):
             raise Unreadable(f"the signal '{name}' is infinite")
-        named = tuple(filter(None, (part["part"] for part in parts)))
+        named = tuple(str(part["part"]) for part in parts if part["part"])
         signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
         found.setdefault(address, []).append(signal)
     return {address: tuple(signals) for address, signals in found.items()}
