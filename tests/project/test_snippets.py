@@ -4,7 +4,7 @@ Two kinds of fenced block count. The ``python`` blocks of a document run one aft
 program. A ``console`` block is a session: lines that start with ``$ `` are commands, the lines
 below each are its output, in which ``...`` stands for anything; a command without output below
 only has to succeed. Commands of ``faultpath`` and ``python`` are run; the rest (git, make, pip) are
-set-up and are not. All commands of a document share one directory, which holds ``examples/``. The
+set-up and are not. All commands share one directory, which holds ``examples/``. The
 word ``not-run`` after the language (```` ```console not-run ````) keeps a block out, for what takes
 minutes. An audit of every scene of a library whose output is not shown flies eight of them. Design
 notes are about the past and are left alone.
@@ -71,6 +71,14 @@ def session(text: str) -> Iterator[Command]:
         for part in re.split(r"^\$ ", body, flags=re.MULTILINE)[1:]:
             line, _, output = part.partition("\n")
             yield Command(line.strip(), output)
+
+
+@pytest.fixture(scope="session")
+def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """One folder for all documents, so that an audit that several show is run once."""
+    place = tmp_path_factory.mktemp("documents")
+    (place / "examples").symlink_to(ROOT / "examples")
+    return place
 
 
 @pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)

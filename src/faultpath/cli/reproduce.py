@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def command(
     pages: Annotated[
-        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `text-wind`, …; default all.")
+        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `text`, …; default all.")
     ] = None,
     profile: Annotated[
         str | None, typer.Option(help="quick (few scenes, one seed; default) or paper (its size).")

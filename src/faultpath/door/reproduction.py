@@ -24,7 +24,7 @@ def reproduce(
     """Fly every study of the paper, or some of its pages, and compare the results with it.
 
     Args:
-        pages: `table-4`, `figure-3`, `text-wind` and so on; default all.
+        pages: `table-4`, `figure-3`, `text` and so on; default all.
         profile: `quick` (few scenes, one seed) or `paper` (its size).
         folder: Run folder; default `runs/reproduction-<profile>-<code>`.
         workers: Worker processes, 0 for this process alone; default one per core, or per GPU.

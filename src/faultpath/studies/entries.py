@@ -108,27 +108,21 @@ def centimetres(measurement: Measurement, paper: Figure = "") -> Group:
 
 
 def of_quantity(
-    quantity: Quantity,
-    cells: Iterable[Cell] = (),
-    measurements: Iterable[Measurement] = (),
-    published: tuple[str, str] = ("", ""),
-    digits: int = 1,
-    *,
-    times: float = 1.0,
+    quantity: Quantity, cells: Iterable[Cell], published: tuple[str, str], digits: int
 ) -> Group:
-    """A difference that claims may be decided by, in `times` its unit, and its interval.
+    """A difference that claims may be decided by, and its interval.
 
     Bold is a detected difference in success: all others are secondary.
     """
 
     def make(results: Results) -> Made:
         found = quantity(results)
-        ends = found.interval and bracket([times * end for end in found.interval], digits)
+        ends = found.interval and bracket(found.interval, digits)
         bold = found.unit == "pp" and bool(found.detected)
-        value = wording.signed(times * found.value, digits)
+        value = wording.signed(found.value, digits)
         return Entry(text=value, detected=bold), ends or MISSING
 
-    return Group(make, published, tuple(cells), tuple(measurements))
+    return Group(make, published, tuple(cells))
 
 
 @dataclass(frozen=True)

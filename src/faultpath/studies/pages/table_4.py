@@ -101,7 +101,7 @@ def _shown(
     quantity: Quantity, cells: Iterable[Cell], mean: float, ends: Sequence[float], digits: int
 ) -> Group:
     texts = wording.signed(mean, digits), bracket(ends, digits)
-    return of_quantity(quantity, cells, (), texts, digits)
+    return of_quantity(quantity, cells, texts, digits)
 
 
 def _changed(
