@@ -157,12 +157,6 @@ def test_a_block_is_filled_from_a_run_and_says_when_there_is_none(readme) -> Non
     assert readme.filled(text, page) == text
 
 
-def test_pictures_and_runs_are_linked_from_where_the_document_is(readme) -> None:
-    block = "<!-- begin:picture:toy:effects -->\n<!-- end:picture:toy:effects -->"
-    assert "(docs/images/toy-effects.svg)" in readme.filled(block, ROOT / "README.md")
-    assert "(images/toy-effects.svg)" in readme.filled(block, ROOT / "docs" / "page.md")
-
-
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -23,7 +23,6 @@ from toy_runs import (
 from faultpath.evidence import EvidenceTable
 from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
-from faultpath.studies.entries import printed
 from faultpath.studies.pages import PAGES
 from faultpath.studies.published import published
 from faultpath.tables import MISSING, Table
@@ -129,12 +128,3 @@ def test_every_published_figure_of_a_table_stands_in_it(key: str, name: str) -> 
     }
     for figure in _figures(published(key)):
         assert (figure in words) if isinstance(figure, str) else (figure in numbers)
-
-
-def test_a_published_figure_keeps_the_digits_that_the_paper_prints() -> None:
-    assert [printed(69), printed(67.0), printed(2.5, 2), printed(-1.0)] == [
-        "69",
-        "67.0",
-        "2.50",
-        "−1.0",
-    ]

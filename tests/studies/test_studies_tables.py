@@ -18,8 +18,7 @@ from toy_runs import (
 from faultpath.evidence import Measurement
 from faultpath.record import Sweep
 from faultpath.studies.cells import Cell
-from faultpath.studies.pages import PAGES, figure_3, table_2, table_4, table_6
-from faultpath.studies.quantities.differences import contrast
+from faultpath.studies.pages import PAGES, figure_3, table_4, table_6
 from faultpath.trials import Status
 
 
@@ -59,15 +58,6 @@ def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
     assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
     assert papers(counts)[0] == "51:0/51:1/49:1"
     assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
-
-
-def test_intervals_are_those_of_the_contrast() -> None:
-    results = run(won(calibrated))
-    table = tables(page("table-2"), results)["table-2"]
-    found = contrast(results, table_2.cell("wm-a+dcc", 0.1), table_2.cell("wm-a", 0.1))
-    assert found.interval is not None
-    expected = "[{:.1f}, {:.1f}]".format(*found.interval)
-    assert texts(line(table, "95 % interval", below="WM-A+DCC minus WM-A (pp)"))[2] == expected
 
 
 def test_table_2_gives_median_and_tail_of_the_error() -> None:
