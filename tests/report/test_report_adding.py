@@ -57,18 +57,6 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_path(heard) ->
     assert f"Why: {TOPIC}" in first
 
 
-def test_all_panels_share_their_axes_and_mark_the_end(heard) -> None:
-    shown = adding(heard, pairs_of(heard))
-    panels = adding_panels(shown)
-    assert len(panels) == 3
-    ticks = {tuple(re.findall(r'text-anchor="end">(−?[\d.]+)<', panel)) for panel in panels}
-    assert len(ticks) == 1
-    for panel in panels:
-        assert panel.count('class="end-sign') == 2
-        assert "m/s²" in panel
-        assert "nan" not in panel
-
-
 def test_a_few_large_values_do_not_squeeze_the_others(heard) -> None:
     """Where a run begins with a jump, what comes after it is what a reader has to see."""
     jump = {

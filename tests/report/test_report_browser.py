@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from faultpath.record import wording
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 
@@ -57,20 +56,6 @@ def test_pictures_have_a_size_and_nothing_sticks_out(page: Page) -> None:
         "document.documentElement.scrollWidth - document.documentElement.clientWidth"
     )
     assert sideways <= 0
-
-
-def test_key_numbers_are_visible(page: Page, three_seeds: ReportInput) -> None:
-    record = three_seeds.record
-    assert page.get_by_role("heading", level=1).inner_text() == record.verdict.headline
-    tiles = page.locator(".tiles li")
-    for i, effect in enumerate(record.effects):
-        text = tiles.nth(i).inner_text()
-        assert wording.signed(effect.success.value) in text
-        assert wording.interval(effect.success) in text
-    assert page.get_by_text("1 of 960 pairs is void.").is_visible()
-    for item in record.break_even:
-        words = (item.words or "No frequency is decided").split(",")[0]
-        assert page.locator("svg text", has_text=words).first.is_visible()
 
 
 def test_the_story_can_be_read_and_the_rest_unfolds_by_key(page: Page) -> None:

@@ -110,18 +110,6 @@ def test_of_one_pattern_the_usual_end_comes_first(one_seed: ReportInput) -> None
     assert begun(one_seed, announcing(one_seed), pairs) == [1, 2, 0]
 
 
-@pytest.mark.parametrize("count", [1, 2, 4])
-def test_few_scenes_are_all_shown_with_an_exact_count(one_seed: ReportInput, count: int) -> None:
-    pairs = scenes(one_seed, *("bbbb", "bbrb", "bbbb", "lbbb")[:count])
-    record = announcing(one_seed)
-    assert sorted(begun(one_seed, record, pairs)) == list(range(count))
-    said = captions(record, pairs)
-    counts = {1: [""], 2: ["1 of 2", "1 of 2"], 4: ["2 of 4", "1 of 4", "2 of 4", "1 of 4"]}[count]
-    for pair in pairs:
-        assert counts[pair.index] in said[pair.scene, 0]
-    assert any("of 1" in each for each in said.values()) is False
-
-
 def test_void_scenes_are_neither_shown_nor_counted(one_seed: ReportInput) -> None:
     pairs = scenes(one_seed, "bbrb", "bbrb", "bbbb", "bbbb")
     dead = next(p for p in pairs if p.index == 0 and p.path == "shared")

@@ -16,7 +16,7 @@ from faultpath.report.comparison.page import (
     page,
     sentences,
 )
-from faultpath.report.comparison.runs import Compared, differing, facts_table, labels, titles
+from faultpath.report.comparison.runs import Compared, differing, facts_table, titles
 from faultpath.report.comparison.sweep import together
 from faultpath.report.inputs import ReportInput
 
@@ -142,12 +142,6 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     table = facts_table((first, second), differing((first, second)))
     at = [line.label for line in table.lines].index("calibration=-0.1")
     assert table.lines[at].entries[0].text == "2"
-
-
-def test_a_label_tells_the_runs_apart(one_seed: ReportInput, two: Given) -> None:
-    assert labels(two) == ("1  calibration=+0.1", "2  mass=-0.1")
-    tied = (*two, run(one_seed, 3, "elsewhere/third"))
-    assert labels(tied) == ("1  1", "2  2", "3  third")
 
 
 def test_other_paths_are_blank_and_not_left_out(

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.record import DecisionRecord, wording
+from faultpath.record import DecisionRecord
 from faultpath.record.model import PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
@@ -110,25 +110,3 @@ def test_text_is_escaped() -> None:
         svg.rect(0, 0, 1, 1, '"')
     assert "<script>" not in svg.render()
     ElementTree.fromstring(svg.render())
-
-
-def test_words_of_numbers() -> None:
-    assert wording.signed(-9.66) == "−9.7"
-    assert wording.signed(-0.01) == "0.0"
-    assert wording.plain(-0.01) == "0.0"
-    assert wording.p_value(0.0004) == "< 0.001"
-
-
-@pytest.mark.parametrize(
-    ("p_star", "kind", "pieces", "said"),
-    [
-        (0.588, "interval", ((0.3349, 0.7981),), "59 % [33, 80]"),
-        (None, "interval", ((0.7, 1.0),), "[70, 100]"),
-        (0.1, "two pieces", ((0.0, 0.12), (0.8, 1.0)), "10 % [0, 12] and [80, 100]"),
-        (0.5, "whole", ((0.0, 1.0),), "any"),
-        (None, "empty", (), "none"),
-    ],
-)
-def test_a_set_of_frequencies_is_written_with_its_ends_outwards(p_star, kind, pieces, said) -> None:
-    result = BreakEven(p_star=p_star, pieces=pieces, kind=kind, regions=(), method="", estimand="")
-    assert wording.break_even(result) == said

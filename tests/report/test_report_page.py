@@ -146,23 +146,6 @@ def test_table_has_the_numbers_of_the_record(source: ReportInput, page: Page) ->
         assert row[10] == ("–" if result is None else wording.break_even(result))
 
 
-def test_secondary_outcomes_and_cells_are_shown(source: ReportInput, html: str) -> None:
-    for effect in source.record.effects:
-        for estimate in (effect.time_s, *effect.metrics.values()):
-            assert estimate is not None
-            low, high = estimate.low or 0.0, estimate.high or 0.0
-            value = signed(estimate.value, 2)
-            value = value[1:] if float(f"{estimate.value:.2f}") == 0 else value
-            assert f"{value} [{_zero(plain(low, 2))}, {_zero(plain(high, 2))}]" in html
-    for cell in source.record.cells:
-        assert f">{cell.median_time_s:.2f}</span>" in html
-        assert f">{cell.success}</span>" in html
-
-
-def _zero(text: str) -> str:
-    return text.removeprefix(MINUS) if float(text.replace(MINUS, "-")) == 0 else text
-
-
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
     pairs = read_pairs(source.outcomes, source.record)
     for effect in source.record.effects:

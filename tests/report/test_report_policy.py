@@ -53,7 +53,7 @@ def test_styles_and_scripts_are_allowed_by_what_they_are(html: str) -> None:
 def test_nothing_runs_or_paints_from_an_attribute(html: str) -> None:
     outside = re.sub(r"<(style|script)\b.*?</\1>", "", html, flags=re.DOTALL)
     tags = re.findall(r"<[a-zA-Z][^>]*>", outside)
-    assert len(tags) > 400
+    assert len(tags) > 200
     for tag in tags:
         assert not re.search(r"\s(on\w+|style|srcdoc|formaction)\s*=", tag), tag
         assert "javascript:" not in tag.lower(), tag

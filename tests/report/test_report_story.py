@@ -10,8 +10,7 @@ import pytest
 from faultpath.record import DecisionRecord, Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.svg import shortened
-from faultpath.report.taps import Fork, Reader, fork_panels, forks
+from faultpath.report.taps import Fork, fork_panels, forks
 
 TOY = FilePath(__file__).resolve().parents[2] / "examples" / "toy.py"
 IMPERATIVE = re.compile(r"\b(Ask|Do not|Don't|Choose|Prefer|Use|Take|Compare|Deploy|Keep)\b")
@@ -43,20 +42,6 @@ def test_each_path_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
     assert states(told["Shared fault"]) == [both, both]
     assert [fork.everywhere for fork in told.values()] == [False, False, True]
     assert "wrong for all" in fork_panels(tuple(told.values()))[-1]
-
-
-@pytest.mark.parametrize("channel", ["gain", "mass", "clearance", "thrust_scale", "l" * 40])
-def test_what_a_module_gets_is_said_whole(channel: str) -> None:
-    one, other = frozenset({(channel, "a.b")}), frozenset({(channel, "a.c")})
-    told = {
-        Reader("a", taps, struck, changed).state
-        for taps in (frozenset[tuple[str, str]](), one, one | other)
-        for struck in (frozenset[tuple[str, str]](), one & taps)
-        for changed in (True, False)
-    }
-    assert len(told) == 5
-    for state in told:
-        assert shortened(state, 147 - 38 - 12, 11) == state
 
 
 def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> None:

@@ -78,19 +78,6 @@ def test_markdown_has_the_numbers_of_the_record(source: ReportInput) -> None:
         assert rows[label] == values
 
 
-def test_latex_is_well_formed(source: ReportInput) -> None:
-    text = latex_table(source.record)
-    assert text.isascii()
-    unescaped = re.sub(r"\\[{}&%$#_]", "", text)
-    assert unescaped.count("{") == unescaped.count("}")
-    assert unescaped.count("$") % 2 == 0
-    columns = len(source.record.paths) + 1
-    for line in unescaped.splitlines():
-        if line.endswith("\\\\") and "multicolumn" not in line:
-            assert line.count("&") == columns - 1
-    assert re.findall(r"\\begin\{(\w+)\}", text) == re.findall(r"\\end\{(\w+)\}", text)[::-1]
-
-
 def test_names_are_escaped_in_latex_and_markdown(one_seed: ReportInput) -> None:
     tex, md = latex_table(one_seed.record), markdown_table(one_seed.record)
     assert r"100 \% of \_it\_" in tex
