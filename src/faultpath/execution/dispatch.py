@@ -120,8 +120,8 @@ class Dispatch(Generic[T]):
     def _submit(self, worker: int, task: T, lost: int) -> None:
         running = self._running[worker] = _Running(task, time.monotonic(), lost)
 
-        def told(message: Started) -> None:
+        def on_message(message: Started) -> None:
             running.started, running.since = True, time.monotonic()
             self._false_starts = 0
 
-        self._executor.submit(worker, self._call(task), told)
+        self._executor.submit(worker, self._call(task), on_message)

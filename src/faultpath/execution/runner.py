@@ -148,9 +148,9 @@ def run_study(
             schedule = Schedule(_missing(state, run, notice), study.look > 0)
             progress(state.progress())
             job = Job(study.system, study.library, code.state, library.content_hash)
-            with held as hands:
+            with held as workforce:
                 there, here = partial(run_task, job), partial(run_here, system, code.unread())
-                work = here if hands.in_process else there
+                work = here if workforce.in_process else there
 
                 def call(task: Task) -> Call:
                     return partial(work, task.unit.arm, task.scenes, task.recheck == "guarded")
@@ -166,7 +166,7 @@ def run_study(
                     schedule.put(state.settle(task, reply))
 
                 limit_s = block_limit_s(system, time_limit_s)
-                dispatch = Dispatch[Task](hands, call, limit_s, study.system.name)
+                dispatch = Dispatch[Task](workforce, call, limit_s, study.system.name)
                 dispatch.run(take, settle, lambda: progress(state.progress()))
                 again = Rechecks(looks.units, run)
                 if recheck:
@@ -180,7 +180,7 @@ def run_study(
             deliveries = Deliveries.of(study, state.taps(looks.units), table, found)
             digest = run.save_tables(table, deliveries)
             failures = _failures(looks.units, state, run)
-            if store and recheck and not hands.in_process and not found:
+            if store and recheck and not workforce.in_process and not found:
                 bad = {(failure.arm.key(), failure.scene) for failure in failures}
                 sound = [
                     unit.key

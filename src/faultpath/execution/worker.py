@@ -1,4 +1,4 @@
-"""What a worker does for a study: builds the system that it is told, then runs its tasks."""
+"""What a worker does for a study: builds the system of a job, then runs its tasks."""
 
 from collections.abc import Generator
 from contextlib import contextmanager

@@ -44,7 +44,7 @@ class SharedTrials:
     def keep(self, run: RunFolder, keys: Iterable[str], notice: Say) -> None:
         """Copy shards of `run` whose trials are sound; tell where another run's differ.
 
-        A store that cannot be written is told of and harms no run.
+        A store that cannot be written is named and harms no run.
         """
         try:
             atomic.make_folder(self._held.shards)

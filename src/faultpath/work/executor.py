@@ -45,7 +45,7 @@ T = TypeVar("T")
 Call = Callable[[], Any]
 """What a worker runs: a function of a module, bound to its arguments with `functools.partial`, or
 a method of a plain object. Unless it runs in this process, it and what it returns are pickled."""
-Told = Callable[[Any], None]
+OnMessage = Callable[[Any], None]
 """Called, in the process that submitted, with what the call tells on its way."""
 
 _TICK_S = 0.5
@@ -130,7 +130,7 @@ class Executor(ABC):
         """Return the workers that could begin a call now."""
 
     @abstractmethod
-    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Hand a call to a free worker."""
 
     @abstractmethod
@@ -155,18 +155,18 @@ class Executor(ABC):
 def run_each(
     executor: Executor,
     calls: Sequence[Call],
-    told: Callable[[int, Any], None] = lambda place, message: None,
+    on_message: Callable[[int, Any], None] = lambda place, message: None,
 ) -> Iterator[tuple[int, End]]:
     """Run calls and yield the place of each in `calls` with its end, as they end.
 
-    `told` is called with the place of a call and what it tells on its way.
+    `on_message` is called with the place of a call and what it tells on its way.
     """
     waiting = iter(enumerate(calls))
     running: dict[int, int] = {}
     while True:
         for worker, (place, call) in zip(executor.free(), waiting, strict=False):
             running[worker] = place
-            executor.submit(worker, call, partial(told, place))
+            executor.submit(worker, call, partial(on_message, place))
         if not running:
             return
         for worker, end in executor.completions(_TICK_S):
@@ -199,17 +199,17 @@ def elsewhere() -> str:
     return _places[0] if _places else ""
 
 
-_told: ContextVar[Told] = ContextVar("told", default=ignore)
+_on_message: ContextVar[OnMessage] = ContextVar("on_message", default=ignore)
 
 
 def tell(message: object) -> None:
     """Tell whoever submitted the call that runs here; outside of one, nobody."""
-    _told.get()(message)
+    _on_message.get()(message)
 
 
-def ended(call: Call, told: Told) -> Returned | Failed:
+def ended(call: Call, on_message: OnMessage) -> Returned | Failed:
     """Run a call on one thread and return its end. `sys.exit` is an error like any other."""
-    before = _told.set(told)
+    before = _on_message.set(on_message)
     try:
         with one_thread():
             return Returned(call())
@@ -220,7 +220,7 @@ def ended(call: Call, told: Told) -> Returned | Failed:
     except Exception as error:
         return Failed(error)
     finally:
-        _told.reset(before)
+        _on_message.reset(before)
 
 
 class Here(Executor):
@@ -229,7 +229,7 @@ class Here(Executor):
     in_process = True
 
     def __init__(self) -> None:
-        self._waiting: tuple[Call, Told] | None = None
+        self._waiting: tuple[Call, OnMessage] | None = None
 
     @property
     def count(self) -> int:
@@ -240,10 +240,10 @@ class Here(Executor):
         """Return 0 unless a call waits."""
         return () if self._waiting else (0,)
 
-    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Keep the call until `completions` runs it."""
         assert worker in self.free()
-        self._waiting = call, told
+        self._waiting = call, on_message
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
         """Run the call that waits, however long it takes."""

@@ -13,7 +13,7 @@ from threading import Semaphore
 import ray
 
 from faultpath.version import __version__
-from faultpath.work.executor import Told, live_on
+from faultpath.work.executor import OnMessage, live_on
 from faultpath.work.process import served, show
 
 
@@ -46,11 +46,11 @@ class OnNode:
         news: SimpleQueue[tuple[bytes, bool]] = SimpleQueue()
         heard = Semaphore(0)
 
-        def told(message: object) -> None:
+        def on_message(message: object) -> None:
             news.put((bytes(ForkingPickler.dumps((message,))), False))
             heard.acquire()
 
-        self._thread.submit(_run, packed, told, news.put)
+        self._thread.submit(_run, packed, on_message, news.put)
         last = False
         while not last:
             message, last = news.get()
@@ -58,8 +58,8 @@ class OnNode:
             heard.release()
 
 
-def _run(packed: bytes, told: Told, put: Callable[[tuple[bytes, bool]], None]) -> None:
+def _run(packed: bytes, on_message: OnMessage, put: Callable[[tuple[bytes, bool]], None]) -> None:
     try:
-        put((bytes(served(packed, told)), True))
+        put((bytes(served(packed, on_message)), True))
     except BaseException:  # as a process ends that cannot go on
         os._exit(1)

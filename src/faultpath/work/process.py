@@ -15,7 +15,7 @@ from typing import Any
 
 from faultpath.errors import Notice
 from faultpath.prints import show_warning
-from faultpath.work.executor import Failed, Returned, Told, ended, tell
+from faultpath.work.executor import Failed, OnMessage, Returned, ended, tell
 
 
 def main(channel: int, lifeline: int) -> None:
@@ -44,13 +44,13 @@ def show(message: Warning | str, *more: Any, **named: Any) -> None:
         show_warning(message, *more, **named)
 
 
-def served(packed: bytes, told: Told) -> memoryview:
-    """Run a packed call of the parent's and return its end, packed; `told` gets what it tells."""
+def served(packed: bytes, on_message: OnMessage) -> memoryview:
+    """Run a packed call and return its end, packed; `on_message` gets what it tells."""
     try:
         call = pickle.loads(packed)  # of the parent, on a way that nobody else has: no file
     except Exception as error:
         return _packed(Failed(error))
-    return _packed(ended(call, told))
+    return _packed(ended(call, on_message))
 
 
 def _packed(end: Returned | Failed) -> memoryview:

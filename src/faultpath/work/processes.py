@@ -21,8 +21,8 @@ from faultpath.work.executor import (
     Failed,
     Here,
     Lost,
+    OnMessage,
     Returned,
-    Told,
     ignore,
 )
 
@@ -57,7 +57,7 @@ class Processes(Executor):
     def __init__(self, count: int) -> None:
         self._count = count
         self._processes: dict[int, _Process] = {}
-        self._busy: dict[int, Told] = {}
+        self._busy: dict[int, OnMessage] = {}
 
     @property
     def count(self) -> int:
@@ -68,7 +68,7 @@ class Processes(Executor):
         """Return the workers without a call, started or not."""
         return [worker for worker in range(self._count) if worker not in self._busy]
 
-    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Send the call, to a new process where there is none that lives."""
         assert worker in self.free()
         packed = ForkingPickler.dumps(call)
@@ -77,7 +77,7 @@ class Processes(Executor):
             self._end(worker)
             process = self._processes[worker] = _Process()
         process.send(packed)
-        self._busy[worker] = told
+        self._busy[worker] = on_message
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
         """Wait for the processes; one that was lost is started anew with its next call."""
@@ -86,11 +86,11 @@ class Processes(Executor):
             worker = next(w for c, w in channels.items() if c is channel)
             message = self._processes[worker].receive()
             if not isinstance(message, (Returned, Failed, Lost)):
-                (told,) = message
-                if isinstance(told, Notice):
-                    warnings.warn(told, stacklevel=1)  # which shows the same text once
+                (on_message,) = message
+                if isinstance(on_message, Notice):
+                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
                 else:
-                    self._busy[worker](told)
+                    self._busy[worker](on_message)
                 continue
             del self._busy[worker]
             if isinstance(message, Lost):

@@ -16,7 +16,7 @@ from typing import Any
 from faultpath.errors import Notice, UserError
 from faultpath.text import extra
 from faultpath.version import __version__
-from faultpath.work.executor import ONE_THREAD, Call, End, Executor, Lost, Told, ignore
+from faultpath.work.executor import ONE_THREAD, Call, End, Executor, Lost, OnMessage, ignore
 from faultpath.work.processes import KEEP_MEMORY
 
 _QUIET = {"logging_level": "ERROR", "log_to_driver": False}
@@ -44,7 +44,7 @@ class _Worker:
     place: str = "a node that it did not reach"
     stream: Any = None
     """What its call tells and returns; `None` without a call."""
-    told: Told = ignore
+    on_message: OnMessage = ignore
 
     @property
     def awaited(self) -> Any:
@@ -110,13 +110,13 @@ class RayWorkers(Executor):
             for number in self._heard(_TICK_S):
                 self._welcome(number)
 
-    def submit(self, worker: int, call: Call, told: Told = ignore) -> None:
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
         """Send the call to an actor that runs; its stream holds one item until it is taken."""
         chosen = self._workers[worker]
         assert chosen.awaited is None
         serve = chosen.actor.serve.options(_generator_backpressure_num_objects=1)
         chosen.stream = serve.remote(bytes(ForkingPickler.dumps(call)))
-        chosen.told = told
+        chosen.on_message = on_message
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
         """Wait for the actors; one that was lost is asked for anew."""
@@ -127,11 +127,11 @@ class RayWorkers(Executor):
                 continue
             message = self._message(worker)
             if isinstance(message, tuple):
-                (told,) = message
-                if isinstance(told, Notice):
-                    warnings.warn(told, stacklevel=1)  # which shows the same text once
+                (on_message,) = message
+                if isinstance(on_message, Notice):
+                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
                 else:
-                    worker.told(told)
+                    worker.on_message(on_message)
                 continue
             worker.stream = None
             if isinstance(message, Lost):
