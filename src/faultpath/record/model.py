@@ -27,17 +27,17 @@ class Path(Result):
     """One way in which the fault reaches the system."""
 
     name: str
-    """`correct`, the name of the only module struck, or `shared`."""
+    """`correct`, the name of the only faulted module, or `shared`."""
     title: str
     consumers: tuple[str, ...]
-    """Taps struck in the repaired system; empty for `correct`."""
+    """Taps faulted in the repaired system; empty for `correct`."""
     baseline_consumers: tuple[str, ...]
-    """Taps struck in the baseline. Where the baseline has no such consumer the fault cannot reach
+    """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
     it, and its trials under correct inputs stand in."""
     struck: tuple[StruckTap, ...] = ()
-    """What was struck in the repaired system: from receipts, where `consumers` is the plan."""
+    """What was faulted in the repaired system: from receipts, where `consumers` is the plan."""
     baseline_struck: tuple[StruckTap, ...] = ()
-    """What was struck in the baseline."""
+    """What was faulted in the baseline."""
 
 
 class Cell(Result):
