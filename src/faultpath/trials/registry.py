@@ -57,9 +57,8 @@ def load_system(spec: SystemSpec) -> System:
     `UserError` for a name, attribute or option that does not exist, a missing package, or a
     module of the system's own of which this process would run another one of that name.
 
-    The caller's process stays as it was, but for two things that the system needs as long as it
-    flies: the modules that it imports, and its folder at the end of `sys.path`, where what it
-    imports later is found. Where loading fails both are put back.
+    The caller's process stays as it was, but for the modules that the system imports and its folder
+    at the end of `sys.path`. Where loading fails both are put back.
     """
     with _undone_on_failure(), _needing(spec.name):
         said = ":".join(_target(spec.name))
@@ -216,11 +215,8 @@ def _load_file(place: str) -> ModuleType:
 
 
 class _FromSource(SourceFileLoader):
-    """Compiles what the file holds now, of which the digest is taken.
-
-    Compiled code that Python keeps stands for the time of the file in whole seconds and its size:
-    two edits within a second may have both in common.
-    """
+    """Compiles what the file holds now, of which the digest is taken: compiled code that Python
+    keeps stands for the file's size and its time in whole seconds."""
 
     def get_code(self, fullname: str) -> CodeType:
         return self.source_to_code(self.get_data(self.path), self.path)
