@@ -27,7 +27,7 @@ from faultpath.taps.tap import Tap
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}
-ANALYTIC = {"predictor": "true-parameter", "planner": "running", "clearance": "true"}
+ANALYTIC = {"predictor": "true-parameter", "sampler": "mode-preserving", "clearance": "true"}
 FLIGHTS = [
     (LEARNED, "gru", ("attitude:noise=0.05", "clearance:noise=0.1", "depth:hold=2")),
     (UNANCHORED, "wm-u", ("history_code:freeze", "action:erase=9.8/0/0/0@vehicle,onset=1")),

@@ -56,7 +56,7 @@ def test_any_selection_in_any_order_gives_what_the_whole_block_gives(chosen, who
 
 
 MANY = tuple(f"held-out/{i:03d}" for i in range(40))
-OTHER_MODULES = {"predictor": "true-parameter", "planner": "running", "wind": "L3"}
+OTHER_MODULES = {"predictor": "true-parameter", "sampler": "mode-preserving", "wind": "L3"}
 
 
 @pytest.mark.parametrize("options", [STRONG_WIND, OTHER_MODULES], ids=["usual", "other modules"])

@@ -96,7 +96,6 @@ def test_seeds_change_the_noise_of_the_planner_and_nothing_else():
 
 CHOICES = [
     {"planner": "terminal"},
-    {"planner": "running"},
     {"predictor": "dki"},
     {"predictor": "true-parameter"},
     {"environment": "free-space"},

@@ -95,9 +95,8 @@ class QuadrotorChoices(BaseModel):
     ] = 0.0
     planner: Annotated[
         str,
-        "MPPI as the platform has it, or on the distance to the goal along the horizon, or your "
-        "own as file.py:factory.",
-        Offered("mppi", "running", factories=True),
+        "What plans, or your own as file.py:factory.",
+        Offered("mppi", factories=True),
     ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[

@@ -73,9 +73,8 @@ class QuadrotorOptions(QuadrotorChoices):
         return PLATFORM.planner.sampler.model_copy(update={"candidates": self.candidates})
 
     def build_planner(self) -> Planner:
-        """Return the planner of ours that the options name."""
+        """Return the planner that ships."""
         planner = PLATFORM.planner
-        weights = planner.running if self.planner == "running" else planner.weights
         bundled = self.sampler is SamplerName.MODE_PRESERVING
         sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
-        return MPPI(sampler, NavigationCost(weights), planner.temperature)
+        return MPPI(sampler, NavigationCost(planner.weights), planner.temperature)

@@ -28,9 +28,6 @@ class PlannerSettings(_Frozen):
 
     sampler: SamplerSettings = SamplerSettings()
     weights: CostWeights = CostWeights()
-    running: CostWeights = CostWeights(running=1.0, thrust_effort=5.0)
-    """Of the planner `running`. A mean distance gains less from a change of thrust than the
-    distance at the end does, so the same effort weight would weigh more."""
     temperature: float = 0.1
     """Fraction of the spread of the better half of the candidates' costs."""
 
