@@ -54,7 +54,7 @@ def test_a_drawing_of_a_page_stands_alone_under_its_title(
     tools: Mapping[str, ModuleType],
 ) -> None:
     page = (ROOT / "docs" / "reference" / "toy" / "report.html").read_text("utf-8")
-    drawing = re.search(r"<svg[^>]*>(?:(?!</svg>).)*success, %.*?</svg>", page, re.DOTALL)
+    drawing = re.search(r"<svg.*?</svg>", page, re.DOTALL)
     assert drawing is not None
     text = tools["pictures"].standing(drawing[0])
     root = ElementTree.fromstring(text)
