@@ -24,7 +24,7 @@ TOY_MISTAKES = {
     "repair": ({"repair": "x"}, ["'x'", "blind, calibrated"]),
     "both the same": ({"repair": "calibrated"}, ["both 'calibrated'"]),
     "channel": ({"fault": "gian:scale=2"}, ["'gian'", "did you mean 'gain'", "velocity"]),
-    "kind": ({"fault": "gain:scal=2"}, ["'scal'", "did you mean 'scale'", "and 13 more"]),
+    "kind": ({"fault": "gain:scal=2"}, ["'scal'", "did you mean 'scale'"]),
     "preset": ({"fault": "calibration=0.1"}, ["'calibration'", "known: none"]),
     "consumer": ({"fault": "gain:scale=2@planner"}, ["'planner'", "controller.inverse"]),
     "consumer of another": (
