@@ -94,15 +94,6 @@ def test_seeds_change_the_noise_of_the_planner_and_nothing_else():
     assert bits(ends[0]) == bits(ends[2]) != bits(ends[1])
 
 
-CHOICES = [
-    {"planner": "terminal"},
-    {"predictor": "dki"},
-    {"predictor": "true-parameter"},
-    {"environment": "free-space"},
-    {"wind": "L3"},
-]
-
-
 def test_free_space_has_the_same_start_and_more_clearance():
     (walled,), _ = fly(quadrotor(), scenes=HELD_OUT[:1])
     (free,), taps = fly(quadrotor(environment="free-space"), scenes=HELD_OUT[:1])
