@@ -220,7 +220,8 @@ def _try_out(name: str, part: object, settings: SamplerSettings) -> None:
 
 
 def _try_predictor(name: str, predictor: Predictor) -> None:
-    lanes, code = 2, None
+    lanes = 2
+    code: Any = None
 
     def now(channel: str, place: str) -> Tensor:
         return code if channel == "history_code" else _spread(_READINGS[channel], lanes)
