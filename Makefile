@@ -8,9 +8,9 @@ SEED ?= random
 VENV := .venv
 BIN := $(VENV)/bin
 STAMPS := $(VENV)/stamps
-INPUTS := pyproject.toml constraints.txt hatch_build.py $(wildcard src/faultpath/quadrotor/native/source/*)
+INPUTS := pyproject.toml constraints.txt quadrotor/pyproject.toml quadrotor/hatch_build.py $(wildcard quadrotor/src/faultpath_quadrotor/native/source/*)
 BENCH := .venv-bench
-SOURCES := src tests examples benchmarks
+SOURCES := src quadrotor tests examples benchmarks
 
 # Installing compiles the kernels for whoever asks, and all that is installed here is for the quadrotor too.
 export HATCH_BUILD_HOOK_ENABLE_CUSTOM := true
@@ -52,7 +52,7 @@ test fuzz: export PYTHONDONTWRITEBYTECODE := 1
 test fuzz: $(STAMPS)/compiled
 
 test: $(STAMPS)/dev prerequisites ## Run the tests; more options in ARGS="..."
-	@$(BIN)/python -m compileall -qq src
+	@$(BIN)/python -m compileall -qq src quadrotor
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(JOBS) --dist worksteal $(ARGS)
 
 fuzz: $(STAMPS)/dev ## Try the laws and the command line with random inputs; SEED=7 repeats
@@ -114,8 +114,8 @@ endef
 
 # A stamp is written only after everything before it has worked. $(VENV)/incomplete lies there while
 # pip writes, so an environment in which an install was cut short is built again from nothing.
-$(STAMPS)/runtime: EXTRA := quadrotor
-$(STAMPS)/dev: EXTRA := dev
+$(STAMPS)/runtime: PARTS := -e . -e ./quadrotor
+$(STAMPS)/dev: PARTS := -e '.[dev]' -e './quadrotor[mujoco]'
 $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	@if [ -e $(VENV)/incomplete ] || ! $(BIN)/python -m pip --version >/dev/null 2>&1; then \
 	  $(CHECK_PYTHON); \
@@ -123,8 +123,8 @@ $(STAMPS)/runtime $(STAMPS)/dev: $(INPUTS)
 	  rm -rf $(VENV) && $(PYTHON) -m venv $(VENV); \
 	fi
 	@touch $(VENV)/incomplete
-	@echo "Installing faultpath[$(EXTRA)] into $(VENV); the first time this takes a minute or two"
-	@$(PIP_INSTALL) -e '.[$(EXTRA)]'
+	@echo "Installing faultpath and its quadrotor into $(VENV); the first time this takes a minute or two"
+	@$(PIP_INSTALL) $(PARTS)
 	@mkdir -p $(STAMPS)
 	@touch $(STAMPS)/runtime $@
 	@rm $(VENV)/incomplete
@@ -144,6 +144,6 @@ $(BENCH)/ready: $(INPUTS) benchmarks/requirements.txt
 	@touch $(BENCH)/incomplete
 	@echo "Installing faultpath and what it is compared with into $(BENCH); the first time takes minutes"
 	@$(BENCH)/bin/python -m pip install --no-compile --disable-pip-version-check --quiet \
-	  -c constraints.txt -r benchmarks/requirements.txt -e '.[quadrotor,mujoco]'
+	  -c constraints.txt -r benchmarks/requirements.txt -e . -e './quadrotor[mujoco]'
 	@rm $(BENCH)/incomplete
 	@touch $@

@@ -20,8 +20,8 @@ import faultpath
 from benchmarks import page
 from benchmarks.results import ROOT, Machine, Record, Results, record, save
 from benchmarks.rows import ROWS, SIDES, Row
-from faultpath.execution.provenance import checkout, processor
-from faultpath.quadrotor import native
+from faultpath.trials.execution.provenance import checkout, processor
+from faultpath_quadrotor import native
 
 ONE_THREAD = {
     "OMP_NUM_THREADS": "1",

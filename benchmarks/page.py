@@ -6,8 +6,8 @@ As of every document, `tools/documents.py` fills the blocks that are marked in i
 from collections.abc import Callable, Mapping, Sequence
 
 from benchmarks.results import Record, Target, load
-from faultpath.tables import MISSING, Entry, Line, Table, line
-from faultpath.tables.markdown import grid
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.decisions.tables.markdown import grid
 
 _COLUMNS = ("faultpath", "compared with", "ratio", "target", "met")
 

@@ -7,17 +7,17 @@ import torch
 from torch import Tensor
 
 from benchmarks.side import Side
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.perception import DepthRenderer
-from faultpath.quadrotor.perception.camera import mounted
-from faultpath.quadrotor.plant import Plant, TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Scene
-from faultpath.quadrotor.state import State, padded_lanes
-from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL, draw
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.perception import DepthRenderer
+from faultpath_quadrotor.perception.camera import mounted
+from faultpath_quadrotor.plant import Plant, TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.state import State, padded_lanes
+from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL, draw
 from faultpath.statistics import Resamples, success_effect
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 VEHICLES = 100
 SCENES = 25

@@ -10,17 +10,17 @@ import torch
 from torch import Tensor
 
 from benchmarks.side import Side
-from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.models import clearance_model, predictor
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.perception import DepthClearance, DepthRenderer, mounted
-from faultpath.quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored, shift
-from faultpath.quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
-from faultpath.quadrotor.predictors.rollout import rolling
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2
-from faultpath.streams import generator
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.models import clearance_model, predictor
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounted
+from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored, shift
+from faultpath_quadrotor.predictors import AnchoredPredictor, Calibration, PredictorInputs
+from faultpath_quadrotor.predictors.rollout import rolling
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.core.streams import generator
 
 CANDIDATES = 512
 HORIZON = 20

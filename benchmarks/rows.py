@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from benchmarks.results import Target
-from faultpath.quadrotor.native import library
+from faultpath_quadrotor.native import library
 
 _PORTABLE = {library.VARIABLE: library.PORTABLE}
 

@@ -15,10 +15,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.interface import read_interface
-from faultpath.streams import generator
-from faultpath.taps import Reading, Taps
+from faultpath.core.streams import generator
+from faultpath.loop.taps import Reading, Taps
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 
 INTERFACE = read_interface("""

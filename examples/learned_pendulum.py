@@ -29,9 +29,9 @@ import numpy as np
 import torch
 from torch import nn
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.loop import Module, Port
-from faultpath.repairs import (
+from faultpath.learning import (
     Learned,
     Schedule,
     Windows,
@@ -41,7 +41,7 @@ from faultpath.repairs import (
     matched,
     uncertainty_training,
 )
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 from faultpath.systems import ComposedSystem, Measure, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric

@@ -25,10 +25,10 @@ from mujoco import rollout
 from numpy.typing import ArrayLike, NDArray
 from torch import Tensor
 
-from faultpath.quadrotor.plant.protocol import Plant, PlantState
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor.plant.protocol import Plant, PlantState
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import (
     ARM_LENGTH_M,
     COLLECTIVE_MAX_N,
     GRAVITY_MPS2,

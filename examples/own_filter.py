@@ -3,8 +3,8 @@
 import torch
 
 from faultpath.loop import Port
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.estimators import Estimator
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.estimators import Estimator
 
 GYROSCOPE, FORCE, FIX = (
     Port(channel, "filter") for channel in ("gyroscope", "specific_force", "position_fix")

@@ -16,15 +16,15 @@ import torch
 from safetensors.torch import load_file, save_file
 from torch import Tensor, nn
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.predictors import KinematicIntegrator, Predictor, PredictorInputs
-from faultpath.quadrotor.predictors.kinematic import Residual
-from faultpath.quadrotor.predictors.network import Affine, draw_weights
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.training.collection import collect
-from faultpath.quadrotor.training.predictor_task import error, scales
-from faultpath.quadrotor.training.replay import correct, predict
-from faultpath.quadrotor.training.windows import windows_of
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor, PredictorInputs
+from faultpath_quadrotor.predictors.kinematic import Residual
+from faultpath_quadrotor.predictors.network import Affine, draw_weights
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.collection import collect
+from faultpath_quadrotor.training.predictor_task import error, scales
+from faultpath_quadrotor.training.replay import correct, predict
+from faultpath_quadrotor.training.windows import windows_of
 
 FOLDER = Path("runs/own-model").absolute()
 BATCH, LEARNING_RATE, HIDDEN = 256, 3e-3, 48

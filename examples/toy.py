@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 from faultpath.trials import (
     ErrorSum,
     ErrorTerm,

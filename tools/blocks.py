@@ -15,12 +15,12 @@ from flown_code import ROOT, flown_by
 from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
-from faultpath.record import DecisionRecord, RunProvenance, wording
+from faultpath.decisions import DecisionRecord, RunProvenance, wording
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
 from faultpath.statistics import IN_FORCE, unconditional
-from faultpath.tables import MISSING, Entry, Table, line
-from faultpath.tables.markdown import grid
+from faultpath.decisions.tables import MISSING, Entry, Table, line
+from faultpath.decisions.tables.markdown import grid
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -26,8 +26,8 @@ import paper_blocks
 from blocks import REFERENCE, ROOT, Wrong, copied, load
 from pictures import IMAGES, digest, made_from, make_images, name_of
 
-from faultpath.door.saved import MADE_FROM, MAP
-from faultpath.store.signals import SIGNALS
+from faultpath.api.saved import MADE_FROM, MAP
+from faultpath.trials.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance

@@ -5,8 +5,8 @@ from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
-from faultpath.code import CodeState
-from faultpath.record import RunProvenance
+from faultpath.trials.code import CodeState
+from faultpath.decisions import RunProvenance
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.state import system_code
 

@@ -12,20 +12,20 @@ from flown_code import flown_by
 from pictures import IMAGES
 from rich.console import Console
 
-from faultpath.door.run import MAP_MADE_FROM as MADE_FROM
-from faultpath.door.saved import MAP
-from faultpath.plane.decide import conclude as decide
-from faultpath.plane.lattice import UNITS
-from faultpath.plane.model import MapRecord
-from faultpath.plane.study import plan_map
-from faultpath.question import MapQuestion
-from faultpath.record import RunProvenance
-from faultpath.report.plane import shown, table_markdown, tables
-from faultpath.report.plane_pictures import correlation_picture, map_picture
-from faultpath.store import read_outcomes
-from faultpath.store.folder import OUTCOMES
-from faultpath.store.sealed import seal
-from faultpath.tables.markdown import grid
+from faultpath.api.run import MAP_MADE_FROM as MADE_FROM
+from faultpath.api.saved import MAP
+from faultpath.decisions.map.decide import conclude as decide
+from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.study import plan_map
+from faultpath.decisions.question import MapQuestion
+from faultpath.decisions import RunProvenance
+from faultpath.report.map import shown, table_markdown, tables
+from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.folder import OUTCOMES
+from faultpath.trials.store.sealed import seal
+from faultpath.decisions.tables.markdown import grid
 from faultpath.trials import SystemSpec, library_of, load_system
 
 TAKEN = (*MADE_FROM, "provenance.json")

@@ -8,15 +8,15 @@ from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
-from faultpath.record import CORRECT, SHARED, Reproduction, RunProvenance
-from faultpath.report.reproduction.terminal import ledger_markdown
+from faultpath.decisions import CORRECT, SHARED, Reproduction, RunProvenance
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown
 from faultpath.report.sweep import sweep_plot
-from faultpath.store import read_outcomes
-from faultpath.studies.cells import SYSTEM, Setting
-from faultpath.studies.central import ELSEWHERE, central, of_run, state
-from faultpath.studies.shipped import RUN
-from faultpath.tables import Table
-from faultpath.tables.markdown import block
+from faultpath.trials.store import read_outcomes
+from faultpath_quadrotor.paper.cells import SYSTEM, Setting
+from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
+from faultpath_quadrotor.paper.shipped import RUN
+from faultpath.decisions.tables import Table
+from faultpath.decisions.tables.markdown import block
 
 PLACE = REFERENCE / "paper"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")

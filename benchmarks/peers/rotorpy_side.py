@@ -10,7 +10,7 @@ from rotorpy.vehicles.multirotor import BatchedMultirotor, BatchedMultirotorPara
 
 from benchmarks.physics import VEHICLES
 from benchmarks.side import Side
-from faultpath.quadrotor.vehicle import PLANT_DT_S, STEPS_PER_CONTROL
+from faultpath_quadrotor.vehicle import PLANT_DT_S, STEPS_PER_CONTROL
 
 
 def hummingbirds() -> Side:

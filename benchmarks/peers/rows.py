@@ -10,11 +10,11 @@ import torch
 from torch import Tensor, nn
 
 from benchmarks import planning
-from faultpath.quadrotor.planners import CostWeights, SamplerSettings
-from faultpath.quadrotor.predictors import anchored
-from faultpath.quadrotor.predictors.kinematic import RATE_LAG_S
-from faultpath.quadrotor.predictors.network import LATENT, Affine, LatentNetwork
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor.planners import CostWeights, SamplerSettings
+from faultpath_quadrotor.predictors import anchored
+from faultpath_quadrotor.predictors.kinematic import RATE_LAG_S
+from faultpath_quadrotor.predictors.network import LATENT, Affine, LatentNetwork
+from faultpath_quadrotor.vehicle import (
     CONTROL_DT_S,
     GRAVITY_MPS2,
     RATE_LIMIT_RADPS,

@@ -8,18 +8,18 @@ version. Each name loads what it needs when it is first used, so importing this 
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from faultpath.version import __version__
+from faultpath.core.version import __version__
 
 if TYPE_CHECKING:
-    from faultpath.door.audit import audit, audits
-    from faultpath.door.comparing import compare
-    from faultpath.door.mapping import reversal_map
-    from faultpath.door.planned import plan
-    from faultpath.door.reproduced import ReproductionRun
-    from faultpath.door.reproduction import reproduce
-    from faultpath.door.run import Run, open_run
-    from faultpath.door.systems import load_system
-    from faultpath.errors import Stopped, UserError
+    from faultpath.api.audit import audit, audits
+    from faultpath.api.comparing import compare
+    from faultpath.api.mapping import reversal_map
+    from faultpath.api.planned import plan
+    from faultpath_quadrotor.paper.reproduced import ReproductionRun
+    from faultpath_quadrotor.paper.reproduction import reproduce
+    from faultpath.api.run import Run, open_run
+    from faultpath.api.systems import load_system
+    from faultpath.core.errors import Stopped, UserError
     from faultpath.trials.system import System
 
 __all__ = [
@@ -40,19 +40,19 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ReproductionRun": "faultpath.door.reproduced",
-    "Run": "faultpath.door.run",
-    "Stopped": "faultpath.errors",
+    "ReproductionRun": "faultpath_quadrotor.paper.reproduced",
+    "Run": "faultpath.api.run",
+    "Stopped": "faultpath.core.errors",
     "System": "faultpath.trials.system",
-    "UserError": "faultpath.errors",
-    "audit": "faultpath.door.audit",
-    "audits": "faultpath.door.audit",
-    "compare": "faultpath.door.comparing",
-    "load_system": "faultpath.door.systems",
-    "open_run": "faultpath.door.run",
-    "plan": "faultpath.door.planned",
-    "reproduce": "faultpath.door.reproduction",
-    "reversal_map": "faultpath.door.mapping",
+    "UserError": "faultpath.core.errors",
+    "audit": "faultpath.api.audit",
+    "audits": "faultpath.api.audit",
+    "compare": "faultpath.api.comparing",
+    "load_system": "faultpath.api.systems",
+    "open_run": "faultpath.api.run",
+    "plan": "faultpath.api.planned",
+    "reproduce": "faultpath_quadrotor.paper.reproduction",
+    "reversal_map": "faultpath.api.mapping",
 }
 
 

@@ -10,9 +10,9 @@ import pyarrow.parquet as pq
 import pytest
 from cli_runs import HERE, ROOT, audit, faultpath, shards
 
-from faultpath.door.listing import runs
-from faultpath.door.run import open_run
-from faultpath.record import SHARED
+from faultpath.api.listing import runs
+from faultpath.api.run import open_run
+from faultpath.decisions import SHARED
 
 FILES = {
     "manifest.json",
@@ -264,5 +264,5 @@ def test_workers_change_nothing(toy_run, tmp_path, monkeypatch):
 
 
 def test_zero_workers_run_in_this_process(tmp_path, monkeypatch):
-    monkeypatch.setattr("faultpath.work.processes.Processes", None)
+    monkeypatch.setattr("faultpath.trials.work.processes.Processes", None)
     assert audit(workers=0, out=tmp_path / "run").status == 0

@@ -9,19 +9,19 @@ from pathlib import Path
 import pytest
 from cli_runs import ROOT, audit, faultpath
 
-from faultpath.door.run import open_run
-from faultpath.errors import Notice
+from faultpath.api.run import open_run
+from faultpath.core.errors import Notice
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
 
-pytestmark = pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+pytestmark = pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
 
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", list(sys.path))
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
     shutil.copy(PARTS, tmp_path / "mine.py")
 
 

@@ -99,7 +99,7 @@ def test_ctrl_c_outside_the_run_is_a_sentence_too(monkeypatch, tmp_path):
     def stopped(*_: object) -> None:
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("faultpath.door.run.write_report", stopped)
+    monkeypatch.setattr("faultpath.api.run.write_report", stopped)
     ended = audit(out=tmp_path / "run")
     assert ended.status == INTERRUPTED
     (line,) = ended.err.splitlines()

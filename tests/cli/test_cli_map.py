@@ -11,7 +11,7 @@ import pytest
 from cli_runs import HERE, TOY, faultpath, shards, until
 
 import faultpath as library
-from faultpath.plane.model import MapRecord
+from faultpath.decisions.map.model import MapRecord
 
 SLOW = f"{HERE / 'systems' / 'slow_toy.py'}:create"
 FILES = ("map.json", "outcomes.parquet", "report.html", "map.svg", "correlation.svg", "table.md")

@@ -14,7 +14,7 @@ HEAD = f"""
 import sys
 sys.path.insert(0, {str(ROOT / "examples")!r})
 import numpy as np
-from faultpath.taps import Reading
+from faultpath.loop.taps import Reading
 from faultpath.trials import Library, SceneRef, System, Variant
 from toy import Toy
 INTERFACE = Toy.interface
@@ -175,15 +175,15 @@ def test_a_module_that_does_what_it_does_not_declare(code, says, tmp_path):
 def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
     """The user's code called, but no argument of his can be the cause."""
     code = """
-        import faultpath.streams
+        import faultpath.core.streams
         def create():
-            return faultpath.streams.generator("p", Failing(), 0)
+            return faultpath.core.streams.generator("p", Failing(), 0)
         class Failing:
             pass
         def lost(*_):
             raise RuntimeError("a bug of faultpath")
-        lost.__code__ = lost.__code__.replace(co_filename=faultpath.streams.__file__)
-        faultpath.streams.key = lost
+        lost.__code__ = lost.__code__.replace(co_filename=faultpath.core.streams.__file__)
+        faultpath.core.streams.key = lost
         """
     system, _ = _system(tmp_path, dedent(code))
     line = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]

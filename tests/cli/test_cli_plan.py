@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from cli_runs import TOY, Ended, faultpath, shards
 
-from faultpath.proposal.plan import Plan
-from faultpath.proposal.study import read_study
+from faultpath.decisions.plan.plan import Plan
+from faultpath.decisions.plan.study import read_study
 
 
 @pytest.fixture(autouse=True)

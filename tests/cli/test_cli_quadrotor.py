@@ -5,9 +5,9 @@ from pathlib import Path
 
 from cli_runs import audit, faultpath
 
-from faultpath.door.run import open_run
-from faultpath.quadrotor import native
-from faultpath.quadrotor.scenes.library import Library, as_text, load_library
+from faultpath.api.run import open_run
+from faultpath_quadrotor import native
+from faultpath_quadrotor.scenes.library import Library, as_text, load_library
 from faultpath.trials import SystemSpec, load_system
 
 
@@ -22,7 +22,7 @@ def write_library(count):
 
 def test_a_library_of_ones_own_is_flown_and_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 3)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
     write_library(2)
     ended = audit(
         system="quadrotor",

@@ -7,17 +7,17 @@ import pytest
 
 import faultpath
 from faultpath.cli import report
-from faultpath.cli.reproduce import tell
-from faultpath.door.display import Display
-from faultpath.door.job import Job
-from faultpath.door.reproducing import carry_out
-from faultpath.door.reproduction import ReproductionRun
-from faultpath.errors import UserError
-from faultpath.studies.cells import QUICK
-from faultpath.studies.pages import table_4
-from faultpath.studies.run import Plan
-from faultpath.tables import MISSING
-from faultpath.work import Here
+from faultpath_quadrotor.verbs.reproduce import tell
+from faultpath.api.display import Display
+from faultpath.api.job import Job
+from faultpath_quadrotor.paper.reproducing import carry_out
+from faultpath_quadrotor.paper.reproduction import ReproductionRun
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.paper.cells import QUICK
+from faultpath_quadrotor.paper.pages import table_4
+from faultpath_quadrotor.paper.run import Plan
+from faultpath.decisions.tables import MISSING
+from faultpath.trials.work import Here
 
 TOLD = Display(command=("faultpath", "reproduce"))
 ASKED = Plan((table_4.PAGE,), QUICK)

@@ -5,7 +5,7 @@ import io
 from rich.table import Table
 from rich.text import Text
 
-from faultpath.door.display import SafeConsole
+from faultpath.api.display import SafeConsole
 
 STEERS = "\x1b]0;owned\x07\x1b[2J\x9b31m‮name"
 

@@ -7,9 +7,9 @@ import pytest
 from cli_runs import ROOT, faultpath
 
 from faultpath.cli.main import INTERRUPTED
-from faultpath.quadrotor import checkpoint
-from faultpath.quadrotor.training import catalogue, job_pools
-from faultpath.repairs.card import read_card
+from faultpath_quadrotor import checkpoint
+from faultpath_quadrotor.training import catalogue, job_pools
+from faultpath.learning.model_card import read_card
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))
 from fitting_toys import Toy, entry

@@ -1,6 +1,6 @@
 """A small interface with a reconstruction, for tests of faults."""
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.faults import Coupled, Fault, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 

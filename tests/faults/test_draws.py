@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from faultpath.faults import Draws
-from faultpath.streams import generator, generators
+from faultpath.core.streams import generator, generators
 
 
 def test_rows_are_the_keyed_streams() -> None:

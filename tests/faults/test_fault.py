@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.faults import (
     ALL,
     AnyFault,

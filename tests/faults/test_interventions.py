@@ -27,7 +27,7 @@ from faultpath.faults import (
     UniformScale,
 )
 from faultpath.interface import Channel
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 SCENES = ("a", "b")
 DT_S = 0.05

@@ -3,7 +3,7 @@
 import pytest
 from fault_toys import INTERFACE, calibration
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.faults import (
     Bias,
     Coupled,

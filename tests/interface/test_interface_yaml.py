@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.interface import (
     Channel,
     Interface,

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from loop_toys import DT_S, FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
 
-from faultpath.errors import SystemMistake
+from faultpath.core.errors import SystemMistake
 from faultpath.faults import Fault, Scale, parse_fault
 from faultpath.interface import interface_yaml, read_interface, transitive_consumers
 from faultpath.loop import Batch, Loop, Module, Port, consumers, graph
 from faultpath.loop import interface_of as derived
-from faultpath.review.flights import Trace
-from faultpath.taps import IllegalRead, MalformedReading, Taps
+from faultpath.systems.checks.flights import Trace
+from faultpath.loop.taps import IllegalRead, MalformedReading, Taps
 
 
 def fault(text):

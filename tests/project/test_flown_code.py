@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.record import RunProvenance
+from faultpath.decisions import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
 TOY = "examples/toy.py:create"

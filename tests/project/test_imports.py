@@ -21,7 +21,7 @@ def _core_modules(root: Path) -> list[str]:
     return sorted(
         name
         for name in modules
-        if not name.startswith("faultpath.quadrotor") and not name.endswith("__main__")
+        if not name.startswith("faultpath_quadrotor") and not name.endswith("__main__")
     )
 
 
@@ -60,7 +60,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
     left = {
         module: set(graph.find_modules_directly_imported_by(module))
         for module in graph.modules
-        if not module.startswith("faultpath.quadrotor")
+        if not module.startswith("faultpath_quadrotor")
     }
     while free := {m for m, needed in left.items() if not needed & left.keys()}:
         for module in free:

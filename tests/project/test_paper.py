@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.record import Reproduction, RunProvenance
-from faultpath.studies.cells import PAPER
-from faultpath.studies.claims import again
-from faultpath.studies.pages import PAGES
-from faultpath.studies.published import published_claims
-from faultpath.studies.results import Results
-from faultpath.studies.run import read_results
-from faultpath.studies.shipped import RUN
+from faultpath.decisions import Reproduction, RunProvenance
+from faultpath_quadrotor.paper.cells import PAPER
+from faultpath_quadrotor.paper.claims import again
+from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_quadrotor.paper.published import published_claims
+from faultpath_quadrotor.paper.results import Results
+from faultpath_quadrotor.paper.run import read_results
+from faultpath_quadrotor.paper.shipped import RUN
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference" / "paper"

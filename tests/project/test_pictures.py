@@ -9,8 +9,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.door.run import read_map
-from faultpath.report.plane_pictures import correlation_picture, map_picture
+from faultpath.api.run import read_map
+from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.svg import text_width
 
 ROOT = Path(__file__).resolve().parents[2]

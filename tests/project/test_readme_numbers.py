@@ -9,13 +9,13 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from faultpath.execution import run_study
-from faultpath.execution.provenance import packages, processor
-from faultpath.planning import Audit, plan_audit
-from faultpath.question import AuditQuestion
-from faultpath.record import DecisionRecord, RunProvenance, decide
-from faultpath.store import read_outcomes
-from faultpath.store.tables import encode_outcomes
+from faultpath.trials.execution import run_study
+from faultpath.trials.execution.provenance import packages, processor
+from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.question import AuditQuestion
+from faultpath.decisions import DecisionRecord, RunProvenance, decide
+from faultpath.trials.store import read_outcomes
+from faultpath.trials.store.tables import encode_outcomes
 from faultpath.trials import OutcomeTable, SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -76,7 +76,7 @@ def test_the_code_that_is_here_gives_the_outcomes_of_the_reference(
 
 
 def same_arithmetic(made: RunProvenance) -> bool:
-    from faultpath.quadrotor import native
+    from faultpath_quadrotor import native
 
     fused = any(name in made.backend for name in ("avx512", "avx2"))
     return (

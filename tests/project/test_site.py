@@ -77,7 +77,7 @@ def test_the_api_lists_what_the_guides_import() -> None:
     written = [*(ROOT / "docs").glob("*.md"), *(ROOT / "examples").glob("*.py")]
     wanted = set[tuple[str, str]]().union(*(imported(page.read_text("utf-8")) for page in written))
     assert len(wanted) > 40
-    assert wanted - listed - {("faultpath.errors", "UserError")} == set()
+    assert wanted - listed - {("faultpath.core.errors", "UserError")} == set()
 
 
 def test_notebooks_are_stored_without_outputs() -> None:

@@ -10,11 +10,11 @@ import torch
 from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.training.catalogue import Entry
-from faultpath.quadrotor.training.fitting import ModelTask
-from faultpath.repairs.card import Schedule
-from faultpath.streams import generator
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.training.catalogue import Entry
+from faultpath_quadrotor.training.fitting import ModelTask
+from faultpath.learning.model_card import Schedule
+from faultpath.core.streams import generator
 
 
 def draw(purpose: str, seed: int, *shape: int, step: int = 0) -> Tensor:

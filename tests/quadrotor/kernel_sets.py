@@ -1,7 +1,7 @@
 """Sets of kernels for tests that compare them."""
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.native import PORTABLE
+from faultpath_quadrotor import native
+from faultpath_quadrotor.native import PORTABLE
 
 COMPILED = native.available()
 FUSED = tuple(isa for isa in COMPILED if native.load(isa).numerics == "fused")

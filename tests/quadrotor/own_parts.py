@@ -3,16 +3,16 @@
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planners import (
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.planners import (
     MPPI,
     AutoregressiveSampler,
     CostWeights,
     NavigationCost,
 )
-from faultpath.quadrotor.platform import PLATFORM
-from faultpath.quadrotor.predictors import KinematicIntegrator
-from faultpath.quadrotor.reconstruction import Reconstruction
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.predictors import KinematicIntegrator
+from faultpath_quadrotor.reconstruction import Reconstruction
 
 OPTIONS = QuadrotorOptions()
 

@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor.planners import Planner, Scored
-from faultpath.quadrotor.predictors import KinematicIntegrator, PredictorInputs
-from faultpath.quadrotor.predictors.rollout import rolling
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.planners import Planner, Scored
+from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
+from faultpath_quadrotor.predictors.rollout import rolling
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
 
 
 def replan(

@@ -8,10 +8,10 @@ from textwrap import dedent
 import pytest
 from flights import HELD_OUT, bits, fly, quadrotor
 
-from faultpath.door.systems import with_parts
-from faultpath.errors import UserError
-from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
-from faultpath.review.check import chosen_variants
+from faultpath.api.systems import with_parts
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
+from faultpath.systems.checks.check import chosen_variants
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code
 
@@ -23,7 +23,7 @@ PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 6)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 6)
     monkeypatch.setattr(sys, "path", list(sys.path))
 
 
@@ -68,7 +68,7 @@ def test_a_part_flies_as_the_shipped_one_that_it_equals():
     assert bits(own) == bits(shipped)
 
 
-@pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
 def test_a_reconstruction_supplies_its_wind_and_a_planner_plans():
     system = quadrotor(bring=f"{WIND},{PLANNER}", wind="L2")
     (_,), taps = fly(system, f"dki-drag/{WIND}")
@@ -88,7 +88,7 @@ def test_a_subclass_flies_the_portable_path_and_says_so():
         fly(system, PREDICTOR, HELD_OUT[:1])
 
 
-@pytest.mark.filterwarnings("ignore::faultpath.quadrotor.native.lending.PortableNotice")
+@pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.lending.PortableNotice")
 def test_an_arm_gets_a_part_of_its_own_with_the_seed_that_it_names():
     system = quadrotor(predictor=PREDICTOR, predictor_seed="1")
     named, chosen = system.setups[PREDICTOR], system.setups["gru"]
@@ -196,8 +196,8 @@ def _file(folder: Path, code: str) -> Path:
         sys.path.append({str(PARTS.parent)!r})
         import torch
         from own_parts import Constant, K, planner
-        from faultpath.quadrotor.planners import AutoregressiveSampler, SamplerSettings
-        from faultpath.quadrotor.predictors import KinematicIntegrator
+        from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings
+        from faultpath_quadrotor.predictors import KinematicIntegrator
         """
     path = folder / "mine.py"
     path.write_text(dedent(head) + "\n" + code + "\n")

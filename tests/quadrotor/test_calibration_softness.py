@@ -10,18 +10,18 @@ import pytest
 import torch
 from planning_toys import replan
 
-from faultpath.quadrotor.planners import (
+from faultpath_quadrotor.planners import (
     MPPI,
     AutoregressiveSampler,
     CostWeights,
     NavigationCost,
     shift,
 )
-from faultpath.quadrotor.plant import TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.predictors import Calibration, PredictorInputs
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import STEPS_PER_CONTROL
+from faultpath_quadrotor.plant import TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.predictors import Calibration, PredictorInputs
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL
 
 ERRORS = (0.0, 0.1, -0.1)
 SECONDS = 4.0

@@ -1,9 +1,9 @@
 """What a user chooses of the quadrotor, held to what it is built from."""
 
-from faultpath.quadrotor import choices, models
-from faultpath.quadrotor.choices import QuadrotorChoices
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planners import SamplerSettings
+from faultpath_quadrotor import choices, models
+from faultpath_quadrotor.choices import QuadrotorChoices
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.planners import SamplerSettings
 
 
 def test_the_predictors_on_offer_are_those_that_load():

@@ -5,11 +5,11 @@ import copy
 import pytest
 import torch
 
-from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
-from faultpath.quadrotor.perception.clearance import ClearanceModel
-from faultpath.quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath.quadrotor.perception.seen import (
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
+from faultpath_quadrotor.perception.clearance import ClearanceModel
+from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+from faultpath_quadrotor.perception.seen import (
     DepthClearance,
     PerceptionSettings,
     in_view,

@@ -6,19 +6,19 @@ from pathlib import Path
 import pytest
 import torch
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.checkpoint import checkpoint_path, load_checkpoint
-from faultpath.quadrotor.perception.clearance import ClearanceModel
-from faultpath.quadrotor.perception.labels import (
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.checkpoint import checkpoint_path, load_checkpoint
+from faultpath_quadrotor.perception.clearance import ClearanceModel
+from faultpath_quadrotor.perception.labels import (
     HIGHEST_M,
     LOWEST_M,
     between_pixels,
     visible_distance,
 )
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.training import clearance_data
-from faultpath.quadrotor.training.clearance_data import Recipe, Samples
-from faultpath.quadrotor.training.clearance_task import (
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.training import clearance_data
+from faultpath_quadrotor.training.clearance_data import Recipe, Samples
+from faultpath_quadrotor.training.clearance_task import (
     VALIDATION_FROM,
     ClearanceTask,
     censored_loss,

@@ -6,13 +6,13 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.platform import PLATFORM
-from faultpath.quadrotor.training import collection, flight
-from faultpath.quadrotor.training.collection import collect
-from faultpath.quadrotor.training.pool import episodes_path, read_pool
-from faultpath.quadrotor.training.provenance import provenance_path
-from faultpath.quadrotor.training.recorded import COMPONENTS
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.training import collection, flight
+from faultpath_quadrotor.training.collection import collect
+from faultpath_quadrotor.training.pool import episodes_path, read_pool
+from faultpath_quadrotor.training.provenance import provenance_path
+from faultpath_quadrotor.training.recorded import COMPONENTS
 
 SMALL = {"nominal": 5, "wind": 7}
 

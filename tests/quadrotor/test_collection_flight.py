@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.quadrotor.flight_settings import (
+from faultpath_quadrotor.flight_settings import (
     ControllerSettings,
     FlightSettings,
     PerturbationSettings,
 )
-from faultpath.quadrotor.training import flight
-from faultpath.quadrotor.training.flight import EPISODE_STEPS, fly
-from faultpath.quadrotor.training.recorded import COMPONENTS, SIGNALS
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor.training import flight
+from faultpath_quadrotor.training.flight import EPISODE_STEPS, fly
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     CONTROL_RATE_HZ,
     GRAVITY_MPS2,

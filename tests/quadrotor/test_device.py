@@ -14,16 +14,16 @@ from simulated_gpu import GPU, HostWaited, SimulatedGPU, simulated_gpu
 from torch import Tensor
 from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicOutputShapeException
 
-from faultpath import arrays
-from faultpath.errors import UserError
+from faultpath.core import arrays
+from faultpath.core.errors import UserError
 from faultpath.loop import Batch
-from faultpath.quadrotor import device as devices
-from faultpath.quadrotor import models, native, system
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.plant.module import ACTION
-from faultpath.quadrotor.system import Quadrotor
-from faultpath.taps import Observer, Query, Reading, Taps
-from faultpath.taps.tap import Tap
+from faultpath_quadrotor import device as devices
+from faultpath_quadrotor import models, native, system
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.plant.module import ACTION
+from faultpath_quadrotor.system import Quadrotor
+from faultpath.loop.taps import Observer, Query, Reading, Taps
+from faultpath.loop.taps.tap import Tap
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}
@@ -126,8 +126,8 @@ SINS: dict[str, tuple[Callable[[Tensor], object], type[Exception]]] = {
 @pytest.fixture
 def as_on_a_device(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], None]]:
     """Return what sends the program the way of an accelerator while tensors are on the CPU."""
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.LOOK_EVERY", 5)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.LOOK_EVERY", 5)
 
     def take() -> None:
         monkeypatch.setattr(devices, "HOST_READABLE", frozenset())
@@ -166,7 +166,7 @@ def test_cuda_without_a_gpu_is_a_mistake_of_the_user():
 @pytest.mark.parametrize(("options", "variant", "texts"), FLIGHTS, ids=["gru", "wm-u", "dob"])
 def test_a_gpu_flies_what_the_cpu_flies_and_never_waits(options, variant, texts, monkeypatch):
     """To 1 mm after a second of flight; torch itself raises where a step waits."""
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 20)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 20)
     here, there = quadrotor(**options), quadrotor(**options, device="cuda")
     with torch.no_grad():
         taps = _wired(there, variant, texts, HELD_OUT)

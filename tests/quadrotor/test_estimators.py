@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from flights import HELD_OUT, bits, fault, fly, quadrotor
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 FILTER = f"{Path(__file__).parents[2] / 'examples' / 'own_filter.py'}:create"
 
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 30)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 30)
 
 
 def test_a_filter_of_ones_own_estimates_the_state():
@@ -50,7 +50,7 @@ def test_raw_sensors_that_nobody_reads_change_nothing():
 def test_an_estimator_that_writes_elsewhere_is_refused(tmp_path):
     path = tmp_path / "mine.py"
     path.write_text(
-        "from faultpath.quadrotor.estimators import Estimator\n"
+        "from faultpath_quadrotor.estimators import Estimator\n"
         "class Odd(Estimator):\n    writes = ('mission_goal',)\n"
         "    def step(self, inputs, memory):\n        return {}, memory\n"
         "def create(seed):\n    return Odd()\n"

@@ -5,10 +5,10 @@ import pytest
 import torch
 from flights import hall
 
-from faultpath.errors import UserError
-from faultpath.evidence import Measurement, Recording
-from faultpath.quadrotor.evidence import measure, recording
-from faultpath.quadrotor.scenes.library import Library, as_text
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import Measurement, Recording
+from faultpath_quadrotor.evidence import measure, recording
+from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath.trials import load_measurer
 
 torch.set_num_threads(1)

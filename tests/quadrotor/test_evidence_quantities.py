@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.errors import UserError
-from faultpath.evidence import Measurement, Recording
-from faultpath.quadrotor.evidence import quantities
-from faultpath.quadrotor.evidence.inputs import Subject
-from faultpath.quadrotor.evidence.quantities import check, measured
-from faultpath.quadrotor.evidence.recording import STRIDE, Recorded
-from faultpath.quadrotor.platform import PLATFORM, Platform
-from faultpath.quadrotor.reconstruction import DisturbanceObserver
-from faultpath.quadrotor.training.flight import fly
-from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath.quadrotor.training.windows import HISTORY, cut, places
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import Measurement, Recording
+from faultpath_quadrotor.evidence import quantities
+from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.evidence.quantities import check, measured
+from faultpath_quadrotor.evidence.recording import STRIDE, Recorded
+from faultpath_quadrotor.platform import PLATFORM, Platform
+from faultpath_quadrotor.reconstruction import DisturbanceObserver
+from faultpath_quadrotor.training.flight import fly
+from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
+from faultpath_quadrotor.training.windows import HISTORY, cut, places
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 torch.set_num_threads(1)
 

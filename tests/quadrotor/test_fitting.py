@@ -8,12 +8,12 @@ import torch
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
-from faultpath.quadrotor.checkpoint import ModelCard
-from faultpath.quadrotor.training.fitting import fit, journal_path
-from faultpath.repairs.card import Schedule
-from faultpath.repairs.card import read_card as read
-from faultpath.repairs.loop import Diverged, minibatches
-from faultpath.store.atomic import write
+from faultpath_quadrotor.checkpoint import ModelCard
+from faultpath_quadrotor.training.fitting import fit, journal_path
+from faultpath.learning.model_card import Schedule
+from faultpath.learning.model_card import read_card as read
+from faultpath.learning.loop import Diverged, minibatches
+from faultpath.trials.store.atomic import write
 
 
 def read_card(path: Path) -> ModelCard:
@@ -81,7 +81,7 @@ def test_a_stop_at_any_write_loses_no_bits(
             original(path, data)
 
         with monkeypatch.context() as patch:
-            patch.setattr("faultpath.store.atomic.write", stopping)
+            patch.setattr("faultpath.trials.store.atomic.write", stopping)
             try:
                 _fit(Toy(), folder)
             except KeyboardInterrupt:

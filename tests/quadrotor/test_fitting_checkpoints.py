@@ -8,17 +8,17 @@ import pytest
 import torch
 from fitting_toys import Net, Toy
 
-from faultpath.errors import UserError
-from faultpath.quadrotor import checkpoint
-from faultpath.quadrotor.checkpoint import (
+from faultpath.core.errors import UserError
+from faultpath_quadrotor import checkpoint
+from faultpath_quadrotor.checkpoint import (
     ModelCard,
     checkpoint_path,
     load_checkpoint,
     ship,
     shipped_folder,
 )
-from faultpath.quadrotor.training.fitting import fit
-from faultpath.repairs.card import read_card
+from faultpath_quadrotor.training.fitting import fit
+from faultpath.learning.model_card import read_card
 
 
 @pytest.fixture

@@ -9,15 +9,15 @@ from pathlib import Path
 import pytest
 from fitting_toys import Toy, entry
 
-from faultpath.errors import Stopped, UserError
-from faultpath.quadrotor.training import catalogue, job_pools, jobs, trajectories
-from faultpath.quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
-from faultpath.quadrotor.training.collection import EPISODES, recipe
-from faultpath.quadrotor.training.fitting import fit, journal_path
-from faultpath.quadrotor.training.job_pools import missing_pools
-from faultpath.quadrotor.training.jobs import Failure, Overview, run_jobs
-from faultpath.quadrotor.training.provenance import Provenance
-from faultpath.work import processes as processes_of_work
+from faultpath.core.errors import Stopped, UserError
+from faultpath_quadrotor.training import catalogue, job_pools, jobs, trajectories
+from faultpath_quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
+from faultpath_quadrotor.training.collection import EPISODES, recipe
+from faultpath_quadrotor.training.fitting import fit, journal_path
+from faultpath_quadrotor.training.job_pools import missing_pools
+from faultpath_quadrotor.training.jobs import Failure, Overview, run_jobs
+from faultpath_quadrotor.training.provenance import Provenance
+from faultpath.trials.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent
 
@@ -171,8 +171,8 @@ import sys
 from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 from fitting_toys import entry
-from faultpath.quadrotor.training.catalogue import Job
-from faultpath.quadrotor.training.jobs import run_jobs
+from faultpath_quadrotor.training.catalogue import Job
+from faultpath_quadrotor.training.jobs import run_jobs
 place = Path(sys.argv[2])
 run_jobs([Job(entry("slow"), 0)], place / "data", place / "out", 1, lambda _: None, print)
 """

@@ -7,10 +7,10 @@ import pytest
 import torch
 from scipy.spatial import cKDTree
 
-from faultpath.quadrotor.scenes.geometry import Geometry
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
-from faultpath.quadrotor.vehicle import VehicleParameters
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.vehicle import VehicleParameters
 
 BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from faultpath.execution.again import difference
+from faultpath.trials.execution.again import difference
 from faultpath.faults import parse_fault
-from faultpath.quadrotor.evidence.signals import quadrotor_signals
-from faultpath.review.hearing import fly_heard, signals
-from faultpath.store.signals import TOGETHER
+from faultpath_quadrotor.evidence.signals import quadrotor_signals
+from faultpath.systems.checks.hearing import fly_heard, signals
+from faultpath.trials.store.signals import TOGETHER
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.predictors import (
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
     History,
@@ -14,9 +14,9 @@ from faultpath.quadrotor.predictors import (
     PredictorInputs,
     UnanchoredPredictor,
 )
-from faultpath.quadrotor.predictors.rollout import rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.predictors.rollout import rollout
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
 
 SCENES = 5
 KINDS = [AnchoredPredictor, UnanchoredPredictor]

@@ -9,25 +9,25 @@ from test_native_planner import scored
 from test_native_rollout import commands_of, inputs_of, predictor, random_weights
 from torch import Tensor, nn
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.native.lending import PortableNotice, tell_portable
-from faultpath.quadrotor.perception import ClearanceModel, DepthClearance
-from faultpath.quadrotor.planners import (
+from faultpath_quadrotor import native
+from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
+from faultpath_quadrotor.perception import ClearanceModel, DepthClearance
+from faultpath_quadrotor.planners import (
     NavigationCost,
     Scored,
 )
-from faultpath.quadrotor.predictors import (
+from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
     KinematicIntegrator,
     LatentNetwork,
     Memory,
     Predictor,
 )
-from faultpath.quadrotor.predictors.compiled import HorizonLoop, uncovered
-from faultpath.quadrotor.predictors.drag import LinearDrag
-from faultpath.quadrotor.predictors.rollout import Rollout, rolling, rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.predictors.compiled import HorizonLoop, uncovered
+from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.predictors.rollout import Rollout, rolling, rollout
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 SHIFT_M = 100.0
 """No shipped predictor leads so far."""

@@ -6,9 +6,9 @@ import torch
 from kernel_sets import COMPILED, PORTABLE
 from torch import Tensor
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.scenes.field import DistanceField
-from faultpath.quadrotor.scenes.library import load_library
+from faultpath_quadrotor import native
+from faultpath_quadrotor.scenes.field import DistanceField
+from faultpath_quadrotor.scenes.library import load_library
 
 SCENES = list(load_library("selection").scenes[:6])
 

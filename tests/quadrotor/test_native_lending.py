@@ -9,9 +9,9 @@ import torch
 from test_native_rollout import commands_of, inputs_of, predictor
 from torch import Tensor
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.native.lending import lend
-from faultpath.quadrotor.predictors.rollout import Rollout, rolling
+from faultpath_quadrotor import native
+from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.predictors.rollout import Rollout, rolling
 
 pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was compiled")
 

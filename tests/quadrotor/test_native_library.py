@@ -2,9 +2,9 @@
 
 import pytest
 
-from faultpath.errors import UserError
-from faultpath.quadrotor import native
-from faultpath.quadrotor.native import library
+from faultpath.core.errors import UserError
+from faultpath_quadrotor import native
+from faultpath_quadrotor.native import library
 
 
 def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:

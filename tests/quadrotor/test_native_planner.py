@@ -6,19 +6,19 @@ from typing import ParamSpec, TypeVar
 import pytest
 import torch
 
-from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.models import clearance_model
-from faultpath.quadrotor.perception import DepthClearance
-from faultpath.quadrotor.perception.camera import CaptureFrame
-from faultpath.quadrotor.planners import (
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.models import clearance_model
+from faultpath_quadrotor.perception import DepthClearance
+from faultpath_quadrotor.perception.camera import CaptureFrame
+from faultpath_quadrotor.planners import (
     AutoregressiveSampler,
     CostWeights,
     NavigationCost,
     SamplerSettings,
     Scored,
 )
-from faultpath.quadrotor.predictors.rollout import Rollout
-from faultpath.quadrotor.state import State
+from faultpath_quadrotor.predictors.rollout import Rollout
+from faultpath_quadrotor.state import State
 
 SCENES = ("a", "b", "c")
 P = ParamSpec("P")

@@ -6,14 +6,14 @@ import torch
 from kernel_sets import COMPILED, FUSED, PORTABLE
 from torch import Tensor
 
-from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.plant import PlantState, TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.plant.world import World
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.plant import PlantState, TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import (
     COLLISION_RADIUS_M,
     MOTOR_THRUST_MAX_N,
     VehicleParameters,

@@ -3,9 +3,9 @@
 import pytest
 import torch
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.predictors.network import GatedCell, draw_weights
-from faultpath.quadrotor.predictors.recurrent import recur
+from faultpath_quadrotor import native
+from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
+from faultpath_quadrotor.predictors.recurrent import recur
 
 
 @pytest.fixture(params=native.available())

@@ -8,12 +8,12 @@ import torch
 from kernel_sets import COMPILED, FUSED, PORTABLE
 from test_perception_render import flown
 
-from faultpath.quadrotor import native
-from faultpath.quadrotor.perception.camera import HEIGHT, WIDTH, mounted
-from faultpath.quadrotor.perception.render import DepthRenderer
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Box, Cylinder, Scene
-from faultpath.quadrotor.state import State
+from faultpath_quadrotor import native
+from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, mounted
+from faultpath_quadrotor.perception.render import DepthRenderer
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
+from faultpath_quadrotor.state import State
 
 SCENES = [*load_library("selection").scenes[:40], *load_library("training").scenes[:40]]
 ROUNDING_M = 1e-6

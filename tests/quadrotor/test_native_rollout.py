@@ -3,8 +3,8 @@
 import pytest
 import torch
 
-from faultpath.quadrotor import native, so3
-from faultpath.quadrotor.predictors import (
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
     Calibration,
     KinematicIntegrator,
@@ -12,9 +12,9 @@ from faultpath.quadrotor.predictors import (
     PredictorInputs,
     UnanchoredPredictor,
 )
-from faultpath.quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from faultpath_quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 TOLERANCE = 1e-5
 SCENES = 3

@@ -3,10 +3,10 @@
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.predictors.drag import LinearDrag
-from faultpath.quadrotor.reconstruction import DisturbanceObserver, Sensed
-from faultpath.quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.reconstruction import DisturbanceObserver, Sensed
+from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 LANES = 32
 DT = 0.05

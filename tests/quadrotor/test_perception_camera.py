@@ -4,8 +4,8 @@ import math
 
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.perception.camera import (
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.perception.camera import (
     FIELD_OF_VIEW_DEG,
     FOCAL_PX,
     HEIGHT,

@@ -4,11 +4,11 @@ import numpy as np
 import torch
 from test_perception_render import flown
 
-from faultpath.quadrotor.perception import labels
-from faultpath.quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
-from faultpath.quadrotor.perception.labels import between_pixels, visible_distance
-from faultpath.quadrotor.perception.render import DepthRenderer
-from faultpath.quadrotor.scenes.library import load_library
+from faultpath_quadrotor.perception import labels
+from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
+from faultpath_quadrotor.perception.labels import between_pixels, visible_distance
+from faultpath_quadrotor.perception.render import DepthRenderer
+from faultpath_quadrotor.scenes.library import load_library
 
 WALL = torch.full((HEIGHT, WIDTH), 3.0)
 

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.perception.camera import RANGE_M, rays
-from faultpath.quadrotor.perception.render import DepthRenderer
-from faultpath.quadrotor.scenes.geometry import Geometry
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import VehicleParameters
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.perception.camera import RANGE_M, rays
+from faultpath_quadrotor.perception.render import DepthRenderer
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import VehicleParameters
 
 BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
 

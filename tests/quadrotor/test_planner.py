@@ -6,8 +6,8 @@ import torch
 from planning_toys import replan
 from scipy import stats
 
-from faultpath.quadrotor.options import QuadrotorOptions
-from faultpath.quadrotor.planners import (
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.planners import (
     AutoregressiveSampler,
     BundledSampler,
     CostWeights,
@@ -15,13 +15,13 @@ from faultpath.quadrotor.planners import (
     SamplerSettings,
     Scored,
 )
-from faultpath.quadrotor.planners.mppi import softmax
-from faultpath.quadrotor.planners.sampler import standard_normals
-from faultpath.quadrotor.predictors import Calibration, PredictorInputs
-from faultpath.quadrotor.predictors.rollout import Rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
-from faultpath.streams import generator
+from faultpath_quadrotor.planners.mppi import softmax
+from faultpath_quadrotor.planners.sampler import standard_normals
+from faultpath_quadrotor.predictors import Calibration, PredictorInputs
+from faultpath_quadrotor.predictors.rollout import Rollout
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
+from faultpath.core.streams import generator
 
 SCENES = ["s/0", "s/1", "s/2", "s/3"]
 

@@ -5,11 +5,11 @@ import pytest
 import torch
 from torch import Tensor
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.plant import PlantState, TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.state import State, padded_lanes
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.plant import PlantState, TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.state import State, padded_lanes
+from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     GRAVITY_MPS2,
     MOTOR_THRUST_MAX_N,

@@ -5,11 +5,11 @@ import math
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.plant import PlantState, TorchPlant, rigid_body
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.plant import PlantState, TorchPlant, rigid_body
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
 
 F64 = torch.float64
 NO_DRAG = (1e-12,) * 3

@@ -11,14 +11,14 @@ from flights import bits as outcome_bits
 from flights import fly as fly_trials
 from torch import Tensor
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.plant import Plant, PlantState, TorchPlant
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.plant.wind import Winds
-from faultpath.quadrotor.plant.world import World
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.plant import Plant, PlantState, TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.wind import Winds
+from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import (
     STEPS_PER_CONTROL,
     draw,
 )
@@ -108,7 +108,7 @@ def test_trials_end_alike_on_both_and_are_told_apart() -> None:
 def test_an_audit_s_trials_are_their_own_and_of_their_plant(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
     scenes = [scene.id for scene in SCENES[:4]]
     system, other = (quadrotor(wind="L3", plant=plant) for plant in (f"{EXAMPLE}:create", "torch"))
     whole, alone, torch_s = (

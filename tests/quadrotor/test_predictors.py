@@ -5,17 +5,17 @@ from dataclasses import replace
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.predictors import (
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors import (
     Calibration,
     KinematicIntegrator,
     Physics,
     PredictorInputs,
     TrueParameter,
 )
-from faultpath.quadrotor.predictors.rollout import rollout
-from faultpath.quadrotor.state import State
-from faultpath.quadrotor.vehicle import (
+from faultpath_quadrotor.predictors.rollout import rollout
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import (
     GRAVITY_MPS2,
     NOMINAL_DRAG_KGPS,
     NOMINAL_INERTIA_KGM2,

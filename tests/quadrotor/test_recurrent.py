@@ -3,8 +3,8 @@
 import pytest
 import torch
 
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
 
 STATE = ("position", "velocity", "attitude", "body_rate")
 HISTORY = {(channel, "history") for channel in (*STATE, "action")}

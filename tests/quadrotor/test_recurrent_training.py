@@ -6,12 +6,12 @@ from pathlib import Path
 import pytest
 import torch
 
-from faultpath.errors import UserError
-from faultpath.quadrotor import so3
-from faultpath.quadrotor.training import corruption
-from faultpath.quadrotor.training.corruption import dcc
-from faultpath.quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
-from faultpath.quadrotor.training.windows import Windows
+from faultpath.core.errors import UserError
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.training import corruption
+from faultpath_quadrotor.training.corruption import dcc
+from faultpath_quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
+from faultpath_quadrotor.training.windows import Windows
 
 COUNT = 96
 
@@ -75,7 +75,7 @@ def test_repair_shares_initial_weights_order_and_short_histories():
 
 def test_repair_without_noise_is_the_baseline_bit_for_bit(monkeypatch):
     noiseless = MODELS | {"gru+dcc": replace(MODELS["gru+dcc"], half_range=0.0)}
-    monkeypatch.setattr("faultpath.quadrotor.training.reconstruction_task.MODELS", noiseless)
+    monkeypatch.setattr("faultpath_quadrotor.training.reconstruction_task.MODELS", noiseless)
     assert loss(task("gru")) == loss(task("gru+dcc"))
 
 

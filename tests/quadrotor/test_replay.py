@@ -5,18 +5,18 @@ from dataclasses import fields
 import pytest
 import torch
 
-from faultpath.quadrotor.evidence.inputs import Subject
-from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
-from faultpath.quadrotor.predictors import PredictorInputs
-from faultpath.quadrotor.predictors import module as prediction
-from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training import replay
-from faultpath.quadrotor.training.closed_loop import record_flights
-from faultpath.quadrotor.training.flight import fly
-from faultpath.quadrotor.training.playback import at_present
-from faultpath.quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath.quadrotor.training.reconstruction_task import _calibration, _history
-from faultpath.quadrotor.training.windows import HISTORY, Windows, cut, places
+from faultpath_quadrotor.evidence.inputs import Subject
+from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
+from faultpath_quadrotor.predictors import PredictorInputs
+from faultpath_quadrotor.predictors import module as prediction
+from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training import replay
+from faultpath_quadrotor.training.closed_loop import record_flights
+from faultpath_quadrotor.training.flight import fly
+from faultpath_quadrotor.training.playback import at_present
+from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
+from faultpath_quadrotor.training.reconstruction_task import _calibration, _history
+from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 
 torch.set_num_threads(1)
 

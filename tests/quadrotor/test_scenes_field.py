@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.quadrotor.scenes.field import SPACING_M, DistanceField, Lattice, exact_on_lattice
-from faultpath.quadrotor.scenes.geometry import Geometry
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.scenes.field import SPACING_M, DistanceField, Lattice, exact_on_lattice
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Scene
 
 HALF_DIAGONAL_M = SPACING_M * math.sqrt(3) / 2
 

@@ -9,16 +9,16 @@ from itertools import pairwise
 
 import pytest
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.scenes.draw import floor_plan
-from faultpath.quadrotor.scenes.library import (
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.scenes.draw import floor_plan
+from faultpath_quadrotor.scenes.library import (
     FROZEN,
     Library,
     frozen_file,
     load_library,
 )
-from faultpath.quadrotor.scenes.prisms import prism
-from faultpath.quadrotor.scenes.scene import Scene, Topology
+from faultpath_quadrotor.scenes.prisms import prism
+from faultpath_quadrotor.scenes.scene import Scene, Topology
 
 NAMES = list(FROZEN)
 
@@ -139,5 +139,5 @@ def test_a_floor_plan_has_every_solid_and_the_free_variant_none(libraries):
 
 
 def test_drawing_does_not_load_torch():
-    code = "import sys, faultpath.quadrotor.scenes.draw; sys.exit('torch' in sys.modules)"
+    code = "import sys, faultpath_quadrotor.scenes.draw; sys.exit('torch' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

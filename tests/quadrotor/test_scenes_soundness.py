@@ -8,17 +8,17 @@ from typing import Any
 import pytest
 import torch
 
-from faultpath.errors import UserError
-from faultpath.quadrotor.scenes.geometry import Geometry
-from faultpath.quadrotor.scenes.library import (
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import (
     FROZEN,
     Library,
     as_text,
     frozen_file,
     load_library,
 )
-from faultpath.quadrotor.scenes.scene import Box, Cylinder, Scene
-from faultpath.quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
+from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
+from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
 
 BASE = load_library("selection").scenes
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
 
-from faultpath.quadrotor import so3
+from faultpath_quadrotor import so3
 
 F64 = torch.float64
 axis_component = st.floats(-1, 1)

@@ -6,7 +6,7 @@ import pytest
 from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, with_halls
 
 from faultpath.faults import AnyFault
-from faultpath.quadrotor import native, system
+from faultpath_quadrotor import native, system
 
 STRONG_WIND = {"wind": "L3"}
 
@@ -22,7 +22,7 @@ def _path(request: pytest.FixtureRequest) -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 FAULTS = (
@@ -42,7 +42,7 @@ def faults() -> tuple[AnyFault, ...]:
 @pytest.fixture(scope="module")
 def whole(_path, faults) -> dict[str, tuple[object, ...]]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+        patch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
         outcomes, _ = fly(quadrotor(**STRONG_WIND), "dob", HELD_OUT, faults, seed=3)
     return {outcome.scene: bits(outcome) for outcome in outcomes}
 
@@ -62,7 +62,7 @@ OTHER_MODULES = {"predictor": "true-parameter", "sampler": "mode-preserving", "w
 @pytest.mark.parametrize("options", [STRONG_WIND, OTHER_MODULES], ids=["usual", "other modules"])
 def test_chunks_of_every_size_and_more_than_one_group_of_lanes_change_nothing(options, monkeypatch):
     """Scenes are planned in eights, fours, twos and ones, and flown in groups of 32 lanes."""
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", 5)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 5)
     system = quadrotor(**options)
     faults = [fault(text, system) for text in FAULTS[:3]]
     block = {o.scene: bits(o) for o in fly(system, "dob", MANY, faults)[0]}

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from flights import HELD_OUT, STEPS, fault, fly, hall, quadrotor, trace, with_halls
 
-from faultpath.quadrotor.plant.world import GOAL_RADIUS_M
-from faultpath.quadrotor.scenes.scene import Box
-from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M, CONTROL_DT_S, GRAVITY_MPS2
+from faultpath_quadrotor.plant.world import GOAL_RADIUS_M
+from faultpath_quadrotor.scenes.scene import Box
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, CONTROL_DT_S, GRAVITY_MPS2
 from faultpath.trials import Outcome, Status
 
 HOVER = f"action:erase={GRAVITY_MPS2}/0/0/0@vehicle"
@@ -18,7 +18,7 @@ TABLE = Box(centre_m=(0.0, 0.0, 0.5), half_extents_m=(0.5, 0.5, 0.5))
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 def _end(tmp_path: Path, text: str | None, *args, **options: str) -> Outcome:

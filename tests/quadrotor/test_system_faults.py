@@ -6,8 +6,8 @@ from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
 from faultpath.faults import Fault
 from faultpath.faults.values import Erase
-from faultpath.quadrotor.predictors import module as prediction
-from faultpath.taps import Receipts
+from faultpath_quadrotor.predictors import module as prediction
+from faultpath.loop.taps import Receipts
 from faultpath.trials import Outcome
 
 ALTERED_BY_CALIBRATION = {
@@ -24,13 +24,13 @@ ALTERED_BY_CALIBRATION = {
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.fixture(scope="module")
 def plain() -> Outcome:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+        patch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
         return fly(quadrotor(wind="L2"))[0][0]
 
 

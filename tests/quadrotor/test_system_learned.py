@@ -5,11 +5,11 @@ import pytest
 import torch
 from flights import fault, fly, quadrotor
 
-from faultpath.quadrotor.models import predictor, reconstruction
-from faultpath.quadrotor.predictors import History
-from faultpath.quadrotor.predictors.history import STEPS as HISTORY
-from faultpath.quadrotor.presets import STATE_NOISE_STD
-from faultpath.quadrotor.variants import setups
+from faultpath_quadrotor.models import predictor, reconstruction
+from faultpath_quadrotor.predictors import History
+from faultpath_quadrotor.predictors.history import STEPS as HISTORY
+from faultpath_quadrotor.presets import STATE_NOISE_STD
+from faultpath_quadrotor.variants import setups
 
 STEPS = 5
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
@@ -18,7 +18,7 @@ VARIANTS = ("zero-wind", "gru", "gru+dcc", "dob", "wm-a", "wm-u", "dki-drag/gru"
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
@@ -81,7 +81,7 @@ def test_a_noisy_state_is_late_and_the_same_for_everyone():
 @torch.inference_mode()
 def test_the_deployed_history_is_the_one_that_training_knows(monkeypatch):
     """After 12 intervals the code is that of the last 12 states and commands, oldest first."""
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", HISTORY + 2)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", HISTORY + 2)
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "wm-a")
     now = HISTORY + 1

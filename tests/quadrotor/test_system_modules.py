@@ -7,11 +7,11 @@ from flights import HELD_OUT, STEPS, fault, fly, quadrotor
 
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Graph, consumers
-from faultpath.quadrotor.estimators.exact import ExactEstimator
-from faultpath.quadrotor.interface import quadrotor_interface
-from faultpath.quadrotor.models import PREDICTORS, RECONSTRUCTIONS
-from faultpath.quadrotor.system import Quadrotor
-from faultpath.review.flights import Trace
+from faultpath_quadrotor.estimators.exact import ExactEstimator
+from faultpath_quadrotor.interface import quadrotor_interface
+from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
+from faultpath_quadrotor.system import Quadrotor
+from faultpath.systems.checks.flights import Trace
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of
 
@@ -27,7 +27,7 @@ FLOWN = [
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 @pytest.fixture(scope="module")

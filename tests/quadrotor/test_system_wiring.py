@@ -5,15 +5,15 @@ import pytest
 import torch
 from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
 
-from faultpath.quadrotor.plant.module import VehiclePlant
-from faultpath.taps import IllegalRead
+from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath.loop.taps import IllegalRead
 
 VARIANTS = ("zero-wind", "dob", "true-wind")
 
 
 @pytest.fixture(autouse=True)
 def _short(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("faultpath.quadrotor.plant.module.CONTROL_STEPS", STEPS)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
 
 
 def _mistake(monkeypatch, source, wrong):

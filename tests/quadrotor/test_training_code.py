@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.code import Root, read_code
-from faultpath.quadrotor.scenes.library import load_library
-from faultpath.quadrotor.system import Quadrotor
-from faultpath.quadrotor.training import clearance_data, closed_loop, flight
-from faultpath.quadrotor.training.pool import encode_episodes, encode_rows, write_flights
+from faultpath.trials.code import Root, read_code
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training import clearance_data, closed_loop, flight
+from faultpath_quadrotor.training.pool import encode_episodes, encode_rows, write_flights
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 
@@ -55,7 +55,7 @@ def test_whatever_runs_while_data_are_made_counts(
         make(tmp_path)
     finally:
         sys.setprofile(None)
-    counted = read_code([Root(f"faultpath.quadrotor.{root}") for root in roots]).sources
+    counted = read_code([Root(f"faultpath_quadrotor.{root}") for root in roots]).sources
     ours = {Path(file).resolve() for file in ran if Path(file).is_relative_to(SOURCE)}
     assert len(ours) > 5
     assert ours <= {path.resolve() for path in counted.values()}

@@ -3,9 +3,9 @@ import pytest
 import torch
 from pydantic import ValidationError
 
-from faultpath.quadrotor.plant.vehicle_batch import Vehicle
-from faultpath.quadrotor.state import padded_lanes
-from faultpath.quadrotor.vehicle import VehicleParameters, VehicleRanges, draw
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.state import padded_lanes
+from faultpath_quadrotor.vehicle import VehicleParameters, VehicleRanges, draw
 
 DRAWS = [draw(np.random.default_rng(seed)) for seed in range(400)]
 

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from faultpath.quadrotor.plant import wind
-from faultpath.quadrotor.plant.wind import Winds
+from faultpath_quadrotor.plant import wind
+from faultpath_quadrotor.plant.wind import Winds
 
 LEVELS = ["L0", "L1", "L2", "L3"]
 

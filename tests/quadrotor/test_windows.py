@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 import torch
 
-from faultpath.quadrotor.platform import PLATFORM
-from faultpath.quadrotor.training.collection import collect
-from faultpath.quadrotor.training.pool import read_pool
-from faultpath.quadrotor.training.windows import (
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.training.collection import collect
+from faultpath_quadrotor.training.pool import read_pool
+from faultpath_quadrotor.training.windows import (
     STRIDE,
     Windows,
     starts,
     windows_of,
 )
-from faultpath.quadrotor.vehicle import CONTROL_DT_S
+from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
 torch.set_num_threads(1)
 

@@ -14,8 +14,8 @@ import pytest
 from playwright.sync_api import Browser, sync_playwright
 
 from faultpath.interface import Interface, read_interface
-from faultpath.record import Path, Question, StruckTap, decide
-from faultpath.record.provenance import RunProvenance
+from faultpath.decisions import Path, Question, StruckTap, decide
+from faultpath.trials.provenance import RunProvenance
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism

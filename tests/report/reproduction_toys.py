@@ -1,6 +1,6 @@
 """A reproduction small enough to read: claims, tables and a sweep."""
 
-from faultpath.record import (
+from faultpath.decisions import (
     ClaimVerdict,
     Ledger,
     Part,
@@ -9,7 +9,7 @@ from faultpath.record import (
     Series,
     Sweep,
 )
-from faultpath.tables import Entry, Line, Table
+from faultpath.decisions.tables import Entry, Line, Table
 
 NASTY = '<script>alert("x")</script> & co'
 

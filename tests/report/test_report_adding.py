@@ -11,8 +11,8 @@ from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer_choice import choose
-from faultpath.review.hearing import added
-from faultpath.store import TrialAddress
+from faultpath.systems.checks.hearing import added
+from faultpath.trials.store import TrialAddress
 
 TOPIC = "error of the predicted acceleration"
 SIZES = {"predictor": (2.0, 0.0), "reconstruction": (0.0, -2.0), "shared": (2.0, -1.75)}

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from faultpath.record import DecisionRecord
+from faultpath.decisions import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import viewer_data

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from faultpath.record import Path as FaultPath
+from faultpath.decisions import Path as FaultPath
 from faultpath.report.comparison.page import (
     effects,
     headline,

@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 
 import pytest
 
-from faultpath.record import DecisionRecord
-from faultpath.record.model import PathBreakEven
+from faultpath.decisions import DecisionRecord
+from faultpath.decisions.model import PathBreakEven
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import pair_grid, pair_key, read_pairs

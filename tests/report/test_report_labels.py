@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
-from faultpath.door.reproduced import ReproductionRun
+from faultpath_quadrotor.paper.reproduced import ReproductionRun
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import FloorPlan

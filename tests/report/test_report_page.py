@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import pytest
 
-from faultpath.record import wording
+from faultpath.decisions import wording
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Kind, read_pairs

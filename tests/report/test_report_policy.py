@@ -12,7 +12,7 @@ from reproduction_toys import reproduction
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.reproduction.page import reproduction_page
+from faultpath_quadrotor.paper.report.page import reproduction_page
 
 PAGES = ("report", "reproduction")
 

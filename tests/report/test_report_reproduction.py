@@ -7,13 +7,13 @@ import pytest
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
-from faultpath.record import RunProvenance
+from faultpath.decisions import RunProvenance
 from faultpath.report.inputs import ReportInput
-from faultpath.report.reproduction import words
-from faultpath.report.reproduction.page import reproduction_page
-from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
+from faultpath_quadrotor.paper.report import words
+from faultpath_quadrotor.paper.report.page import reproduction_page
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
 from faultpath.report.sweep import sweep_plot
-from faultpath.tables import Entry, Line, Table
+from faultpath.decisions.tables import Entry, Line, Table
 
 CENTRAL = Table(
     columns=("Isolated", "Shared"),

@@ -6,10 +6,10 @@ import pytest
 from reproduction_toys import claim, ledger, part, reproduction
 from rich.console import Console
 
-from faultpath.record import ClaimVerdict
-from faultpath.report.reproduction import words
-from faultpath.report.reproduction.page import reproduction_page
-from faultpath.report.reproduction.terminal import ledger_markdown, ledger_view
+from faultpath.decisions import ClaimVerdict
+from faultpath_quadrotor.paper.report import words
+from faultpath_quadrotor.paper.report.page import reproduction_page
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
 
 
 def said_in(html: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path as FilePath
 
 import pytest
 
-from faultpath.record import DecisionRecord, Path
+from faultpath.decisions import DecisionRecord, Path
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.taps import Fork, fork_panels, forks

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faultpath.record.family import CORRECT
+from faultpath.decisions.family import CORRECT
 from faultpath.report.comparison.runs import Compared
 from faultpath.report.comparison.sweep import contrasts, together
 from faultpath.report.inputs import ReportInput

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.interface import Interface
-from faultpath.record import DecisionRecord, wording
-from faultpath.record.model import Effect
+from faultpath.decisions import DecisionRecord, wording
+from faultpath.decisions.model import Effect
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table

@@ -12,8 +12,8 @@ from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import parting_step
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import pack, unpack
-from faultpath.store import TrialAddress
-from faultpath.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
 from faultpath.trials import FloorPlan, Pillar, Prism
 
 

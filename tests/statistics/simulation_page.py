@@ -21,7 +21,7 @@ from simulation import (
     trainings,
 )
 
-from faultpath.record.family import ALPHA
+from faultpath.decisions.family import ALPHA
 
 
 def share(rates: Iterable[float]) -> str:

@@ -15,7 +15,7 @@ from faultpath.statistics import (
     with_test,
 )
 from faultpath.statistics.betting import log_capital, log_capitals
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 
 def effect(first, second):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from faultpath.statistics import WindowQuantiles, change
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 FEW = {"n_resamples": 400}
 

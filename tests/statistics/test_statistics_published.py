@@ -15,7 +15,7 @@ from faultpath.statistics import (
     with_test,
 )
 from faultpath.statistics.distributions import sign_p_value
-from faultpath.studies.quantities.summaries import spearman
+from faultpath_quadrotor.paper.quantities.summaries import spearman
 
 PUBLISHED = yaml.safe_load((Path(__file__).parent / "published.yaml").read_text())
 SCENES = PUBLISHED["scenes"]

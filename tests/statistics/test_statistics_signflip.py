@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from faultpath.record.family import CORRECT, SHARED, decide_paths
+from faultpath.decisions.family import CORRECT, SHARED, decide_paths
 from faultpath.statistics import Resamples, score, signflip, success_effect, with_test
 from faultpath.statistics.distributions import sign_p_value
 from faultpath.statistics.power import detected

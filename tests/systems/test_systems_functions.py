@@ -5,7 +5,7 @@ import pytest
 from gym_toys import SCENES, Steer, fly
 
 import faultpath
-from faultpath.errors import SystemMistake
+from faultpath.core.errors import SystemMistake
 from faultpath.loop import Port
 from faultpath.systems import ComposedSystem, FunctionPlant, Parts
 from faultpath.trials import Status

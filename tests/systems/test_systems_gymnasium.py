@@ -8,7 +8,7 @@ import pytest
 from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
 
 import faultpath
-from faultpath.errors import SystemMistake, UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.trials import SystemSpec

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import faultpath
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.systems.init import TEMPLATES, write_system
 
 

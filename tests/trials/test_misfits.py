@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from faultpath.blame import described
+from faultpath.core.error_source import described
 from faultpath.faults import Fault, Scale
-from faultpath.flightlog.reading import ColumnMap
-from faultpath.misfits import Misfit, misfit_of
-from faultpath.proposal.study import StudyFile
+from faultpath.systems.flightlog.reading import ColumnMap
+from faultpath.core.misfits import Misfit, misfit_of
+from faultpath.decisions.plan.study import StudyFile
 
 SRC = Path(__file__).resolve().parents[2] / "src" / "faultpath"
 MAP = {

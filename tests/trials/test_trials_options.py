@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import pytest
 from pydantic import BaseModel, model_validator
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.trials import Offered, Option
 from faultpath.trials.options import as_text, call, options_of
 

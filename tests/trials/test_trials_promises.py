@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.errors import SystemMistake, UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.checks import check_system, library_of, paths_of
 from faultpath.trials.shown import system_shown

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from faultpath import blame
-from faultpath.errors import UserError
+from faultpath.core import error_source as blame
+from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -94,7 +94,7 @@ def test_an_option_that_the_factory_does_not_take_is_named():
 
 def test_naming_a_system_imports_no_torch():
     code = (
-        "import sys, faultpath.execution, faultpath.store, faultpath.trials;"
+        "import sys, faultpath.trials.execution, faultpath.trials.store, faultpath.trials;"
         "sys.exit('torch' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

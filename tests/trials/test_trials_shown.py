@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.trials import (
     FloorPlan,
     Pillar,

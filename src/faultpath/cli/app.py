@@ -14,7 +14,7 @@ import typer
 
 from faultpath.cli.system_flags import with_system_flags
 from faultpath.cli.verbs import Verbs
-from faultpath.version import __version__
+from faultpath.core.version import __version__
 
 _TOY = "examples/toy.py:create"
 _ARMS = "--baseline calibrated --repair blind"

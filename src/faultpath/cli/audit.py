@@ -10,12 +10,12 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FAILED_TRIALS, SYSTEM, path
-from faultpath.question import AuditQuestion
-from faultpath.text import one_line
+from faultpath.decisions.question import AuditQuestion
+from faultpath.core.text import one_line
 
 if TYPE_CHECKING:
-    from faultpath.door.display import SafeConsole
-    from faultpath.door.run import Run
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.run import Run
 
 Json = Annotated[
     bool,
@@ -45,8 +45,8 @@ def command(
     arms = f"{one_line(given['repair'])} with {one_line(given['baseline'])}"
     typer.echo(f"Building {one_line(system)}, to compare {arms}.", err=as_json)
 
-    from faultpath.door.audit import audits
-    from faultpath.door.display import Display, SafeConsole
+    from faultpath.api.audit import audits
+    from faultpath.api.display import Display, SafeConsole
 
     console = SafeConsole(stderr=as_json)
     runs = audits(system, **given, progress=Display(console, ("faultpath", *sys.argv[1:])))
@@ -76,9 +76,9 @@ def study(
 ) -> int:
     """Carry out the audits of a study file. The file says system, variants, faults, scenes and
     seeds; the same command resumes."""
-    from faultpath.door.display import Display, SafeConsole
-    from faultpath.door.planned import audit_study
-    from faultpath.proposal.study import read_study
+    from faultpath.api.display import Display, SafeConsole
+    from faultpath.api.planned import audit_study
+    from faultpath.decisions.plan.study import read_study
 
     console = SafeConsole(stderr=as_json)
     progress = Display(console, ("faultpath", *sys.argv[1:]))
@@ -90,8 +90,8 @@ def study(
 
 def _tell_sweep(console: "SafeConsole", runs: "Sequence[Run]", out: Path | None) -> int:
     """Print what was decided at each size, side by side, and write it as one page too."""
-    from faultpath.door.audit import sweep_page
-    from faultpath.door.comparing import compare
+    from faultpath.api.audit import sweep_page
+    from faultpath.api.comparing import compare
     from faultpath.report.comparison.page import shown
 
     compared = compare(runs)
@@ -115,7 +115,7 @@ def tell(console: "SafeConsole", runs: "Sequence[Run]", details: bool = False) -
 
 def tell_json(runs: "Sequence[Run]") -> None:
     """Print folder and record of each run, of several sizes with what stands over all of them."""
-    from faultpath.door.comparing import compare, folder_and_record
+    from faultpath.api.comparing import compare, folder_and_record
 
     several = len(runs) > 1
     told = compare(runs).as_json()["runs"] if several else [folder_and_record(runs[0].folder)]

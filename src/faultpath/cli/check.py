@@ -7,12 +7,12 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM
-from faultpath.question import CheckQuestion
+from faultpath.decisions.question import CheckQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from faultpath.review.check import Report
+    from faultpath.systems.checks.check import Report
 
 FAILED = 1
 
@@ -25,8 +25,8 @@ def command(
 ) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
     what is declared, and that a fault reaches every tap. Exits with 1 where a check fails."""
-    from faultpath.door import check
-    from faultpath.door.display import Display, SafeConsole
+    from faultpath.api import check
+    from faultpath.api.display import Display, SafeConsole
 
     display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
     report = check(system, **given, progress=display)
@@ -42,8 +42,8 @@ def _shown(report: "Report") -> "RenderableType":
     from rich.padding import Padding
     from rich.text import Text
 
-    from faultpath.record import wording
-    from faultpath.tables.terminal import STYLES
+    from faultpath.decisions import wording
+    from faultpath.decisions.tables.terminal import STYLES
 
     styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
     met = f"{wording.counted(len(report.scenes), 'scene')} of {report.library}, seed {report.seed}"

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import path
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 
 def command(
@@ -26,8 +26,8 @@ def command(
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")] = False,
 ) -> None:
     """Compute from a recorded flight what a calibration error leaves, isolated and shared."""
-    from faultpath.flightlog import compensation, read_columns, read_flight
-    from faultpath.flightlog.reading import HEAVIEST_KG
+    from faultpath.systems.flightlog import compensation, read_columns, read_flight
+    from faultpath.systems.flightlog.reading import HEAVIEST_KG
 
     said = read_columns(columns)
     if mass is not None:
@@ -37,8 +37,8 @@ def command(
     found = compensation(read_flight(log, said), _sizes(errors))
 
     from faultpath.report.compensation import CAVEAT, page, sentences, table
-    from faultpath.store import write_text
-    from faultpath.store.atomic import make_folder
+    from faultpath.trials.store import write_text
+    from faultpath.trials.store.atomic import make_folder
 
     text = found.model_dump_json(indent=2) + "\n"
     if out is not None:
@@ -48,8 +48,8 @@ def command(
     if as_json:
         typer.echo(text, nl=False)
         return
-    from faultpath.door.display import SafeConsole
-    from faultpath.tables.terminal import drawn
+    from faultpath.api.display import SafeConsole
+    from faultpath.decisions.tables.terminal import drawn
 
     console = SafeConsole()
     for sentence in (*sentences(found), CAVEAT):

@@ -14,9 +14,9 @@ from traceback import format_exception
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from faultpath.errors import Notice, Stopped
-from faultpath.prints import show_warning
-from faultpath.text import one_line
+from faultpath.core.errors import Notice, Stopped
+from faultpath.core.prints import show_warning
+from faultpath.core.text import one_line
 
 if TYPE_CHECKING:
     from typer import TyperException
@@ -36,7 +36,7 @@ def main() -> NoReturn:
     """Run the command line; a user's mistake ends in one sentence and status 2.
 
     So does an error in the code of a user's system. An error of faultpath's own code keeps
-    its traceback; `faultpath.blame` tells the two apart.
+    its traceback; `faultpath.core.error_source` tells the two apart.
     """
     arguments, told = _arguments(sys.argv[1:])
     ctrl_c = _CtrlC()
@@ -46,7 +46,7 @@ def main() -> NoReturn:
     try:
         status = _run(arguments)
     except BaseException as error:
-        from faultpath.blame import place
+        from faultpath.core.error_source import place
 
         theirs = bool(place(error))  # a system may raise what would mean something of ours
         if (
@@ -106,7 +106,7 @@ def _run(arguments: list[str]) -> int:
     """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
     import typer
 
-    from faultpath.blame import place
+    from faultpath.core.error_source import place
     from faultpath.cli.app import build
     from faultpath.cli.options import check_arguments
 
@@ -128,7 +128,7 @@ def _sentence(error: BaseException) -> str | None:
     for an error of faultpath's own."""
     from typer import TyperException
 
-    from faultpath.blame import described, explained
+    from faultpath.core.error_source import described, explained
 
     if isinstance(error, TyperException):
         return _misread(error)

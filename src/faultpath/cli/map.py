@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FAILED_TRIALS, SYSTEM
-from faultpath.question import MapQuestion
+from faultpath.decisions.question import MapQuestion
 
 
 @takes(MapQuestion)
@@ -18,13 +18,13 @@ def command(
 ) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error turns it."""
-    from faultpath.door.display import Display, SafeConsole
-    from faultpath.door.mapping import reversal_map
+    from faultpath.api.display import Display, SafeConsole
+    from faultpath.api.mapping import reversal_map
 
     display = Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:]))
     run = reversal_map(system, **given, progress=display)
 
-    from faultpath.report.plane import shown
+    from faultpath.report.map import shown
 
     console = SafeConsole()
     if as_json:

@@ -8,8 +8,8 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from faultpath.errors import UserError
-from faultpath.text import one_line, steers
+from faultpath.core.errors import UserError
+from faultpath.core.text import one_line, steers
 
 _LONGEST = 4096
 """What Linux takes for a path; nothing else that is asked for needs as much."""

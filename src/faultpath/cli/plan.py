@@ -8,7 +8,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM, path
-from faultpath.question import PlanQuestion
+from faultpath.decisions.question import PlanQuestion
 
 
 @takes(PlanQuestion)
@@ -22,16 +22,16 @@ def command(
 ) -> None:
     """Rank the uncertain sources, propose the audits of a repair with their trials, and
     write them as a study file for `faultpath audit --study`."""
-    from faultpath.door.display import Display, SafeConsole
-    from faultpath.door.planned import check_new, plan
+    from faultpath.api.display import Display, SafeConsole
+    from faultpath.api.planned import check_new, plan
 
     check_new(out)
     display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
     found = plan(system, **given, progress=display)
     written = found.write(out)
 
-    from faultpath.report.proposal import by_audit, by_rank, by_response
-    from faultpath.tables.terminal import drawn
+    from faultpath.report.plan import by_audit, by_rank, by_response
+    from faultpath.decisions.tables.terminal import drawn
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from faultpath.cli.options import path as as_path
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 if TYPE_CHECKING:
-    from faultpath.door.display import SafeConsole
+    from faultpath.api.display import SafeConsole
     from faultpath.report.inputs import ReportInput
 
 DIFFERS = 1
@@ -35,9 +35,9 @@ def command(
     if not (folder / "provenance.json").exists():
         raise UserError(f"{folder} holds no provenance.json: give the folder of a finished run.")
 
-    from faultpath.door.display import SafeConsole
-    from faultpath.door.replaying import chosen_scenes
-    from faultpath.door.saved import RECORD, read_provenance, read_run
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.replaying import chosen_scenes
+    from faultpath.api.saved import RECORD, read_provenance, read_run
 
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
@@ -59,9 +59,9 @@ def fly_again(
 
     With `signals` what was heard is kept in the run's folder.
     """
-    from faultpath.door.replaying import keep_signals, replay
-    from faultpath.record.wording import counted
-    from faultpath.tables.terminal import STYLES
+    from faultpath.api.replaying import keep_signals, replay
+    from faultpath.decisions.wording import counted
+    from faultpath.decisions.tables.terminal import STYLES
 
     found = replay(held, scenes, paths, lambda said: console.print(said, markup=False))
     unlike = [each for each in found if each.differs]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from faultpath.cli.options import path
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 _DEFAULT = Path("runs")
 
@@ -40,7 +40,7 @@ def command(
     elif (asked[0] / "provenance.json").exists():
         if as_json:
             raise UserError("--json prints a comparison or a list: record.json holds the record.")
-        from faultpath.door.run import open_run
+        from faultpath.api.run import open_run
 
         for written in open_run(asked[0]).report():
             typer.echo(written)
@@ -49,14 +49,14 @@ def command(
 
 
 def _compare(folders: Sequence[Path], out: Path | None, as_json: bool) -> None:
-    from faultpath.door.comparing import compare
+    from faultpath.api.comparing import compare
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)
     if as_json:
         typer.echo(json.dumps(compared.as_json(), indent=1))
         return
-    from faultpath.door.display import SafeConsole
+    from faultpath.api.display import SafeConsole
     from faultpath.report.comparison.page import shown
 
     console = SafeConsole()
@@ -68,8 +68,8 @@ def _compare(folders: Sequence[Path], out: Path | None, as_json: bool) -> None:
 def _list(top: Path, as_json: bool) -> None:
     from dataclasses import asdict
 
-    from faultpath.door.display import SafeConsole
-    from faultpath.door.listing import runs
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.listing import runs
 
     found = runs(top)
     if as_json:

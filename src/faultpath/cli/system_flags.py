@@ -15,7 +15,7 @@ import typer
 from typer.models import OptionInfo
 
 from faultpath.cli.verbs import literal
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 _HELP = "--help"
 _SHORT = 24

@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM
-from faultpath.question import TraceQuestion, ask
+from faultpath.decisions.question import TraceQuestion, ask
 
 FOUND = 1
 
@@ -21,12 +21,12 @@ def command(
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
-    from faultpath.door.asking import begin
-    from faultpath.door.display import Display, SafeConsole
-    from faultpath.door.reviewing import traced
+    from faultpath.api.asking import begin
+    from faultpath.api.display import Display, SafeConsole
+    from faultpath.api.reviewing import traced
     from faultpath.report.terminal import interface_table
     from faultpath.report.trace import trace_table
-    from faultpath.tables.terminal import STYLES, Parted
+    from faultpath.decisions.tables.terminal import STYLES, Parted
 
     asked = ask(TraceQuestion, given, command=True)
     display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))

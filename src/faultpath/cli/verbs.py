@@ -5,7 +5,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand, TyperGroup, TyperOption
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 
 def literal(text: str) -> str:

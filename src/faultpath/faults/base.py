@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self, TypeAlias, cast
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.arrays import Array, Constant, HostArray, like, misfit
+from faultpath.core.arrays import Array, Constant, HostArray, like, misfit
 from faultpath.faults.draws import Draws
 from faultpath.interface import Channel
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.streams import generators
+from faultpath.core.streams import generators
 
 
 @dataclass(frozen=True)

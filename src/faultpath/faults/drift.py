@@ -6,7 +6,7 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from faultpath.arrays import (
+from faultpath.core.arrays import (
     Array,
     Constant,
     HostArray,

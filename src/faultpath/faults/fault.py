@@ -6,13 +6,13 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import Field, model_validator
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.faults.draws import Draws
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
-from faultpath.frozen import Frozen
+from faultpath.core.frozen import Frozen
 from faultpath.interface import Interface, module_of, modules
-from faultpath.text import listed, unknown
+from faultpath.core.text import listed, unknown
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""

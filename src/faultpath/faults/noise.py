@@ -5,7 +5,7 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from faultpath.arrays import Array, Constant, is_zero
+from faultpath.core.arrays import Array, Constant, is_zero
 from faultpath.faults.base import Intervention, Memory, Moment, check_std, number, with_error
 
 

@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from faultpath.arrays import Array, Constant, filled, namespace, place
+from faultpath.core.arrays import Array, Constant, filled, namespace, place
 from faultpath.faults.base import Intervention, Memory, Moment
 
 

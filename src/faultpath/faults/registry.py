@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self, TypeAlias, get_args
 
 from pydantic import Discriminator, Field
 
-from faultpath.arrays import Array, pick
+from faultpath.core.arrays import Array, pick
 from faultpath.faults.base import Intervention, Memory, Moment
 from faultpath.faults.drift import Bias, Drift
 from faultpath.faults.noise import Noise

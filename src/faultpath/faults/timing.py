@@ -7,7 +7,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.arrays import Array, copy, kept, pick, place
+from faultpath.core.arrays import Array, copy, kept, pick, place
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.faults.values import Erase
 from faultpath.interface import Channel

@@ -4,8 +4,8 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import Field
 
-from faultpath.arrays import Array, Constant, constant, filled, is_zero, like, namespace
-from faultpath.arrays import rows as as_rows
+from faultpath.core.arrays import Array, Constant, constant, filled, is_zero, like, namespace
+from faultpath.core.arrays import rows as as_rows
 from faultpath.faults.base import Intervention, Memory, Moment, number
 from faultpath.interface import Channel
 

@@ -6,10 +6,10 @@ from typing import Self
 from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
-from faultpath.arrays import misfit
+from faultpath.core.arrays import misfit
 from faultpath.interface.graph import readers
 from faultpath.interface.model import Channel, Declared, Source
-from faultpath.text import listed, unknown
+from faultpath.core.text import listed, unknown
 
 Where = tuple[str | int, ...]
 

@@ -19,10 +19,10 @@ from pydantic import (
     model_validator,
 )
 
-from faultpath.arrays import Constant
-from faultpath.errors import UserError
-from faultpath.frozen import Frozen
-from faultpath.text import steers, unknown
+from faultpath.core.arrays import Constant
+from faultpath.core.errors import UserError
+from faultpath.core.frozen import Frozen
+from faultpath.core.text import steers, unknown
 
 Name = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]
 Consumer = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0-9_]*$")]

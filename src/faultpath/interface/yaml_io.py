@@ -7,11 +7,11 @@ from typing import Any, cast
 
 from pydantic import ValidationError
 
-from faultpath.errors import UserError
-from faultpath.files.opening import contents
-from faultpath.files.plain import Misread, read_yaml, yaml_text
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.interface.checks import Interface
-from faultpath.misfits import misfit_of
+from faultpath.core.misfits import misfit_of
 
 
 def read_interface(

@@ -4,10 +4,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from faultpath.errors import SystemMistake
+from faultpath.core.errors import SystemMistake
 from faultpath.interface import Interface, read_interface
 from faultpath.loop.module import Graph, Module, Part, Plant
-from faultpath.text import listed
+from faultpath.core.text import listed
 
 
 def graph(

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
-from faultpath.arrays import Array
+from faultpath.core.arrays import Array
 from faultpath.loop.ports import Inputs, Port
 
 Memory: TypeAlias = Any
@@ -15,7 +15,7 @@ State: TypeAlias = Any
 """What a plant carries from step to step; opaque to everybody else."""
 
 Outputs: TypeAlias = Mapping[str, Any]
-"""By source: an array `[B, ...]`, or a `faultpath.taps.Query` that is asked within the step."""
+"""By source: an array `[B, ...]`, or a `faultpath.loop.taps.Query` that is asked within the step."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Module(Part):
 
     It keeps nothing of its own from step to step, does not write into what it reads, and gives
     each scene a result that does not depend on the other scenes of the batch. Random numbers come
-    from `faultpath.streams`, by scene, seed and step.
+    from `faultpath.core.streams`, by scene, seed and step.
     """
 
     truths: tuple[str, ...] = ()

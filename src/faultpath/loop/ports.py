@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from faultpath.arrays import Array
-from faultpath.taps import IllegalRead, UndeclaredReader
+from faultpath.core.arrays import Array
+from faultpath.loop.taps import IllegalRead, UndeclaredReader
 
 
 class Port(NamedTuple):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import CORRECT, wording
-from faultpath.record.wording import where
+from faultpath.decisions import CORRECT, wording
+from faultpath.decisions.wording import where
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.svg import (
@@ -21,8 +21,8 @@ from faultpath.report.svg import (
     tick_label,
 )
 from faultpath.report.viewer_choice import choose
-from faultpath.store import TrialAddress
-from faultpath.store.signals import TOGETHER, Signal
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import TOGETHER, Signal
 from faultpath.trials import Outcome, Status
 
 _SQUEEZED = 2.5

@@ -4,12 +4,12 @@ from math import exp
 
 from markupsafe import Markup
 
-from faultpath.flightlog import Combination, Compensation
-from faultpath.record.wording import counted, interval, plain
+from faultpath.systems.flightlog import Combination, Compensation
+from faultpath.decisions.wording import counted, interval, plain
 from faultpath.report.frame import render
 from faultpath.statistics import Estimate
-from faultpath.tables import MISSING, Table, line
-from faultpath.tables.html import html
+from faultpath.decisions.tables import MISSING, Table, line
+from faultpath.decisions.tables.html import html
 
 CAVEAT = (
     "This is about the acceleration one control interval ahead on this flight. It says where "

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.record import wording
-from faultpath.record.model import DecisionRecord, Effect, PathBreakEven
+from faultpath.decisions import wording
+from faultpath.decisions.model import DecisionRecord, Effect, PathBreakEven
 from faultpath.report.svg import (
     Axis,
     Point,

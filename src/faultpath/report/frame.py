@@ -14,8 +14,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from faultpath.report.svg import template
-from faultpath.tables.escapes import visible
-from faultpath.version import __version__
+from faultpath.decisions.tables.escapes import visible
+from faultpath.core.version import __version__
 
 
 def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.interface import Interface
-from faultpath.record.model import DecisionRecord
-from faultpath.record.provenance import RunProvenance
-from faultpath.store import TrialAddress
-from faultpath.store.signals import Signal, Signals
+from faultpath.decisions.model import DecisionRecord
+from faultpath.trials.provenance import RunProvenance
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import Signal, Signals
 from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 

@@ -6,7 +6,7 @@ from enum import StrEnum
 from itertools import groupby
 from urllib.parse import quote
 
-from faultpath.record.model import DecisionRecord
+from faultpath.decisions.model import DecisionRecord
 from faultpath.report.svg import Point, Svg, shortened, text_width
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow
 

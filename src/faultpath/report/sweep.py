@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from faultpath.record import wording
-from faultpath.record.reproduction import Point, Series, Sweep
+from faultpath.decisions import wording
+from faultpath.decisions.reproduction import Point, Series, Sweep
 from faultpath.report.svg import Axis, Svg, draw_levels, draw_tick, text_width, tick_label
 
 LOOKS = 4

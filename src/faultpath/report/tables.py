@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 
-from faultpath.record import wording
-from faultpath.record.model import DecisionRecord, Effect
-from faultpath.record.phrases import adjusted, only_alone
-from faultpath.record.summary import not_standing
+from faultpath.decisions import wording
+from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.decisions.phrases import adjusted, only_alone
+from faultpath.decisions.summary import not_standing
 from faultpath.statistics import Estimate
-from faultpath.tables import MISSING, Entry, Line, Table, line
-from faultpath.tables.latex import booktabs
-from faultpath.tables.markdown import block
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.decisions.tables.latex import booktabs
+from faultpath.decisions.tables.markdown import block
 
 _ARMS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")

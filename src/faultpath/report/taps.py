@@ -6,12 +6,12 @@ Which taps had the fault in force comes from receipts, who reads from the wiring
 from dataclasses import dataclass
 
 from faultpath.interface import Channel, module_of
-from faultpath.record import CORRECT
-from faultpath.record.model import DecisionRecord, Path
-from faultpath.record.wording import series
+from faultpath.decisions import CORRECT
+from faultpath.decisions.model import DecisionRecord, Path
+from faultpath.decisions.wording import series
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg, shortened
-from faultpath.tables import Entry, Line, Table, line
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.trials import VariantShown
 
 Tap = tuple[str, str]

@@ -5,11 +5,11 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
-from faultpath.record.model import DecisionRecord
-from faultpath.record.summary import not_standing
+from faultpath.decisions.model import DecisionRecord
+from faultpath.decisions.summary import not_standing
 from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
-from faultpath.tables import Line, Table, line
-from faultpath.tables.terminal import Parted, drawn
+from faultpath.decisions.tables import Line, Table, line
+from faultpath.decisions.tables.terminal import Parted, drawn
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 

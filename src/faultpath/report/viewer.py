@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import SHARED, DecisionRecord, Path, Question, wording
+from faultpath.decisions import SHARED, DecisionRecord, Path, Question, wording
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Pair, by_scene
 from faultpath.report.viewer_choice import (
@@ -21,8 +21,8 @@ from faultpath.report.viewer_choice import (
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import Whole, pack
 from faultpath.report.viewer_signals import Plot, drawn, in_force, plots
-from faultpath.store import TrialAddress
-from faultpath.store.signals import Signal, Signals
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import Signal, Signals
 from faultpath.trials import FloorPlan, Outcome, Status
 
 SCRIPTS = ("flights.js", "viewer.js")

@@ -14,11 +14,11 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import SHARED, DecisionRecord, Question
-from faultpath.record.wording import capital, series, where
+from faultpath.decisions import SHARED, DecisionRecord, Question
+from faultpath.decisions.wording import capital, series, where
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, by_scene
-from faultpath.store import TrialAddress
+from faultpath.trials.store import TrialAddress
 
 Track: TypeAlias = NDArray[np.float32]
 """Positions at control steps, `[T, 3]`, metres."""

@@ -13,10 +13,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.record import wording
+from faultpath.decisions import wording
 from faultpath.report.viewer_packing import Whole
-from faultpath.store import TrialAddress
-from faultpath.store.signals import IN_FORCE, Signal, Signals
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import IN_FORCE, Signal, Signals
 
 _MOST_COMPONENTS = 4
 """A rotation matrix or an image says little as lines."""

@@ -15,7 +15,7 @@ from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, clopp
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.score import quantile, reach, rejects
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""

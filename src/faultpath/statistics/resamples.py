@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from faultpath.statistics.inputs import Floats
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 
 _BLOCK = 50_000
 """Counts worked on at a time: with what comes between, they fit into a core's own cache."""

@@ -8,12 +8,12 @@ from typing import Any, cast
 import numpy as np
 from typing_extensions import override
 
-from faultpath.errors import SystemMistake, UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, graph, interface_of
 from faultpath.systems.episodes import SCENE, EpisodePlant, scene
-from faultpath.taps import Reading
-from faultpath.text import unknown
+from faultpath.loop.taps import Reading
+from faultpath.core.text import unknown
 from faultpath.trials import Library, LoopSystem, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {

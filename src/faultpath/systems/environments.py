@@ -5,7 +5,7 @@ import sys
 from types import ModuleType
 from typing import Any
 
-from faultpath.code import release
+from faultpath.trials.code import release
 
 _PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
 """Where a system's file lies, which its module is called after, and where in memory a function is:

@@ -9,10 +9,10 @@ from typing import Any, cast
 import numpy as np
 from typing_extensions import override
 
-from faultpath.arrays import HostArray, to_numpy
-from faultpath.errors import SystemMistake
+from faultpath.core.arrays import HostArray, to_numpy
+from faultpath.core.errors import SystemMistake
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.text import unknown
+from faultpath.core.text import unknown
 from faultpath.trials import Metric, SceneRef
 
 SCENE = "seed/"

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from typing_extensions import override
 
-from faultpath.arrays import HostArray
+from faultpath.core.arrays import HostArray
 from faultpath.loop import Batch
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 from faultpath.systems.episodes import (
     Episode,
     EpisodePlant,

@@ -10,10 +10,10 @@ import gymnasium
 import numpy as np
 from typing_extensions import override
 
-from faultpath.arrays import HostArray
-from faultpath.errors import SystemMistake
+from faultpath.core.arrays import HostArray
+from faultpath.core.errors import SystemMistake
 from faultpath.loop import Batch
-from faultpath.streams import generator
+from faultpath.core.streams import generator
 from faultpath.systems.environments import code, identity
 from faultpath.systems.episodes import (
     RETURN,

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from keyword import iskeyword
 from pathlib import Path
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 
 TEMPLATES = {
     "numpy": ("calibrated", "gain"),

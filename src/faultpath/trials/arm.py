@@ -6,7 +6,7 @@ import json
 from pydantic import Field
 
 from faultpath.faults import AnyFault
-from faultpath.frozen import Frozen
+from faultpath.core.frozen import Frozen
 
 _OBJECT = " object"
 

@@ -9,9 +9,9 @@ from typing import cast
 
 import numpy as np
 
-from faultpath.blame import described, located
-from faultpath.errors import SystemMistake, UserError
-from faultpath.taps import Observer, TapCount, Taps
+from faultpath.core.error_source import described, located
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.loop.taps import Observer, TapCount, Taps
 from faultpath.trials.arm import Arm
 from faultpath.trials.outcome import Outcome, checked
 from faultpath.trials.system import System

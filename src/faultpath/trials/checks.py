@@ -7,10 +7,10 @@ from numbers import Integral, Real
 from os import PathLike
 from typing import Any, cast
 
-from faultpath.blame import described, place
-from faultpath.errors import SystemMistake, UserError
+from faultpath.core.error_source import described, place
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
-from faultpath.taps.tap import wire
+from faultpath.loop.taps.tap import wire
 from faultpath.trials.declared import Library, Variant, check_name, shown
 from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status

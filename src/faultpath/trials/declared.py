@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from numbers import Integral
 from typing import Any, cast
 
-from faultpath.errors import SystemMistake
-from faultpath.text import one_line, steers
+from faultpath.core.errors import SystemMistake
+from faultpath.core.text import one_line, steers
 
 _LONGEST_NAME = 200
 _LARGEST_INDEX = 2**63 - 1

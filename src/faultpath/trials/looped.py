@@ -8,10 +8,10 @@ from functools import cached_property
 import numpy as np
 from typing_extensions import override
 
-from faultpath.arrays import Array, namespace, to_numpy
+from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, consumers, graph
-from faultpath.taps import Taps
+from faultpath.loop.taps import Taps
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.system import System, Variant
 

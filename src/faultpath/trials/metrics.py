@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import StringConstraints
 
-from faultpath.frozen import Frozen
+from faultpath.core.frozen import Frozen
 from faultpath.interface.model import Words
 
 MetricName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*$")]

@@ -20,8 +20,8 @@ from typing import Any, Literal, TypeVar, get_args, get_origin
 from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from faultpath.errors import UserError
-from faultpath.misfits import misfit_of
+from faultpath.core.errors import UserError
+from faultpath.core.misfits import misfit_of
 
 Factory = Callable[..., object]
 _Built = TypeVar("_Built")

@@ -7,7 +7,7 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.table import OutcomeTable, TrialRow
 

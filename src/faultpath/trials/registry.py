@@ -20,23 +20,23 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any
 
-from faultpath.blame import described, note_system
-from faultpath.blame import place as where
-from faultpath.code import Graph, Kind, Root, file_of, kind_of, locate
-from faultpath.errors import SystemMistake, UserError
-from faultpath.text import extra
+from faultpath.core.error_source import described, note_system
+from faultpath.core.error_source import place as where
+from faultpath.trials.code import Graph, Kind, Root, file_of, kind_of, locate
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
 
 if TYPE_CHECKING:
-    from faultpath.evidence import Measurer
+    from faultpath.trials.evidence import Measurer
 
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
 
-_CHECKOUT = {"quadrotor": "faultpath.quadrotor.factory:create"}
+_CHECKOUT = {"quadrotor": "faultpath_quadrotor.factory:create"}
 """For a checkout that was installed before it declared entry points; goes with the next one."""
 
 _EXTRAS = frozenset({"torch", "mujoco", "gymnasium"})

@@ -6,10 +6,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from faultpath.errors import SystemMistake, UserError
-from faultpath.frozen import Frozen
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.core.frozen import Frozen
 from faultpath.interface import Interface
-from faultpath.misfits import misfit_of
+from faultpath.core.misfits import misfit_of
 from faultpath.trials.declared import FloorPlan, Variant, shown
 from faultpath.trials.system import System
 

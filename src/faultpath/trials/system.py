@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from faultpath.faults import AnyFault, FaultPreset, parse_fault
 from faultpath.interface import Interface
-from faultpath.taps import Taps
+from faultpath.loop.taps import Taps
 from faultpath.trials.declared import FloorPlan, Library, Variant
 from faultpath.trials.metrics import Metric
 from faultpath.trials.outcome import Outcome, Status
@@ -18,7 +18,7 @@ class System(ABC):
     """A closed loop with its information interface.
 
     `run` must give each scene a result that does not depend on which other scenes are in the call:
-    randomness comes from `faultpath.streams`, keyed by scene.
+    randomness comes from `faultpath.core.streams`, keyed by scene.
     """
 
     name: str

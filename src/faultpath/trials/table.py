@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from faultpath.errors import UserError
+from faultpath.core.errors import UserError
 from faultpath.trials.arm import Row, Study
 from faultpath.trials.declared import Library, SceneRef
 from faultpath.trials.outcome import Outcome

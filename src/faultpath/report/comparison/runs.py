@@ -4,13 +4,13 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.record import wording
-from faultpath.record.family import CORRECT, SHARED
-from faultpath.record.model import DecisionRecord, Effect
-from faultpath.record.provenance import RunProvenance
-from faultpath.record.question import Question
+from faultpath.decisions import wording
+from faultpath.decisions.family import CORRECT, SHARED
+from faultpath.decisions.model import DecisionRecord, Effect
+from faultpath.trials.provenance import RunProvenance
+from faultpath.decisions.recorded_question import Question
 from faultpath.statistics import Sign
-from faultpath.tables import Line, Table, line
+from faultpath.decisions.tables import Line, Table, line
 
 _DIGITS = 8
 

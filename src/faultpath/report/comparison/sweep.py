@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from faultpath.record.family import ALPHA, CORRECT, alpha_shares
-from faultpath.record.model import DecisionRecord, Effect
+from faultpath.decisions.family import ALPHA, CORRECT, alpha_shares
+from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.report.comparison.runs import Compared, asked_alike, joined, titles
 from faultpath.report.svg import tick_label
 from faultpath.statistics import RULES, Sign

@@ -1,0 +1,72 @@
+"""Weights of the quadrotor's fitted models, each beside the card that says where they come from."""
+
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import JsonValue
+
+from faultpath.core.errors import UserError
+from faultpath.learning.model_card import Card, fill
+from faultpath.trials.store.atomic import make_folder, write_file
+
+if TYPE_CHECKING:
+    from torch import nn
+
+FORMAT = "faultpath-model/1"
+
+
+class ModelCard(Card):
+    """The card of a fitted model."""
+
+    format: str = FORMAT
+    description: str
+    samples: int
+    """Training samples in an epoch."""
+    data_sha256: dict[str, JsonValue]
+    """Digest of each pool of data."""
+    config: dict[str, JsonValue]
+    """Everything else the task says of itself."""
+    order_key: str
+    """Stream of the minibatch order."""
+    platform: str
+    """`PLATFORM.weights_hash`: what decided the data, as far as a platform does."""
+    torch_version: str
+    faultpath_version: str
+
+    @property
+    def final(self) -> dict[str, float]:
+        """Validation metrics of the weights, the main one first."""
+        return self.validation[-1]
+
+
+def shipped_folder() -> Path:
+    """Return the folder of the checkpoints that come with the package."""
+    return Path(str(files("faultpath_quadrotor"))) / "checkpoints"
+
+
+def checkpoint_path(name: str, seed: int) -> Path:
+    """Return the shipped weights file of a model; `UserError` without it."""
+    path = shipped_folder() / f"{name}-{seed}.safetensors"
+    if not path.is_file():
+        raise UserError(
+            f"there is no checkpoint of '{name}' with seed {seed} in {path.parent}: "
+            f"`faultpath train quadrotor {name} --seed {seed} --ship` makes it."
+        )
+    return path
+
+
+def load_checkpoint(module: "nn.Module", path: Path) -> ModelCard:
+    """Fill a module with the weights of a file and return their card.
+
+    Raises `UserError` when the file is missing, differs from what its card describes, or belongs
+    to another architecture.
+    """
+    return fill(module, path, ModelCard)
+
+
+def ship(path: Path) -> None:
+    """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
+    make_folder(shipped_folder())
+    for each in (path, path.with_suffix(".json")):
+        write_file(shipped_folder() / each.name, each.read_bytes())

@@ -1,0 +1,6 @@
+"""Estimators: what the controller knows of the vehicle, and where it has that from."""
+
+from faultpath_quadrotor.estimators.exact import ExactEstimator
+from faultpath_quadrotor.estimators.protocol import Estimator
+
+__all__ = ["Estimator", "ExactEstimator"]

@@ -1,0 +1,128 @@
+"""A variant with its models on recorded windows, under faults."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from torch import Tensor
+
+from faultpath.core.errors import UserError
+from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
+from faultpath_quadrotor.predictors import Predictor
+from faultpath_quadrotor.reconstruction import Reconstruction
+from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training.playback import CODE, HELD, Present, at_present
+from faultpath_quadrotor.training.windows import Windows
+from faultpath.loop.taps import Reading, Taps
+from faultpath.trials import Variant
+
+_BY_WINDOW = HELD | {"wind"}
+_BY_RECORDING = frozenset({CODE[0]})
+_IN_TIME = (Delay, Drift, Dropout, Freeze, Hold)
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A variant with its models: what is measured."""
+
+    system: Quadrotor
+    variant: Variant
+    seed: int
+    predictor: Predictor
+    reconstruction: Reconstruction | None
+
+    @classmethod
+    def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
+        """Load a variant; `UserError` for an unknown one, or where a checkpoint is missing."""
+        found = system.setups
+        if name not in found:
+            raise UserError(
+                f"the quadrotor has no variant {name!r} to measure: choose from {', '.join(found)}"
+            )
+        return cls(
+            system,
+            system.variants[name],
+            seed,
+            found[name].load_predictor(seed),
+            found[name].load_reconstruction(seed),
+        )
+
+    def check(self, faults: Sequence[str]) -> None:
+        """Raise the `UserError` that `at_present` would raise about these faults on any windows."""
+        for found in self._parse(faults):
+            self._taps("any", found)
+
+    def at_present(self, windows: Windows, faults: Sequence[str], recording: str) -> Present:
+        """Return what the variant makes of windows of the recording of that name.
+
+        `UserError` for a fault that does not fit the variant, or of a channel or in a way that
+        windows do not have.
+        """
+        by_window, by_recording = self._parse(faults)
+        return at_present(
+            windows,
+            self.predictor,
+            self.reconstruction,
+            self.variant.bindings,
+            by_window,
+            self.seed,
+            partial(self._exchanged, recording, by_recording),
+        )
+
+    def _parse(self, texts: Sequence[str]) -> tuple[list[AnyFault], list[AnyFault]]:
+        system = self.system
+        by_window: list[AnyFault] = []
+        by_recording: list[AnyFault] = []
+        for text in texts:
+            fault = system.fault(text)
+            parts = fault.faults if isinstance(fault, Coupled) else (fault,)
+            channels = {part.channel for part in parts}
+            if any(
+                isinstance(part.intervention, _IN_TIME)
+                or part.onset_step != 0
+                or part.duration_steps is not None
+                for part in parts
+            ):
+                raise UserError(
+                    f"fault '{text}' acts in time, and a recorded window has one present: leave "
+                    "times out, or fly it with `faultpath audit`"
+                )
+            if channels <= _BY_WINDOW:
+                by_window.append(fault)
+            elif channels <= _BY_RECORDING:
+                by_recording.append(fault)
+            else:
+                known = ", ".join(sorted(_BY_WINDOW | _BY_RECORDING))
+                raise UserError(
+                    f"fault '{text}' is of a channel that recorded windows do not deliver: "
+                    f"they deliver {known}"
+                )
+        return by_window, by_recording
+
+    def _taps(self, scene: str, faults: Sequence[AnyFault], *codes: int) -> Taps:
+        source = self.system.interface.channel(CODE[0]).sources[0]
+        return Taps(
+            self.system.interface.shaped({source: codes} if codes else {}),
+            faults,
+            scenes=(scene,),
+            dt_s=self.system.control_dt_s,
+            seed=self.seed,
+            bindings=self.variant.bindings,
+            consumers=self.variant.consumers,
+            privileged=self.variant.privileged,
+        )
+
+    def _exchanged(self, recording: str, faults: Sequence[AnyFault], codes: Tensor) -> Tensor:
+        """Return history codes `[W, 32]` as delivered.
+
+        For this tap the whole recording is one scene. A shuffle permutes a scene's own reading,
+        and so exchanges the codes of windows: each is one that the predictor meets in flight, but
+        of another history.
+        """
+        taps = self._taps(recording, faults, *codes.shape)
+        reading = Reading(codes[None], taps.bindings[CODE[0]], 0)
+        delivered = taps.deliver(*CODE, reading, 0)
+        taps.verify(last_step=0)
+        return delivered[0]

@@ -1,0 +1,135 @@
+"""What a heard flight of the quadrotor says beside its readings: errors, predictions and thrust."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.device import arithmetic
+from faultpath_quadrotor.lanes import Chunk
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.system import Quadrotor
+from faultpath.systems.checks.hearing import Heard, Values, added, laid_out, steps_of
+from faultpath.trials.store.signals import Signal
+from faultpath.trials.attempt import Done
+
+_CANDIDATES = 8
+"""Equal ones, for the compiled rollout, which works along them."""
+_MOTION = "predicted_motion"
+
+
+def quadrotor_signals(system: Quadrotor, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
+    """Return more signals of each scene of a flight of the quadrotor.
+
+    The acceleration errors are those of the paper, with the thrust and the attitude of the flight:
+    what a wrong calibration does to the nominal acceleration, and what is left of it after the wind
+    that the predictor was given. They exist where the predictor has analytic dynamics and a wind.
+    Along the thrust they have a sign, so that it shows whether they cancel (paper, Eq. 2). What a
+    learned predictor adds to its analytic dynamics is in none of them.
+    """
+    ahead = _predicted(heard)
+    found: list[tuple[Signal, ...]] = []
+    for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
+        thrust = laid_out(heard.got["action", "vehicle.actuators"], scene, steps)[:, :1]
+        named = [_signal("commanded thrust", "commanded thrust", "N", thrust)]
+        named += _errors(system, heard, scene, steps)
+        for horizon, positions in ahead.items():
+            said = f"position predicted {horizon * system.control_dt_s:g} s before"
+            values = laid_out(positions, scene, steps).astype(np.float32)
+            named.append(Signal(said, "position", "m", values, ("east", "north", "up")))
+        found.append(tuple(named))
+    return found
+
+
+def _signal(name: str, topic: str, unit: str, values: Values) -> Signal:
+    return Signal(name, topic, unit, values.astype(np.float32))
+
+
+def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Signal]:
+    def told(channel: str, place: str) -> Values:
+        return laid_out(heard.got[channel, f"predictor.{place}"], scene, steps)
+
+    def true(source: str) -> Values:
+        return laid_out(heard.sources[source], scene, steps)
+
+    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= heard.got.keys():
+        return []
+    drag = LinearDrag(PLATFORM.drag_kgps)
+    rotation = true("vehicle.attitude").reshape(-1, 3, 3)
+
+    def force(air: Values) -> Values:
+        turned = torch.from_numpy(np.moveaxis(rotation, 0, -1).copy())
+        return drag.force(turned, torch.from_numpy(air.T.copy())).numpy().T
+
+    def nominal(mass: Values, scale: Values) -> Values:
+        thrust = true("true_physics")[:, 8:9]
+        return (rotation[:, :, 2] * scale * thrust + force(-true("vehicle.velocity"))) / mass
+
+    mass, scale = true("vehicle.mass"), true("vehicle.thrust_scale")
+    first = nominal(told("mass", "dynamics"), told("thrust_scale", "dynamics")) - nominal(
+        mass, scale
+    )
+    pairs, along = {"nominal": first}, ()
+    if ("wind", "predictor.wind_map") in heard.got:
+        believed = force(told("wind", "wind_map")) / told("mass", "wind_map")
+        second = believed - force(true("true_wind")) / mass
+        pairs["combined"] = first + second
+        errors = {"predictor: wrong mass and thrust": first, "reconstruction: wrong wind": second}
+        along = added(
+            "error of the predictor's analytic acceleration along the thrust",
+            "m/s^2",
+            {
+                name: np.einsum("tp,tp->t", error, rotation[:, :, 2])
+                for name, error in errors.items()
+            },
+        )
+    norms = [
+        _signal(
+            f"{name} acceleration error",
+            "acceleration error",
+            "m/s^2",
+            np.linalg.norm(error, axis=1, keepdims=True),
+        )
+        for name, error in pairs.items()
+    ]
+    return [*norms, *along]
+
+
+@arithmetic()
+@torch.inference_mode()
+def _predicted(heard: Heard) -> Mapping[int, Mapping[int, Values]]:
+    """Ask the predictor of every step where the commands that were then flown would lead.
+
+    By horizon in steps and by the step that is spoken of, `[B, 3]`, metres. It is asked again after
+    the flight, and answers from what it was told at its step.
+    """
+    request = heard.asked.get(_MOTION)
+    if request is None:
+        return {}
+    flown = heard.got["action", "vehicle.actuators"]
+    horizon = request.commands[0].shape[0]
+    found: dict[int, Values] = {}
+    for step, query in heard.queries[_MOTION].items():
+        if step + horizon not in flown:
+            continue
+        actions = np.stack([flown[step + h] for h in range(horizon)])
+        asked = replace(request, commands=_commands(actions, request.parts, request.commands))
+        positions = np.full((len(actions[0]), 3), np.nan)
+        answer = query.answer(asked)
+        for part, rollout in zip(answer.parts, answer.rollouts, strict=True):
+            positions[list(part.scenes)] = rollout.positions[:, :, -1, 0].T.double().numpy()
+        found[step + horizon] = positions
+    return {horizon: found} if found else {}
+
+
+def _commands(
+    actions: Values, parts: Sequence[Chunk], like: Sequence[Tensor]
+) -> tuple[Tensor, ...]:
+    every = torch.from_numpy(actions).movedim(-1, 1).to(like[0])
+    return tuple(
+        every[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
+        for part in parts
+    )

@@ -1,0 +1,15 @@
+"""What builds the quadrotor. Torch loads when it is built, not when its options are asked for."""
+
+from faultpath_quadrotor.choices import QuadrotorChoices
+from faultpath.trials import System
+
+MEASURE = "faultpath_quadrotor.evidence:measure"
+"""What measures on recorded windows: a name, since whatever is imported here counts as flown."""
+
+
+def create(choices: QuadrotorChoices) -> System:
+    """Build the quadrotor; `UserError` where the device is not there."""
+    from faultpath_quadrotor.options import QuadrotorOptions
+    from faultpath_quadrotor.system import Quadrotor
+
+    return Quadrotor(QuadrotorOptions.of(choices))

@@ -1,0 +1,39 @@
+"""The information interface of the quadrotor: facts of deployment, and the ports of its modules."""
+
+from collections.abc import Iterable
+from functools import cache
+from importlib.resources import files
+
+from faultpath.interface import Interface
+from faultpath.loop import Part, Port, interface_of
+from faultpath_quadrotor.perception.module import Perception
+from faultpath_quadrotor.planners.module import Planning
+from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath_quadrotor.predictors.history import HistoryEncoder
+from faultpath_quadrotor.predictors.module import Prediction
+from faultpath_quadrotor.predictors.places import PLACES, ports
+from faultpath_quadrotor.reconstruction import DisturbanceObserver
+from faultpath_quadrotor.reconstruction.module import WindReconstruction
+from faultpath_quadrotor.reconstruction.recurrent import READS
+
+
+class _Declared(Part):
+    """All that any module of a kind reads and writes."""
+
+    def __init__(self, name: str, reads: Iterable[Port], *writes: str) -> None:
+        self.name, self.reads, self.writes = name, frozenset(reads), writes
+
+
+@cache
+def quadrotor_interface() -> Interface:
+    """Return the interface that training, audits and reports share."""
+    reconstruction = (Port(*read) for read in (*DisturbanceObserver.reads, *READS))
+    parts = (
+        _Declared(Prediction.name, ports(PLACES), *Prediction.writes, *HistoryEncoder.writes),
+        _Declared(WindReconstruction.name, reconstruction, *WindReconstruction.writes),
+        _Declared(Perception.name, Perception.reads, *Perception.writes),
+        _Declared(Planning.name, Planning.reads, *Planning.writes),
+        _Declared(VehiclePlant.name, VehiclePlant.reads),
+    )
+    facts = files("faultpath_quadrotor").joinpath("interface.yaml").read_text("utf-8")
+    return interface_of(facts, parts)

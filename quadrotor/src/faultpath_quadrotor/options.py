@@ -1,0 +1,80 @@
+"""What a user chose of the quadrotor, and the frozen settings behind it."""
+
+from typing import Self
+
+import torch
+
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.choices import (
+    ClearanceName,
+    DeviceName,
+    Environment,
+    QuadrotorChoices,
+    SamplerName,
+)
+from faultpath_quadrotor.device import device_of, require
+from faultpath_quadrotor.planners import (
+    MPPI,
+    AutoregressiveSampler,
+    BundledSampler,
+    NavigationCost,
+    Planner,
+    SamplerSettings,
+)
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath.trials.options import call
+
+
+class QuadrotorOptions(QuadrotorChoices):
+    """One configuration of the quadrotor: what a user chose, and what is behind it."""
+
+    @classmethod
+    def of(cls, choices: QuadrotorChoices) -> Self:
+        """Return the options behind some choices.
+
+        Trials in free space have ground-truth clearance, those among obstacles the depth model,
+        unless `clearance` says otherwise (paper, Section IV-A).
+
+        Raises:
+            UserError: There is no such device, or the plant does not fly on it.
+        """
+        given = choices.model_dump(include=choices.model_fields_set)
+        if choices.bring and not all(part.strip() for part in choices.bring.split(",")):
+            raise UserError(
+                f"bring '{choices.bring}' holds an empty name: part names by one comma each."
+            )
+        if choices.environment is Environment.FREE_SPACE:
+            given.setdefault("clearance", ClearanceName.TRUE)
+        if choices.plant != "torch" and choices.device is not DeviceName.CPU:
+            raise UserError(
+                f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
+            )
+        require(choices.device)
+        return cls.model_validate(given)
+
+    @classmethod
+    def parse(cls, **options: str) -> Self:
+        """Read options as the command line gives them; `UserError` names what there is."""
+        return call(cls.of, options, "the quadrotor")
+
+    @property
+    def free_space(self) -> bool:
+        """Whether only the outer boundaries are there."""
+        return self.environment is Environment.FREE_SPACE
+
+    @property
+    def place(self) -> torch.device:
+        """Where tensors are made."""
+        return device_of(self.device)
+
+    @property
+    def sampling(self) -> SamplerSettings:
+        """How many candidates are drawn, and how."""
+        return PLATFORM.planner.sampler.model_copy(update={"candidates": self.candidates})
+
+    def build_planner(self) -> Planner:
+        """Return the planner that ships."""
+        planner = PLATFORM.planner
+        bundled = self.sampler is SamplerName.MODE_PRESERVING
+        sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
+        return MPPI(sampler, NavigationCost(planner.weights), planner.temperature)

@@ -1,0 +1,88 @@
+"""The paper's central claim: sharing the error reverses the ranking of GRU and GRU+DCC.
+
+What was decided of it besides in a run itself stands in a file that comes with the package.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from faultpath.decisions import Ledger, Reproduction, wording
+from faultpath_quadrotor.paper.report import words
+from faultpath_quadrotor.paper.entries import bracket
+from faultpath_quadrotor.paper.pages.table_4 import NAMES, PAGE, paper_contrast
+from faultpath.decisions.tables import Entry, Line, Table, line
+
+CLAIM = "C26"
+BASELINE, REPAIR = "gru", "gru+dcc"
+ELSEWHERE = Path(__file__).parent / "paper" / "reversal.json"
+COLUMNS = ("Reconstruction only", "Shared error", "Reversal")
+DECIDED, OPEN = "decided", "not decided"
+
+
+def of_run(found: Reproduction, place: str) -> Line | None:
+    """Return what a run of the paper found, by the paper's rules; `None` of one without it."""
+    claim = next((each for each in found.ledger.claims if each.id == CLAIM), None)
+    table = next((each for each in found.tables if each.name == PAGE.name), None)
+    if claim is None or table is None:
+        return None
+    labels = [each.label for each in table.lines]
+    at = labels.index(f"{NAMES[REPAIR]} minus {NAMES[BASELINE]}, success (pp)")
+    differences, intervals = table.lines[at + 1].entries, table.lines[at + 2].entries
+    shown = (
+        Entry(text=f"{each.text} {ends.text}", detected=each.detected)
+        for each, ends in zip(differences[1:], intervals[1:], strict=True)
+    )
+    return line(place, *shown, DECIDED if claim.parts[0].answer == "confirmed" else OPEN)
+
+
+def state(ledger: Ledger, run: str = "this run") -> str:
+    """Say what became of the claim in a run, and by which of its parts."""
+    claim = next((each for each in ledger.claims if each.id == CLAIM), None)
+    if claim is None:
+        return f"{CLAIM} is not asked of {run}."
+    part = next(each for each in claim.parts if each.answer == claim.verdict)
+    by = "" if claim.verdict == "confirmed" else f" by this part: {part.words}"
+    figure = f" ({words.estimate(part)})" if words.estimate(part) else ""
+    return f"As stated, {CLAIM} is {claim.verdict} on {run}{by}{figure}."
+
+
+def central(lines: Iterable[Line]) -> Table:
+    """Return the claim with its numbers and where it holds, the paper's below."""
+    every = tuple(lines)
+    theirs = [paper_contrast(REPAIR, BASELINE, path) for path in ("reconstruction-only", "shared")]
+    printed = (f"{wording.signed(each.value)} {bracket(each.interval or ())}" for each in theirs)
+    return Table(
+        name="central",
+        title="GRU+DCC minus GRU, success (pp), wind L3",
+        columns=COLUMNS,
+        lines=(*every, line("The paper", *printed, "claimed")),
+        words=COLUMNS[-1:],
+        notes=(*_when(every), "Each was decided by itself; no test compares them."),
+    )
+
+
+def of_page(found: Reproduction) -> tuple[str, Table] | None:
+    """Return what the page of a run says first: the claim's state, and where it holds.
+
+    `None` for a run that is not about the claim; of a quick run only what was decided besides.
+    """
+    asked = found.ledger
+    if all(each.id != CLAIM for each in asked.claims):
+        return None
+    besides = Table.model_validate_json(ELSEWHERE.read_bytes()).lines
+    if found.profile == words.QUICK:
+        return f"A quick run decides nothing about {CLAIM}.", central(besides)
+    seeds = wording.seeds(asked.seeds)
+    own = of_run(found, f"In this run, {asked.scenes} scenes of {asked.library}, {seeds}")
+    return state(asked), central([*([own] if own else []), *besides])
+
+
+def _when(lines: Iterable[Line]) -> Iterable[str]:
+    """Say where the reversal is decided, and where it is not."""
+    held: dict[bool, list[str]] = {True: [], False: []}
+    for each in lines:
+        place = each.label[:1].lower() + each.label[1:]
+        held[each.entries[-1].text == DECIDED].append(place)
+    for holds, places in held.items():
+        if places:
+            yield f"The reversal is {DECIDED if holds else OPEN} {'; '.join(places)}."

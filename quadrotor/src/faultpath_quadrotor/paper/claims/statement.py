@@ -1,0 +1,178 @@
+"""A statement of a claim: what is looked at, and the rule that answers."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import Any, Protocol, TypeAlias
+
+from faultpath.decisions import Answer, ClaimVerdict, Part
+from faultpath.decisions.reproduction import Size
+from faultpath.statistics import Contrast
+from faultpath.statistics.contrast import ROUNDING
+from faultpath_quadrotor.paper.claims.rules import Ends, Judged, Rule, points_decide
+from faultpath_quadrotor.paper.published import Printed, PublishedClaim
+from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable
+
+NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
+"""By unit, its value. What has another unit, as a share of scenes has, has no sign."""
+
+
+def size(
+    value: float | None,
+    interval: Ends | None,
+    n_scenes: int,
+    paper: Printed | None,
+    no_effect: float | None,
+) -> Size:
+    """Set an estimate beside the paper's figure; `no_effect` is `None` where no sign is at stake.
+
+    Compatible: the 95 % interval of ours minus the paper's holds 0. Else a sign counts where a
+    whole interval shows it, ours and, where it prints one, the paper's.
+    """
+    if paper is None or value is None or interval is None or not points_decide(n_scenes):
+        return "not comparable"
+    theirs = paper.interval or (paper.value, paper.value)
+    if _compatible(value, interval, paper.value, theirs):
+        return "compatible"
+    if no_effect is None:
+        return "other size"
+    own, printed = _side(interval, no_effect), _side(theirs, no_effect)
+    if not (own and printed):
+        return "other size"
+    return "right sign, other size" if own == printed else "other sign"
+
+
+def _compatible(ours: float, interval: Ends, paper: float, theirs: Ends) -> bool:
+    """Return whether the interval of a difference of independent estimates holds 0.
+
+    It is made from both intervals without taking them to be symmetric (MOVER: Zou and Donner,
+    Statistics in Medicine 27, 2008).
+    """
+    difference = ours - paper
+    low = difference - hypot(ours - interval[0], theirs[1] - paper)
+    high = difference + hypot(interval[1] - ours, paper - theirs[0])
+    return low <= ROUNDING and high >= -ROUNDING
+
+
+def _side(interval: Ends, of: float) -> int:
+    return int(interval[0] > of) - int(interval[1] < of)
+
+
+class Stated(Protocol):
+    """One part of a claim."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        ...
+
+    @property
+    def paper(self) -> Printed | None:
+        """The paper's figure for it."""
+        ...
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run; raises `NotRun` or `Undecidable`."""
+        ...
+
+
+Statements: TypeAlias = tuple[Stated, ...]
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A part of a claim that a rule decides from one quantity."""
+
+    subject: str
+    """What is looked at, as the beginning of a sentence; differences are first minus second."""
+    quantity: Quantity
+    rule: Rule
+    paper: Printed | None = None
+    """The paper's figure for the quantity, in its unit; `None` where it prints none."""
+
+    @property
+    def words(self) -> str:
+        """The statement."""
+        return self.rule.words.format(self.subject)
+
+    def part(self, results: Results) -> Part:
+        """Answer it from a run."""
+        found = self.quantity(results)
+        no_effect = NO_EFFECT.get(found.unit) if self.rule.sided else None
+        return shown(self.words, self.rule.judge(found), found, self.paper, no_effect)
+
+
+def shown(
+    words: str,
+    judged: Judged,
+    found: Contrast,
+    paper: Printed | None,
+    no_effect: float | None,
+    counts: str = "",
+) -> Part:
+    """Return an answer with the numbers that it rests on, and its size beside the paper's figure.
+
+    `no_effect` as in `size`; `counts` where the quantity has none of its own.
+    """
+    return Part(
+        words=words,
+        answer=judged.answer,
+        estimate=found.value,
+        interval=found.interval,
+        unit=found.unit,
+        p_value=None if found.test is None else found.test.p_value,
+        test="" if found.test is None else found.test.name,
+        mde=found.least,
+        counts=str(found.counts or counts),
+        reason=judged.reason,
+        size=size(found.value, found.interval, found.n_scenes, paper, no_effect),
+        **beside(paper),
+    )
+
+
+def beside(paper: Printed | None) -> dict[str, Any]:
+    """Return the fields of a part that hold the paper's figure."""
+    return {} if paper is None else {"paper": paper.value, "paper_interval": paper.interval}
+
+
+def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> ClaimVerdict:
+    """Answer a claim: confirmed when every part is, refuted when any is.
+
+    Its numbers are those of the first part that has the answer of the whole.
+    """
+    parts = tuple(answered(statement, results) for statement in statements)
+    answer = _together([part.answer for part in parts])
+    deciding = next(part for part in parts if part.answer == answer)
+    return ClaimVerdict(
+        id=claim.id,
+        kind=claim.kind,
+        verdict=answer,
+        estimate=deciding.estimate,
+        interval=deciding.interval,
+        mde=deciding.mde,
+        unit=deciding.unit,
+        paper=claim.paper,
+        claim=claim.claim,
+        parts=parts,
+    )
+
+
+def answered(statement: Stated, results: Results) -> Part:
+    """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
+
+    def left_open(reason: str, **why: Any) -> Part:
+        why |= beside(statement.paper)
+        return Part(words=statement.words, answer="undecided", reason=reason, **why)
+
+    try:
+        return statement.part(results)
+    except NotRun as missing:
+        return left_open(f"not run: {missing}", not_run=True)
+    except Undecidable as why:
+        return left_open(str(why))
+
+
+def _together(answers: Sequence[Answer]) -> Answer:
+    if "refuted" in answers:
+        return "refuted"
+    return "undecided" if "undecided" in answers else "confirmed"

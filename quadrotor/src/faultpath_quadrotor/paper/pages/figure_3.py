@@ -1,0 +1,62 @@
+"""Figure 3: success over the calibration error, in free space on the selection library."""
+
+from faultpath.trials.evidence import Measurement
+from faultpath.decisions import Point, Series, Sweep
+from faultpath_quadrotor.paper.cells import SELECTION, Cell, Setting
+from faultpath_quadrotor.paper.page import Page, flown
+from faultpath_quadrotor.paper.pages.table_2 import NAMES, faults
+from faultpath_quadrotor.paper.published import published
+from faultpath_quadrotor.paper.results import NotRun, Results
+
+FREE = Setting(library=SELECTION, environment="free-space")
+ERRORS = tuple(round(-0.3 + 0.05 * i, 2) for i in range(13))
+QUICK_ERRORS = (-0.3, -0.1, 0.0, 0.1, 0.3)
+
+
+def cell(variant: str, error: float) -> Cell:
+    """Return a model under a calibration error in free space, seed 0."""
+    return Cell(FREE, variant, faults(error), quick=error in QUICK_ERRORS)
+
+
+TITLE = "Success over the calibration error, free space"
+_PAPER = published("figure_3_free_space_sweep")
+
+
+class _Figure:
+    """The four models over the errors."""
+
+    cells = tuple(cell(model, error) for model in NAMES for error in ERRORS)
+    measurements: tuple[Measurement, ...] = ()
+
+    def build(self, results: Results) -> Sweep:
+        """Return the lines of what was flown."""
+        words = (f"{model}: {_PAPER[model]}" for model in ("WM-U+DCC", "WM-A+DCC"))
+        low, high = _PAPER["tested_range"]
+        return Sweep(
+            name="figure-3",
+            title=f"{TITLE} (paper, Figure 3)",
+            x_title="Calibration error e",
+            y_title="Success (%)",
+            series=tuple(
+                Series(label=name, points=_points(results, model)) for model, name in NAMES.items()
+            ),
+            published=f"e from {low} to {high}. {'; '.join(words)}.",
+            notes=(
+                flown(results, self.cells),
+                "Bands: 95 % score intervals (Wilson's), point by point.",
+            ),
+        )
+
+
+def _points(results: Results, model: str) -> tuple[Point, ...]:
+    points: list[Point] = []
+    for error in ERRORS:
+        try:
+            rate = results.rate(cell(model, error))
+        except NotRun:
+            continue
+        points.append(Point(x=error, y=rate.value, low=rate.low, high=rate.high))
+    return tuple(points)
+
+
+PAGE = Page("figure-3", TITLE, (_Figure(),))

@@ -1,0 +1,121 @@
+"""What the studies' runs left, as tables, figures and claims ask for it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
+from faultpath.statistics import Contrast, Estimate, Resamples, success_rate
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
+
+
+class NotRun(Exception):
+    """The run holds no trial of a cell, or no value of a measurement, that was asked for."""
+
+
+class Undecidable(Exception):
+    """The run holds everything that was asked for, and yet nothing that decides."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """A run of studies: its outcome table, and what was measured on recorded windows."""
+
+    outcomes: OutcomeTable
+    evidence: EvidenceTable | None
+    library_hash: str
+    """Names the bootstrap's stream, so that intervals do not depend on where they are made."""
+
+    def seeds(self, cell: Cell) -> tuple[int, ...]:
+        """Return the seeds of a cell that were run; `NotRun` without any."""
+        run = [s for s in self.outcomes.seeds(cell.variant, cell.path) if s in cell.seeds]
+        if not run:
+            raise NotRun(cell)
+        return tuple(run)
+
+    def has(self, cell: Cell) -> bool:
+        """Return whether any trial of a cell was run."""
+        return bool(self.outcomes.seeds(cell.variant, cell.path))
+
+    def pairs(
+        self,
+        first: Cell,
+        second: Cell,
+        *,
+        scenes: Sequence[int] | None = None,
+        other_noise: bool = False,
+    ) -> Pairs:
+        """Pair two cells over the seeds that both were run with; `scenes` keeps some indices.
+
+        `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
+        `PairingRefused` where two trials met different conditions: these systems are our own.
+        """
+        seeds = [seed for seed in self.seeds(first) if seed in self.seeds(second)]
+        if not seeds:
+            raise NotRun(f"a seed that {first} and {second} share")
+        pairs = pair(self.outcomes, first.side, second.side, seeds, other_noise=other_noise)
+        if pairs.mismatches:
+            raise PairingRefused(str(pairs.mismatches[0]))
+        if scenes is not None:
+            kept = zip(pairs.scenes, pairs.scene_indices, strict=True)
+            pairs = pairs.only([scene for scene, index in kept if index in scenes])
+        if not pairs.scenes:
+            raise NotRun(f"a scene of {first} and {second} to compare")
+        return pairs
+
+    def rate(self, cell: Cell, scenes: Sequence[int] | None = None) -> Estimate:
+        """Return the success of a cell in percent, mean over its seeds."""
+        pairs = self.pairs(cell, cell, scenes=scenes)
+        return success_rate(pairs.first.success, self.resamples(pairs)).estimate()
+
+    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
+        """Return how many trials of a cell ended in each way, for one seed."""
+        if seed not in self.seeds(cell):
+            raise NotRun(f"{cell}, seed {seed}")
+        ends = [row.outcome.status for row in self.outcomes.arm(cell.variant, cell.path, seed)]
+        return {status: ends.count(status) for status in Status}
+
+    def median_time(self, cell: Cell, seed: int = 0) -> float:
+        """Return the median time of a cell's successful trials, s; `NotRun` without a success."""
+        self.counts(cell, seed)
+        rows = self.outcomes.arm(cell.variant, cell.path, seed)
+        times = [row.outcome.time_s for row in rows if row.outcome.status is Status.SUCCESS]
+        if not times:
+            raise NotRun(f"a success of {cell}")
+        return float(np.median(times))
+
+    def measured(self, measurement: Measurement) -> Measured:
+        """Return the values of a measurement; `NotRun` when it was not made."""
+        try:
+            if self.evidence is not None:
+                return self.evidence.values(measurement)
+        except KeyError:
+            pass
+        raise NotRun(f"{measurement.quantity} of {measurement.subject}")
+
+    def resamples(self, pairs: Pairs) -> Resamples:
+        """Return the scene resamples that every contrast over so many scenes shares."""
+        return _drawn(self.library_hash, len(pairs.scenes))
+
+
+@lru_cache(maxsize=16)
+def _drawn(library_hash: str, n_scenes: int) -> Resamples:
+    """Draw once: hundreds of contrasts are of as many scenes."""
+    return Resamples.draw(library_hash, n_scenes)
+
+
+Quantity = Callable[[Results], Contrast]
+"""Works a number out of a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+
+
+def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
+    """Return a contrast without its interval where too few scenes give it.
+
+    `notable` as in `Contrast`.
+    """
+    if contrast.enough:
+        return replace(contrast, notable=notable)
+    return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)

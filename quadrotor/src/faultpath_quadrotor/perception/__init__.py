@@ -1,0 +1,17 @@
+"""Depth perception: the camera, what it sees, and the clearance that can be told from it."""
+
+from faultpath_quadrotor.perception.camera import CaptureFrame, mounted
+from faultpath_quadrotor.perception.clearance import ClearanceModel
+from faultpath_quadrotor.perception.labels import visible_distance
+from faultpath_quadrotor.perception.render import DepthRenderer
+from faultpath_quadrotor.perception.seen import DepthClearance, PerceptionSettings
+
+__all__ = [
+    "CaptureFrame",
+    "ClearanceModel",
+    "DepthClearance",
+    "DepthRenderer",
+    "PerceptionSettings",
+    "mounted",
+    "visible_distance",
+]

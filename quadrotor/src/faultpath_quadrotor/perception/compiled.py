@@ -1,0 +1,155 @@
+"""The encoder of depth images and the clearance queries of its codes, compiled."""
+
+import ctypes
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.native.lending import BLOCK, Block, Lent, fields, lend, pack
+from faultpath_quadrotor.native.library import Kernels
+
+HEIGHT, WIDTH, CODE = 36, 64, 64
+ENCODER_SHAPES = ((16, 2, 5, 5), (32, 16, 3, 3), (48, 32, 3, 3), (128, 48 * 5 * 8), (CODE, 128))
+"""Of the weights: three convolutions and two dense layers; fixed in `encoder.cpp`, as is `CODE`."""
+
+_SUMMED = 32
+"""Outputs of a dense layer that the kernel sums at once."""
+
+
+class _Encoder(Block):
+    """`Encoder` of `encoder.cpp`."""
+
+    _fields_ = (
+        *fields(ctypes.c_void_p, "first second third dense last"),
+        *fields(ctypes.c_void_p, "first_bias second_bias third_bias dense_bias last_bias"),
+        *fields(ctypes.c_float, "range nearest scale"),
+    )
+
+
+class CompiledEncoder:
+    """Encodes depth images one by one, with a copy of the weights."""
+
+    def __init__(
+        self,
+        kernels: Kernels,
+        weights: Sequence[Tensor],
+        biases: Sequence[Tensor],
+        inputs: tuple[float, float, float],
+    ) -> None:
+        """Copy the weights.
+
+        Args:
+            kernels: What encodes.
+            weights: Of `ENCODER_SHAPES`.
+            biases: One for each output of each layer.
+            inputs: A range r, a nearest depth n and a scale s: an image of depths d enters as d / r
+                and as s / max(d, n).
+        """
+        self._kernels = kernels
+        for i, (shape, weight, bias) in enumerate(
+            zip(ENCODER_SHAPES, weights, biases, strict=True)
+        ):
+            lend(f"weights of layer {i}", weight.detach().contiguous(), *shape)
+            lend(f"biases of layer {i}", bias.detach().contiguous(), shape[0])
+        *convolutions, dense, last = (weight.detach() for weight in weights)
+        # The kernel's features have their channels last, the model's flattened ones first.
+        turned = dense.unflatten(1, (ENCODER_SHAPES[2][0], -1)).transpose(1, 2).flatten(1)
+        laid = [weight.permute(2, 3, 1, 0) for weight in convolutions]
+        laid += [w.unflatten(0, (-1, _SUMMED)).transpose(1, 2) for w in (turned, last)]
+        laid += [bias.detach() for bias in biases]
+        copies = [Lent(part.clone(memory_format=torch.contiguous_format)) for part in laid]
+        self._table = _Encoder(*copies, *inputs)
+
+    def __call__(self, depth: Tensor) -> Tensor:
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m."""
+        codes = torch.empty(CODE, len(depth))
+        self._kernels.call(
+            "faultpath_encode",
+            self._table,
+            lend("depth", depth.float().contiguous(), len(depth), HEIGHT, WIDTH),
+            len(depth),
+            lend("codes", codes, CODE, len(depth)),
+        )
+        return codes
+
+
+FEATURES, HIDDEN = 8, 47
+"""Fixed in `clearance.cpp`, without the constants that carry the biases."""
+QUERY_SHAPES = ((HIDDEN, FEATURES + 1), (HIDDEN, HIDDEN + 1), (1, HIDDEN + 1))
+"""Outputs and inputs of the layers of a query network; the last input is the bias."""
+
+_NUMBERS = (FEATURES + 1 + HIDDEN + 1 + 1) * (HIDDEN + 1)
+"""Numbers of a query network (`Query` in `clearance.cpp`)."""
+
+
+class Bounds(NamedTuple):
+    """Between what the answer lies, and where the image covers what is asked."""
+
+    lowest_m: float
+    highest_m: float
+    unseen_m: float
+    """Most clearance where no pixel looks."""
+    near_m: float
+    """Distance within which that does not matter."""
+    left: float
+    """Half the image's width, per metre forward."""
+    up: float
+
+
+class _Bounds(Block):
+    """`Bounds` of `clearance.cpp`."""
+
+    _fields_ = fields(ctypes.c_float, "lowest highest unseen near left up")
+
+
+class CompiledClearance:
+    """Capture frame, features, query network and field of view in one pass."""
+
+    def __init__(self, kernels: Kernels, makers: Sequence[Tensor], bounds: Bounds) -> None:
+        """Copy what makes a query network from a code.
+
+        Args:
+            kernels: What answers.
+            makers: For each layer of `QUERY_SHAPES`, `[outputs * inputs, 64 + 1]`: a column for
+                each number of the code, and what is there without any.
+            bounds: What the answer keeps to.
+        """
+        self._kernels = kernels
+        self._bounds = _Bounds(*bounds._replace(near_m=bounds.near_m**2))
+        rows: list[Tensor] = []
+        for made, (outputs, inputs) in zip(makers, QUERY_SHAPES, strict=True):
+            lend("makers", made.detach().contiguous(), outputs * inputs, CODE + 1)
+            # Numbers stand in the order of `Query`: hidden layers in blocks of outputs, biases
+            # first, padded with zeros; the last layer as it is.
+            whole = made.detach().unflatten(0, (outputs, inputs))
+            if outputs > 1:
+                whole = pack(whole.roll(1, dims=1), BLOCK)
+            rows.append(whole.reshape(-1, CODE + 1))
+        numbers = torch.cat(rows).T.contiguous()
+        self._makers = lend("makers", numbers[:-1].contiguous(), CODE, _NUMBERS)
+        self._base = lend("base", numbers[-1].contiguous(), _NUMBERS)
+
+    def __call__(self, codes: Tensor, eye: Tensor, axes: Tensor, points: Tensor) -> Tensor:
+        """Return the clearance `[S, N]`, m.
+
+        Args:
+            codes: `[64, S]`.
+            eye: Where the images were taken from, `[S, 3]`, m.
+            axes: And the camera's attitudes, `[S, 3, 3]`.
+            points: World frame, `[3, S, N]`, m.
+        """
+        _, scenes, count = points.shape
+        clearance = points.new_empty(scenes, count)
+        self._kernels.call(
+            "faultpath_clearance",
+            *(self._bounds, self._makers, self._base),
+            lend("codes", codes.contiguous(), CODE, scenes),
+            lend("position", eye.contiguous(), scenes, 3),
+            lend("rotation", axes.contiguous(), scenes, 3, 3),
+            lend("points", points.contiguous(), 3, scenes, count),
+            *(scenes, count),
+            lend("clearance", clearance, scenes, count),
+        )
+        return clearance

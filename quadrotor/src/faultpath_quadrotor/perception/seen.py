@@ -1,0 +1,163 @@
+"""The clearance that the latest depth images show, for planners that ask about many points."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+from pydantic import BaseModel, ConfigDict
+from torch import Tensor, nn
+
+from faultpath_quadrotor import native
+from faultpath_quadrotor.device import CPU, host_readable
+from faultpath_quadrotor.native.lending import covered, is_exactly, tell_portable, unlike
+from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
+from faultpath_quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
+from faultpath_quadrotor.perception.compiled import Bounds, CompiledClearance, CompiledEncoder
+from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+
+
+class PerceptionSettings(BaseModel):
+    """What perception makes of its images (derived, docs/design/perception.md)."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    unseen_m: float = 0.3
+    """Most clearance that space outside the field of view is said to have: the collision radius
+    and 10 cm. A planner may go there where nothing better offers, and would rather look first."""
+    near_m: float = 0.4
+    """Around the camera the field of view does not matter: the vehicle has just come through."""
+
+
+@dataclass(frozen=True)
+class _Captured:
+    """An image as the model sees it, and where it was taken from, single precision."""
+
+    code: Tensor
+    """`[64, B]`"""
+    position: Tensor
+    """`[B, 3]`"""
+    rotation: Tensor
+    """`[B, 3, 3]`"""
+
+    def take(self, scenes: Tensor) -> "_Captured":
+        code = self.code[:, scenes].contiguous()
+        return _Captured(code, self.position[scenes], self.rotation[scenes])
+
+    def frame(self) -> CaptureFrame:
+        return CaptureFrame(
+            self.position.movedim(0, -1).contiguous(), self.rotation.movedim(0, -1).contiguous()
+        )
+
+
+class DepthClearance:
+    """The clearance that the latest depth images show, for planners that ask about many points.
+
+    It sees what it is given and nothing else: images and the poses they were taken from. Points
+    that no pixel can show have a clearance of at most `PerceptionSettings.unseen_m`.
+    """
+
+    encoder: CompiledEncoder | None = None
+    """What encodes images for the model, if any: with the weights that it had then."""
+    queries: CompiledClearance | None = None
+    """What answers for it."""
+
+    def __init__(
+        self,
+        model: ClearanceModel,
+        device: torch.device = CPU,
+        settings: PerceptionSettings | None = None,
+    ) -> None:
+        self._model = model.eval()
+        self._settings = settings or PerceptionSettings()
+        self._captured: _Captured | None = None
+        if native.kernels_on(device) is None or not covered(self, DepthClearance):
+            return
+        if why := _misfit(model):
+            tell_portable(f"The clearance model {type(model).__name__}", why)
+            return
+        self.encoder, self.queries = _encoder(model), _queries(model, self._settings)
+
+    @torch.no_grad()
+    def capture(
+        self,
+        depth: Tensor,
+        position: Tensor,
+        rotation: Tensor,
+    ) -> None:
+        """Encode the images of all scenes: once a replan, however often it is queried.
+
+        Args:
+            depth: z-depth `[B, 36, 64]`, m.
+            position: World frame, m, `[B, 3]`.
+            rotation: Body to world, `[B, 3, 3]`.
+        """
+        encode = self._model.encode if self.encoder is None else self.encoder
+        self._captured = _Captured(encode(depth.float()), position.float(), rotation.float())
+
+    @torch.no_grad()
+    def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
+        """Return the clearance at points `[3, S, N]` of some scenes, world frame, m: `[S, N]`.
+
+        A scene's values do not depend on which others are asked for. N is a multiple of 32.
+        """
+        if self._captured is None:
+            raise RuntimeError("nothing was captured yet: call `capture` before `query`")
+        return self._shown(self._captured.take(torch.as_tensor(scenes)), points)
+
+    def _shown(self, by: _Captured, points: Tensor) -> Tensor:
+        if self.queries is not None:
+            return self.queries(by.code, by.position, by.rotation, points)
+        local = by.frame().from_world(points)
+        seen, asked = self._model.query(by.code, local), self._settings
+        known = in_view(local) | near(local, asked.near_m)
+        return torch.where(known, seen, seen.clamp(max=asked.unseen_m))
+
+
+def in_view(points: Tensor) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame the camera's image covers, `[*b]`."""
+    x, y, z = points
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    return (x > 0) & (y.abs() < left * x) & (z.abs() < up * x)
+
+
+def near(points: Tensor, radius_m: float) -> Tensor:
+    """Return which points `[3, *b]` of the capture frame are within `radius_m`, `[*b]`."""
+    x, y, z = points
+    return (x * x).add_(y * y).add_(z * z) < radius_m**2
+
+
+def _misfit(model: ClearanceModel) -> str:
+    if not is_exactly(model, ClearanceModel):
+        return unlike(ClearanceModel, model)
+    with torch.device("meta"):
+        known = ClearanceModel()
+    kinds = [type(part) for part in known.modules()]
+    parts = list(model.modules())
+    if len(parts) != len(kinds) or not all(map(is_exactly, parts, kinds)):
+        return "its layers are others"
+    theirs = {name: part.shape for name, part in known.state_dict().items()}
+    if str(model) != str(known) or theirs != {n: p.shape for n, p in model.state_dict().items()}:
+        return "its layers have other sizes"
+    if any(p.dtype != torch.float32 or not host_readable(p.device) for p in model.parameters()):
+        return "its weights are not float32 on the CPU"
+    return ""
+
+
+def _encoder(model: ClearanceModel) -> CompiledEncoder | None:
+    kernels = native.kernels()
+    if kernels is None:
+        return None
+    layers = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
+    weights = [layer.weight for layer in layers]
+    biases = [layer.bias for layer in layers if layer.bias is not None]
+    return CompiledEncoder(kernels, weights, biases, (RANGE_M, NEAREST_M, INVERSE_SCALE))
+
+
+def _queries(model: ClearanceModel, settings: PerceptionSettings) -> CompiledClearance | None:
+    kernels = native.kernels()
+    if kernels is None:
+        return None
+    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
+    bounds = Bounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
+    makers = [torch.cat((each.weight, each.bias[:, None]), 1) for each, _ in model.makers()]
+    return CompiledClearance(kernels, makers, bounds)

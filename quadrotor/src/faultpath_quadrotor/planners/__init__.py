@@ -1,0 +1,23 @@
+"""The planners, with their samplers and costs as objects."""
+
+from faultpath_quadrotor.planners.costs import CostWeights, NavigationCost, Scored
+from faultpath_quadrotor.planners.mppi import MPPI
+from faultpath_quadrotor.planners.protocol import Planner, Search, shift
+from faultpath_quadrotor.planners.sampler import (
+    AutoregressiveSampler,
+    BundledSampler,
+    SamplerSettings,
+)
+
+__all__ = [
+    "MPPI",
+    "AutoregressiveSampler",
+    "BundledSampler",
+    "CostWeights",
+    "NavigationCost",
+    "Planner",
+    "SamplerSettings",
+    "Scored",
+    "Search",
+    "shift",
+]

@@ -1,0 +1,105 @@
+"""Noise and costs of candidates, compiled."""
+
+import ctypes
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.native.library import Kernels
+
+TERMS = (
+    *("running", "goal", "risk", "hit", "margin_m", "radius_m", "speed", "v_max_mps", "heading"),
+    *("rate_effort", "thrust_effort"),
+)
+"""What a cost weighs, and the distances and speeds that it weighs against. `running` is the share
+of the mean distance along the horizon; the rest is the distance at its end."""
+
+
+class _Weights(ctypes.Structure):
+    """`Weights` of `costs.cpp`."""
+
+    _fields_ = tuple((name, ctypes.c_float) for name in TERMS)
+
+
+class Paths(NamedTuple):
+    """What is scored: K candidates of S scenes over H steps."""
+
+    positions: Tensor
+    """`[3, S, H, K]`, m."""
+    velocities: Tensor
+    """`[3, S, H, K]`, m/s."""
+    rotation: Tensor
+    """At the end, `[3, 3, S, K]`."""
+    commands: Tensor
+    """`[H, 4, S, K]`."""
+    clearance: Tensor
+    """`[S, H, K]`, m."""
+    goal: Tensor
+    """`[3, S]`, m."""
+    hover: Tensor
+    """`[S]`, N."""
+
+
+def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
+    """Return the cost `[S, K]` of candidates.
+
+    Args:
+        kernels: Compiled kernels.
+        terms: A number for each of `TERMS`.
+        paths: What is scored; at least one step, and K in whole vectors.
+
+    Raises:
+        ValueError: A term is missing, or a tensor is not what the kernel takes; see `lend`.
+    """
+    if set(terms) != set(TERMS):
+        raise ValueError(f"compiled cost: it takes {', '.join(TERMS)}")
+    steps, _, scenes, count = paths.commands.shape
+    costs = paths.commands.new_empty(scenes, count)
+    moved = (3, scenes, steps, count)
+    kernels.call(
+        "faultpath_cost",
+        ctypes.byref(_Weights(**terms)),
+        lend("positions", paths.positions.contiguous(), *moved),
+        lend("velocities", paths.velocities.contiguous(), *moved),
+        lend("rotation", paths.rotation.contiguous(), 3, 3, scenes, count),
+        lend("commands", paths.commands.contiguous(), steps, 4, scenes, count),
+        lend("clearance", paths.clearance.contiguous(), scenes, steps, count),
+        lend("goal", paths.goal.contiguous(), 3, scenes),
+        lend("hover", paths.hover.contiguous(), scenes),
+        *(steps, scenes, count),
+        lend("costs", costs, scenes, count),
+    )
+    return costs
+
+
+def noise(
+    kernels: Kernels,
+    keys: Tensor,
+    step: int,
+    size: tuple[int, int],
+    correlation: tuple[float, float],
+) -> Tensor:
+    """Return normals `[H, 4, S, K]`, correlated along the horizon; candidate 0 has none.
+
+    Args:
+        kernels: Compiled kernels.
+        keys: Of the Philox stream of each scene, `[S, 2]`, uint64.
+        step: Which part of the streams.
+        size: Steps of the horizon H and candidates K; whole vectors.
+        correlation: What a step keeps of the one before, and how much of it is drawn afresh.
+    """
+    horizon, candidates = size
+    scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
+    drawn = torch.empty(horizon, 4, len(keys), candidates)
+    kernels.call(
+        "faultpath_noise",
+        lend("keys", keys, len(keys), 2, dtype=torch.uint64),
+        *(step, horizon, len(keys), candidates),
+        (ctypes.c_float * 2)(*correlation),
+        lend("scratch", scratch, len(scratch), dtype=torch.int32),
+        lend("noise", drawn, *drawn.shape),
+    )
+    return drawn

@@ -1,0 +1,119 @@
+"""What the planner minimises: goal, clearance risk, speed, heading and effort."""
+
+from dataclasses import dataclass
+
+import torch
+from pydantic import BaseModel, ConfigDict, Field
+from torch import Tensor
+
+from faultpath_quadrotor import native
+from faultpath_quadrotor.native.lending import covered
+from faultpath_quadrotor.planners import compiled
+from faultpath_quadrotor.predictors.rollout import Rollout
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
+
+
+class CostWeights(BaseModel):
+    """Weights of the terms, per replan. Goal, risk and speed are the paper's terms.
+
+    The values were matched on the selection library (`docs/design/platform.md`).
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    goal: float = 8.0
+    running: float = Field(default=0.4, ge=0, le=1)
+    """Share of the mean distance along the horizon in the distance to the goal; the rest is that at
+    its end. At 0 the planner is soft in height: a candidate that climbs back by the end pays
+    nothing for the way, so a thrust error settles into an altitude offset. At 1 it is stiff."""
+    risk: float = 36.0
+    hit: float = 400.0
+    margin_m: float = 0.3
+    """Clearance beyond the collision radius below which risk starts."""
+    speed: float = 20.0
+    v_max_mps: float = 3.4  # paper, Table I
+    heading: float = 0.5
+    rate_effort: float = 0.4
+    thrust_effort: float = 12.0
+    """On the squared departure from hover thrust, as a fraction of it: the control cost of MPPI."""
+
+
+@dataclass(frozen=True)
+class Scored:
+    """What a cost may look at, batch `[S, K]`."""
+
+    rollout: Rollout
+    commands: Tensor
+    """`[H, 4, S, K]`."""
+    clearance: Tensor
+    """Clearance of the vehicle's centre along the rollout, `[S, H, K]`, metres."""
+    goal: Tensor
+    """`[3, S]`, metres, world frame."""
+    hover: Tensor
+    """Thrust that the predictor believes holds the vehicle, `[S]`, N."""
+
+
+def _norm(vector: Tensor) -> Tensor:
+    return vector.square().sum(0).sqrt_()
+
+
+class NavigationCost:
+    """The weighted sum of all terms."""
+
+    def __init__(self, weights: CostWeights | None = None) -> None:
+        self.weights = weights or CostWeights()
+
+    def __call__(self, scored: Scored) -> Tensor:
+        """Return the cost `[S, K]`."""
+        rollout, commands = scored.rollout, scored.commands
+        paths = compiled.Paths(
+            rollout.positions,
+            rollout.velocities,
+            rollout.final.rotation,
+            commands,
+            scored.clearance,
+            scored.goal,
+            scored.hover,
+        )
+        built = native.kernels_for(*paths)
+        if built is None or not self._has_kernel(commands):
+            return self._portable(scored)
+        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
+        return compiled.cost(built, terms, paths)
+
+    def _has_kernel(self, commands: Tensor) -> bool:
+        return (
+            len(commands) > 0
+            and native.whole_vectors(commands.shape[-1])
+            and covered(self, NavigationCost)
+            and covered(self.weights, CostWeights)
+        )
+
+    def _portable(self, scored: Scored) -> Tensor:
+        w = self.weights
+        end = _norm(scored.rollout.final.position - scored.goal[..., None])
+        way = _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
+        cost = torch.lerp(end, way, w.running).mul_(w.goal)
+        cost += self._risk(scored.clearance)
+        speed = _norm(scored.rollout.velocities)
+        cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
+        cost += self._heading(scored).mul_(w.heading)
+        cost += scored.commands[:, 1:].square().sum(1).mean(0).mul_(w.rate_effort)
+        hover = scored.hover[:, None]
+        thrust = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
+        return cost.add_(thrust, alpha=w.thrust_effort)
+
+    def _risk(self, clearance: Tensor) -> Tensor:
+        w = self.weights
+        free = clearance - COLLISION_RADIUS_M
+        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
+        return risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
+
+    def _heading(self, scored: Scored) -> Tensor:
+        """One minus the cosine between the body's x axis and the direction of travel, seen from
+        above, at the end of the horizon: yaw follows the direction of travel."""
+        final = scored.rollout.final
+        forward, travel = final.rotation[:2, 0], final.velocity[:2]
+        along = (forward * travel).sum(0)
+        scale = (forward.square().sum(0) * travel.square().sum(0)).add_(1e-4).rsqrt_()
+        return torch.addcmul(torch.ones_like(along), along, scale, value=-1)

@@ -1,0 +1,184 @@
+"""The simulated vehicles in their scenes, as the plant of the loop."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import MappingProxyType
+
+import torch
+from torch import Tensor
+from typing_extensions import override
+
+from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.device import host_readable
+from faultpath_quadrotor.estimators.protocol import Errors, raw
+from faultpath_quadrotor.lanes import lanes_last, scenes_first
+from faultpath_quadrotor.perception import DepthRenderer, mounted
+from faultpath_quadrotor.perception.module import geometric_clearance
+from faultpath_quadrotor.plant.world import CONTROL_STEPS, World
+from faultpath_quadrotor.predictors import Physics
+from faultpath_quadrotor.scenes.field import DistanceField
+from faultpath.loop.taps import Query
+from faultpath.trials.metrics import VEHICLE
+
+LOOK_EVERY = 10
+"""Control steps between two looks at whether any trial still runs, where a look waits for the
+device: half a second of flight is the most that is computed in vain."""
+
+ACTION = Port("action", "actuators")
+
+
+@dataclass(frozen=True)
+class Flying:
+    """A batch in flight. `World` moves itself, so it is the state and what acts on it in one."""
+
+    world: World
+    camera: DepthRenderer | None
+    clearance: Query | None
+    """Of the geometry itself."""
+    errors: Errors
+    """Of the raw sensors."""
+
+
+class VehiclePlant(Plant):
+    """Vehicles, wind and geometry, with a camera or with the clearance of the geometry itself.
+
+    Args:
+        world: Makes the world of some scenes, by id.
+        camera: Makes their camera; `None`: nothing reads depth.
+        field: Makes their distance field; `None`: nothing reads the true clearance.
+        sensors: Channels of the raw sensors that an estimator reads.
+        sensor_noise: How large their errors are; see `estimators.protocol.SENSORS`.
+    """
+
+    name = "vehicle"
+    reads = frozenset({ACTION})
+    shows = ("vehicle",)
+
+    def __init__(
+        self,
+        world: Callable[[Sequence[str]], World],
+        camera: Callable[[Sequence[str]], DepthRenderer] | None,
+        field: Callable[[Sequence[str]], DistanceField] | None,
+        sensors: Sequence[str] = (),
+        sensor_noise: float = 0.0,
+    ) -> None:
+        self.steps = CONTROL_STEPS
+        self._world = world
+        self._camera = camera
+        self._field = field
+        self._sensors = tuple(sensors)
+        self._sensor_noise = sensor_noise
+        self.senses = (
+            *("mission_goal", "true_physics", "true_wind", "zero_wind"),
+            *(("depth_image",) if camera else ()),
+            *(("true_clearance",) if field else ()),
+            *map(raw, sensors),
+        )
+
+    def start(self, batch: Batch) -> Flying:
+        """Return the batch at the start."""
+        return Flying(
+            world=self._world(batch.scenes),
+            camera=self._camera(batch.scenes) if self._camera else None,
+            clearance=geometric_clearance(self._field(batch.scenes)) if self._field else None,
+            errors=Errors(batch.scenes, batch.seed, self._sensor_noise),
+        )
+
+    def sense(self, state: Flying) -> Outputs:
+        """Return the readings of all scenes, without the lanes that only fill the batch up."""
+        world, count = state.world, state.world.count
+        wind = scenes_first(world.wind_mps, count)
+        sensed: dict[str, object] = {
+            "mission_goal": scenes_first(world.goal, count),
+            "true_physics": scenes_first(_physics(world), count),
+            "true_wind": wind,
+            "zero_wind": torch.zeros_like(wind),
+            "vehicle": _truth(world),
+        }
+        if state.camera is not None:
+            here = replace(world.state, rotation=mounted(world.state.rotation))
+            sensed["depth_image"] = state.camera.render(here)
+        if state.clearance is not None:
+            sensed["true_clearance"] = state.clearance
+        for name in self._sensors:
+            exact = scenes_first(_SENSED[name](world), count)
+            sensed[raw(name)] = exact + state.errors.of(name, world.step, exact)
+        return sensed
+
+    def advance(self, state: Flying, inputs: Inputs) -> Flying:
+        """Fly one control interval under the command that reaches the actuators."""
+        state.world.advance(commanded(inputs, state.world.lanes))
+        return state
+
+    @override
+    def progress(self, state: Flying) -> Progress:
+        now, count = state.world.progress, state.world.count
+        return Progress(
+            running=now.running[:count],
+            succeeded=now.succeeded[:count],
+            crashed=now.crashed[:count],
+            time_s=now.time_s[:count],
+            metrics={name: getattr(now, name)[:count] for name in VEHICLE},
+        )
+
+    def over(self, state: Flying, step: int) -> bool:
+        """See `Plant.over`: only the device knows which trials run there."""
+        running = state.world.progress.running
+        if not host_readable(running.device) and (step + 1) % LOOK_EVERY:
+            return False
+        return not bool(running[: state.world.count].any())
+
+    @override
+    def conditions(self, state: Flying) -> tuple[Sequence[str], Sequence[str]]:
+        return state.world.initial_hashes, state.world.wind_hashes
+
+    @override
+    def position(self, state: Flying) -> Tensor:
+        return scenes_first(state.world.state.position, state.world.count)
+
+
+def commanded(inputs: Inputs, lanes: Tensor) -> Tensor:
+    """Return the command `[4, L]` that reaches the actuators: N and rad/s."""
+    return lanes_last(inputs[ACTION], lanes)
+
+
+def _specific_force(world: World) -> Tensor:
+    """Thrust and drag over mass in the body frame, `[3, L]`, m/s^2."""
+    vehicle, state = world.vehicle, world.state
+    force = vehicle.drag_kgps * so3.rotate_back(state.rotation, world.wind_mps - state.velocity)
+    force[2] += vehicle.thrust_scale * world.plant_state.thrusts.sum(0)
+    return force / vehicle.mass_kg
+
+
+_SENSED: Mapping[str, Callable[[World], Tensor]] = MappingProxyType(
+    {
+        "gyroscope": lambda world: world.state.rate,
+        "specific_force": _specific_force,
+        "position_fix": lambda world: world.state.position,
+    }
+)
+
+
+def _truth(world: World) -> dict[str, Tensor]:
+    state = world.state
+    values = {
+        "mass": world.vehicle.mass_kg,
+        "thrust_scale": world.vehicle.thrust_scale,
+        "position": state.position,
+        "velocity": state.velocity,
+        "attitude": state.rotation,
+        "body_rate": state.rate,
+    }
+    return {name: scenes_first(value, world.count) for name, value in values.items()}
+
+
+def _physics(world: World) -> Tensor:
+    vehicle = world.vehicle
+    return Physics(
+        vehicle.inertia_kgm2,
+        vehicle.torque_scale,
+        vehicle.motor_time_constant_s,
+        vehicle.drag_kgps,
+        world.plant_state.thrusts.sum(0),
+    ).reading()

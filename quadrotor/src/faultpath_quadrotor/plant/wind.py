@@ -1,0 +1,172 @@
+"""Wind: sustained flow, Dryden turbulence and one 1-cosine gust, as a function of time.
+
+Wind is a world-frame series in time, not a field in space: every arm of a contrast meets the same
+wind whatever path it flies. Turbulence uses the forms of MIL-F-8785C, 3.7.1.2, along and across
+the sustained flow, with three departures: length scales are capped at the size of a room, the
+intensity is the same along all axes as the standard has it above 2,000 ft, and the airspeed that
+turns lengths into times is a constant of the level rather than the vehicle's own.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict
+
+from faultpath_quadrotor.vehicle import PLANT_RATE_HZ
+from faultpath.core.streams import generator
+
+Array = NDArray[np.float64]
+
+LENGTH_SCALE_M = 4.0
+"""MIL-F-8785C's scales near the ground exceed any room; capped at 3-5 m for 9 x 6 x 3 m."""
+CRUISE_MPS = 2.5
+"""Typical speed of the vehicle, for the reference airspeed."""
+TURBULENCE_OVER_MEAN = 0.2
+"""MIL-F-8785C low-altitude intensity along the flow, sigma_u / u20 at about 10 ft."""
+GUST_DURATION_S = (0.8, 2.0)
+GUST_OVER_MEAN = (0.4, 0.6)
+GUST_ONSET_S = (0.5, 4.0)
+
+
+@dataclass(frozen=True)
+class WindLevel:
+    """How strong the wind of a level is and how far it may leave the horizontal."""
+
+    mean_mps: float
+    turbulence_mps: float
+    """Standard deviation along each axis."""
+    elevation_deg: float
+    """The sustained flow's elevation is uniform in solid angle within plus and minus this."""
+
+    @property
+    def reference_airspeed_mps(self) -> float:
+        """Airspeed that turns length scales into times: level wind and cruise at right angles."""
+        return math.hypot(self.mean_mps, CRUISE_MPS)
+
+
+def _level(mean_mps: float, elevation_deg: float = 20.0) -> WindLevel:
+    return WindLevel(mean_mps, TURBULENCE_OVER_MEAN * mean_mps, elevation_deg)
+
+
+class Winds(BaseModel):
+    """How strong the winds are; turbulence and gust are shares of the mean."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    means_mps: tuple[float, float, float, float] = (0.0, 0.831, 1.766, 3.2)
+    """Of L0 to L3: matched to the paper's success without a wind input."""
+    pool_mean_mps: tuple[float, float] = (0.0, 6.0)
+    """Sustained speeds of the training pool: beyond L3, as a shared fault asks the reconstruction
+    for apparent winds that add to the true one."""
+
+    @property
+    def levels(self) -> Mapping[str, WindLevel]:
+        """The evaluation's levels by name."""
+        return {f"L{i}": _level(mean) for i, mean in enumerate(self.means_mps)}
+
+    def series(
+        self, level: str, scene_id: str, duration_s: float, rate_hz: float = PLANT_RATE_HZ
+    ) -> Array:
+        """Return an evaluation scene's wind, world frame, m/s, [T, 3] with T = duration x rate.
+
+        Keyed by level and scene alone (paper, Section IV-B). A longer series at the same rate
+        begins with the shorter one; `KeyError` for an unknown level.
+        """
+        stream = generator(f"wind/{level}", scene_id, 0)
+        return sample(stream, self.levels[level], duration_s, rate_hz)
+
+    def pool_series(
+        self,
+        collection_seed: int,
+        episode: int,
+        duration_s: float,
+        rate_hz: float = PLANT_RATE_HZ,
+    ) -> Array:
+        """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
+
+        The sustained speed is uniform in `pool_mean_mps` and its direction uniform over the
+        sphere: the reconstruction must be able to answer with vertical winds of about 6 m/s.
+        """
+        stream = generator("wind/collection", str(episode), collection_seed)
+        level = _level(stream.uniform(*self.pool_mean_mps), 90.0)
+        return sample(stream, level, duration_s, rate_hz)
+
+
+def sample(
+    stream: np.random.Generator, level: WindLevel, duration_s: float, rate_hz: float
+) -> Array:
+    """Return one wind of `level` from `stream`, world frame, m/s, [T, 3]."""
+    steps = round(duration_s * rate_hz)
+    axes = _flow_axes(stream, level.elevation_deg)
+    gust = one_minus_cosine(
+        np.arange(steps) / rate_hz,
+        onset_s=stream.uniform(*GUST_ONSET_S),
+        duration_s=stream.uniform(*GUST_DURATION_S),
+        peak=stream.uniform(*GUST_OVER_MEAN) * level.mean_mps,
+    )
+    along = level.turbulence_mps * dryden(stream, steps, rate_hz, level.reference_airspeed_mps)
+    along[:, 0] += level.mean_mps + gust
+    return along @ axes
+
+
+def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: float) -> Array:
+    """Return the gust peak / 2 (1 - cos(2 pi s)) for s in 0..1 over its duration, else 0, [T]."""
+    phase = np.clip((time_s - onset_s) / duration_s, 0.0, 1.0)
+    return 0.5 * peak * (1.0 - np.cos(2 * np.pi * phase))
+
+
+def dryden(
+    stream: np.random.Generator,
+    steps: int,
+    rate_hz: float,
+    airspeed_mps: float,
+    length_m: float = LENGTH_SCALE_M,
+) -> Array:
+    """Return turbulence of unit standard deviation along and twice across the flow, [steps, 3].
+
+    With T the length scale over the airspeed, the forms are sqrt(2 T) / (1 + T s) along and
+    sqrt(T) (1 + sqrt(3) T s) / (1 + T s)^2 across, driven by white noise of unit intensity. Both
+    are sums of the states of 1 / (1 + T s) and 1 / (1 + T s)^2, whose sampled recursion, noise
+    covariance and stationary covariance are exact: the series has its standard deviation from
+    its first sample on, at any rate.
+    """
+    from scipy.signal import lfilter  # slow to load, and only those who fly need it
+
+    time_constant = length_m / airspeed_mps
+    ratio = 1.0 / (rate_hz * time_constant)
+    decay = math.exp(-ratio)
+    transition = decay * np.array([[1.0, 0.0], [ratio, 1.0]])
+    stationary = np.array([[2.0, 1.0], [1.0, 1.0]]) / (4.0 * time_constant)
+    noise = np.linalg.cholesky(stationary - transition @ stationary @ transition.T)
+    start = np.linalg.cholesky(stationary)
+
+    draws = stream.standard_normal((steps, 5))
+    first_in, second_in = np.empty((steps, 3)), np.empty((steps, 2))
+    lateral = draws[:, 1:].reshape(steps, 2, 2)
+    first_in[:, 0] = noise[0, 0] * draws[:, 0]
+    first_in[:, 1:] = noise[0, 0] * lateral[..., 0]
+    second_in[:] = lateral @ noise[1]
+    first_in[0] = start[0, 0] * np.concatenate((draws[0, :1], lateral[0, :, 0]))
+    second_in[0] = lateral[0] @ start[1]
+
+    first = lfilter([1.0], [1.0, -decay], first_in, axis=0)
+    second_in[1:] += decay * ratio * first[:-1, 1:]
+    second = lfilter([1.0], [1.0, -decay], second_in, axis=0)
+
+    along = math.sqrt(2.0 * time_constant) * first[:, :1]
+    root = math.sqrt(3.0)
+    across = math.sqrt(time_constant) * (root * first[:, 1:] + (1.0 - root) * second)
+    return np.concatenate((along, across), axis=1)
+
+
+def _flow_axes(stream: np.random.Generator, elevation_deg: float) -> Array:
+    azimuth = stream.uniform(-np.pi, np.pi)
+    sine = math.sin(math.radians(elevation_deg)) * stream.uniform(-1.0, 1.0)
+    cosine = math.sqrt(1.0 - sine * sine)
+    flat = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
+    along = cosine * flat + np.array([0.0, 0.0, sine])
+    side = np.array([-flat[1], flat[0], 0.0])
+    return np.stack((along, side, np.cross(along, side)))

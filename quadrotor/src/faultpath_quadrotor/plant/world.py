@@ -1,0 +1,114 @@
+"""The simulated world of a block of scenes: vehicles, wind, contact and the ends of trials."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.plant import Plant, TorchPlant
+from faultpath_quadrotor.plant.contact import Contact, Progress
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.wind import Winds
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.state import State, padded_lanes
+from faultpath_quadrotor.vehicle import (
+    CONTROL_DT_S,
+    CONTROL_RATE_HZ,
+    PLANT_RATE_HZ,
+    STEPS_PER_CONTROL,
+)
+
+GOAL_RADIUS_M = 0.5  # paper, Section IV-B
+TIME_LIMIT_S = 12.0  # paper, Section IV-B
+CONTROL_STEPS = round(TIME_LIMIT_S * CONTROL_RATE_HZ)
+
+
+class World:
+    """Plant, wind and geometry of a block of scenes, padded to whole groups of lanes.
+
+    Evaluation code: it knows the truth and passes through no tap. What modules get of it are the
+    readings that `plant/module.py` makes of `state`, `wind_mps` and `vehicle`.
+    """
+
+    def __init__(
+        self,
+        scenes: Sequence[Scene],
+        level: str,
+        free_space: bool,
+        device: torch.device = CPU,
+        plant: Callable[[Vehicle], Plant] = TorchPlant,
+        winds: Winds | None = None,
+    ) -> None:
+        order = padded_lanes(len(scenes))
+        lanes = [scenes[i] for i in order.tolist()]
+        blown = _wind_series(scenes, winds or Winds(), level)[..., order]
+        start = State.hover(
+            _points([scene.start_m for scene in lanes]),
+            torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
+        )
+        self.count = len(scenes)
+        self.lanes = order.to(device)
+        self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
+        self.goal = _points([scene.goal_m for scene in lanes]).to(device)
+        self._winds = blown.to(device)
+        self._contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
+        self._plant = plant(self.vehicle)
+        self.plant_state = self._plant.start(start.to(device))
+        self.step = 0
+        self.progress = self._contact.begin(self.state)
+        self.initial_hashes = tuple(
+            _hash(_row(start, i), scene.content_hash + self._plant.mark)
+            for i, scene in enumerate(scenes)
+        )
+        self.wind_hashes = tuple(_hash(blown[..., i].numpy()) for i in range(len(scenes)))
+
+    @property
+    def state(self) -> State:
+        """True state of every lane."""
+        return self.plant_state.state
+
+    @property
+    def wind_mps(self) -> Tensor:
+        """Wind at this moment, `[3, L]`, m/s, world frame."""
+        return self._winds[self.step * STEPS_PER_CONTROL]
+
+    def advance(self, command: Tensor) -> None:
+        """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
+        made = self.step * STEPS_PER_CONTROL
+        winds = self._winds[made : made + STEPS_PER_CONTROL]
+        self.plant_state, progress = self._plant.fly(
+            self.plant_state, command, winds, self._contact, self.progress, made
+        )
+        self.step += 1
+        self.progress = _arrival(progress)
+
+
+def _arrival(now: Progress) -> Progress:
+    """Arrival is looked for once a control step, at the rate at which the planner acts."""
+    there = now.running & (now.terminal_distance_m <= GOAL_RADIUS_M)
+    return replace(now, running=now.running & ~there, succeeded=now.succeeded | there)
+
+
+def _wind_series(scenes: Sequence[Scene], winds: Winds, level: str) -> Tensor:
+    duration = TIME_LIMIT_S + CONTROL_DT_S
+    series = [winds.series(level, scene.id, duration, PLANT_RATE_HZ) for scene in scenes]
+    return torch.from_numpy(np.stack(series, axis=-1))
+
+
+def _points(points: Sequence[Sequence[float]]) -> Tensor:
+    return torch.tensor(points, dtype=torch.float64).T.contiguous()
+
+
+def _row(state: State, lane: int) -> np.ndarray:
+    parts = (state.position, state.velocity, state.rotation, state.rate)
+    return torch.cat([part[..., lane].reshape(-1) for part in parts]).numpy()
+
+
+def _hash(array: np.ndarray, salt: str = "") -> str:
+    content = np.ascontiguousarray(array).tobytes() + salt.encode()
+    return hashlib.sha256(content).hexdigest()[:16]

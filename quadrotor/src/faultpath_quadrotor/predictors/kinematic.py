@@ -1,0 +1,135 @@
+"""The differentiable kinematic integrator: a double integrator with a rate-loop lag."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
+from faultpath_quadrotor.predictors.drag import LinearDrag
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
+
+RATE_LAG_S = 0.05
+"""Time constant of the closed rate loop: the inverse of its gain of 20 1/s."""
+
+
+@dataclass(frozen=True)
+class Constants:
+    """What stays the same over the horizon, batch `[S, 1]`."""
+
+    thrust_gain: Tensor
+    """T~/m~."""
+    wind_acceleration: Tensor | None
+    """`[3, S, 1]`, w/m~; `None` without a wind input."""
+    inverse_mass: Tensor | None
+
+
+@dataclass(frozen=True)
+class Residual:
+    """Acceleration that a model adds to the integrator's own, `[3, S, K]` each."""
+
+    linear_mps2: Tensor
+    """World frame."""
+    angular_radps2: Tensor
+    """Body frame."""
+
+
+class KinematicIntegrator(Predictor):
+    """DKI: thrust along the body axis, gravity, and body rates that follow with a first-order lag.
+
+    The paper's DKI has no drag. With `drag` the same integrator also subtracts the nominal linear
+    drag, so that wind and drag act through the air-relative velocity; that is the wind-aware
+    analytic predictor. The wind term is R (c o R^T w)/m~ in both (paper, Section IV-A); without
+    `wind` there is no such input.
+
+    The rate lag is integrated exactly, the attitude by the exponential map of the mean rate, and
+    the thrust direction is the mean of the interval's ends: second order in the step.
+    """
+
+    def __init__(
+        self,
+        drag: bool = False,
+        wind: bool = True,
+        dt_s: float = CONTROL_DT_S,
+        drag_kgps: Sequence[float] | None = None,
+    ) -> None:
+        if drag and not wind:
+            raise ValueError("drag acts through the air's velocity: it needs the wind input")
+        if wind and drag_kgps is None:
+            raise ValueError(
+                "wind acts through the drag: give `drag_kgps`, the platform's three coefficients"
+            )
+        self.drag = drag
+        self.reads = frozenset({"initial_state", "trim", "dynamics"})
+        if wind:
+            self.reads |= {"wind_map"}
+        self.air = LinearDrag(drag_kgps or (0.0, 0.0, 0.0))
+        self._dt = dt_s
+        self._keep = math.exp(-dt_s / RATE_LAG_S)
+        self._mean = RATE_LAG_S / dt_s * (1 - self._keep)
+
+    @property
+    def step_constants(self) -> tuple[float, float, float]:
+        """Step in s, and what is left of a rate error at its end and on average."""
+        return self._dt, self._keep, self._mean
+
+    def begin(self, inputs: PredictorInputs) -> Constants:
+        """Return the constants of the horizon; the memory does not change after."""
+        assert inputs.dynamics is not None
+        gain = inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg
+        if "wind_map" not in self.reads:
+            return Constants(gain, None, None)
+        assert inputs.wind_map_mass_kg is not None
+        assert inputs.wind_mps is not None
+        return Constants(
+            thrust_gain=gain,
+            wind_acceleration=inputs.wind_mps / inputs.wind_map_mass_kg,
+            inverse_mass=1 / inputs.wind_map_mass_kg,
+        )
+
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        """Advance one interval; see `Predictor.step`."""
+        return self.advance(state, command, memory), memory
+
+    def advance(
+        self,
+        state: State,
+        command: Tensor,
+        constants: Constants,
+        residual: Residual | None = None,
+    ) -> State:
+        """Advance one interval; a residual of zero changes no bit of the result."""
+        dt = self._dt
+        target = command[1:]
+        lag = state.rate - target
+        turn = torch.add(target, lag, alpha=self._mean).mul_(dt)
+        rate = torch.add(target, lag, alpha=self._keep)
+        if residual is not None:
+            turn = torch.add(turn, residual.angular_radps2, alpha=0.5 * dt * dt)
+            rate = torch.add(rate, residual.angular_radps2, alpha=dt)
+        rotation = so3.compose(state.rotation, so3.exp(turn))
+
+        gain = (0.5 * constants.thrust_gain) * command[0]
+        acceleration = (state.rotation[:, 2] + rotation[:, 2]) * gain
+        if constants.wind_acceleration is not None:
+            acceleration += self.air.force(state.rotation, self._air_velocity(state, constants))
+        acceleration[2] -= GRAVITY_MPS2
+        if residual is not None:
+            acceleration += residual.linear_mps2
+
+        velocity = torch.add(state.velocity, acceleration, alpha=dt)
+        position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt)
+        return State(position, velocity, rotation, rate)
+
+    def _air_velocity(self, state: State, constants: Constants) -> Tensor:
+        """The air's velocity over the mass: the wind term alone, or wind and drag together."""
+        air = constants.wind_acceleration
+        assert air is not None
+        if self.drag:
+            assert constants.inverse_mass is not None
+            air = torch.addcmul(air, state.velocity, constants.inverse_mass, value=-1)
+        return air

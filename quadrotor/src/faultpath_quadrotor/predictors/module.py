@@ -1,0 +1,47 @@
+"""The predictor as a module of the loop: a query from commands to motion."""
+
+import torch
+
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs
+from faultpath_quadrotor.lanes import lanes_of, scenes_first
+from faultpath_quadrotor.predictors import Predictor
+from faultpath_quadrotor.predictors.candidates import Candidates, Predicted
+from faultpath_quadrotor.predictors.places import ports, predictor_inputs, taking
+from faultpath_quadrotor.predictors.rollout import rolling
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from faultpath.loop.taps import Query
+
+
+class Prediction(Module):
+    """Says where commands lead, and which thrust it believes to hold the vehicle."""
+
+    name, writes = "predictor", ("predicted_motion", "hover_thrust")
+
+    def __init__(self, predictor: Predictor, device: torch.device) -> None:
+        self._predictor = predictor
+        self._device = device
+        self.reads = ports(predictor.reads - {"history"})
+
+    def begin(self, batch: Batch) -> Memory:
+        """Return the lanes, and how the predictor is rolled out there."""
+        return (
+            lanes_of(batch, self._device),
+            len(batch.scenes),
+            rolling(self._predictor, self._device),
+        )
+
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        """Take in what the predictor is told; its answers follow from that."""
+        lanes, count, roll = memory
+        known = predictor_inputs(self._predictor.reads, taking(inputs, lanes))
+        hover = known.trim.hover_thrust(GRAVITY_MPS2)[:, 0]
+
+        def predict(asked: Candidates) -> Predicted:
+            rollouts = (
+                roll(known.take(part.index), commands)
+                for part, commands in zip(asked.parts, asked.commands, strict=True)
+            )
+            return Predicted(asked.count, asked.parts, tuple(rollouts))
+
+        motion = Query(predict, Predicted.motion, Predicted.moved)
+        return {"predicted_motion": motion, "hover_thrust": scenes_first(hover, count)}, memory

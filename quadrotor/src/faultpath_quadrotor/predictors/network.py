@@ -1,0 +1,253 @@
+"""The recurrent network of the learned predictors: history encoder, latent update, head.
+
+Components first: features are `[F, *batch]` and a linear map is `weight @ features`, which leaves
+the batch contiguous for the kinematics. A column of such a product has the same bits whatever the
+other columns are, as long as their number is a multiple of 32.
+"""
+
+import math
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from faultpath_quadrotor.native.lending import covered, tell_portable
+from faultpath_quadrotor.native.library import kernels_on
+from faultpath_quadrotor.predictors.base import Calibration, History
+from faultpath_quadrotor.predictors.recurrent import fits, recur
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+
+LATENT = 32  # paper, Section IV-A
+ACTION_EMBEDDING = 16  # derived: with it the parameter counts are the paper's
+STATE_FEATURES = 15
+ACTION_FEATURES = 4
+BASE_FEATURES = STATE_FEATURES + ACTION_FEATURES  # 19 (paper, Section IV-A)
+
+
+class Affine(nn.Module):
+    """`weight @ x + bias` for `x` `[inputs, N]`, initialised as torch's own linear layers are."""
+
+    def __init__(self, inputs: int, outputs: int) -> None:
+        super().__init__()
+        self.weight = nn.Parameter(torch.empty(outputs, inputs))
+        self.bias = nn.Parameter(torch.empty(outputs, 1))
+
+    def forward(self, x: Tensor) -> Tensor:
+        """Return `[outputs, N]`."""
+        return torch.addmm(self.bias, self.weight, x)
+
+
+def draw_weights(module: nn.Module, generator: torch.Generator) -> None:
+    """Draw every affine layer of `module` uniformly within one over the root of its inputs."""
+    for layer in module.modules():
+        if isinstance(layer, Affine):
+            bound = 1 / math.sqrt(layer.weight.shape[1])
+            for weights in (layer.weight, layer.bias):
+                nn.init.uniform_(weights, -bound, bound, generator=generator)
+
+
+class GatedCell(nn.Module):
+    """One step of a gated recurrent unit (Cho et al. 2014, in the form of cuDNN)."""
+
+    def __init__(self, inputs: int, latent: int) -> None:
+        super().__init__()
+        self.latent = latent
+        self.from_input = Affine(inputs, 3 * latent)
+        self.from_latent = Affine(latent, 3 * latent)
+
+    def forward(self, x: Tensor, latent: Tensor) -> Tensor:
+        """Return the next latent `[latent, N]`."""
+        split = 2 * self.latent
+        given = self.from_input(x)
+        weight, bias = self.from_latent.weight, self.from_latent.bias
+        gates = torch.addmm(given[:split] + bias[:split], weight[:split], latent).sigmoid()
+        reset, update = gates[: self.latent], gates[self.latent :]
+        remembered = torch.addmm(bias[split:], weight[split:], latent)
+        candidate = torch.addcmul(given[split:], reset, remembered).tanh()
+        return torch.lerp(candidate, latent, update)
+
+    def _has_kernel(self, sequence: Tensor) -> bool:
+        layers = (self.from_input, self.from_latent)
+        if not (covered(self, GatedCell) and all(covered(each, Affine) for each in layers)):
+            return False
+        if not fits(sequence.shape[1], self.latent):
+            size = f"{sequence.shape[1]} inputs and a latent of {self.latent}"
+            tell_portable("A recurrent cell", f"its kernel has no room for {size}")
+            return False
+        return sequence.dtype == torch.float32
+
+    def last(self, sequence: Tensor) -> Tensor:
+        """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
+        compiled = None if torch.is_grad_enabled() else kernels_on(sequence.device)
+        if compiled is not None and self._has_kernel(sequence):
+            given, kept = (
+                (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)
+            )
+            return recur(compiled, given, kept, sequence)
+        latent = sequence.new_zeros(self.latent, sequence.shape[-1])
+        for step in sequence:
+            latent = self(step, latent)
+        return latent
+
+
+class LatentNetwork(nn.Module):
+    """Encodes the executed history once, then updates a latent along each candidate.
+
+    At each step the embedded action drives a GRU cell, and an MLP with two hidden layers maps
+    (latent, state, action) to the outputs. Features: velocity, rotation matrix, body rate, thrust
+    over m~ g, commanded rates (paper, Section IV-A); `conditioning` says how many calibration
+    values are appended. They are standardised with the training pool's statistics, which are
+    buffers of the checkpoint.
+    """
+
+    feature_mean: Tensor
+    feature_std: Tensor
+
+    def __init__(self, hidden: int, outputs: int, conditioning: int = 0) -> None:
+        super().__init__()
+        width = BASE_FEATURES + conditioning
+        self.conditioned = conditioning > 0
+        self.encoder = GatedCell(width, LATENT)
+        self.embed = Affine(ACTION_FEATURES, ACTION_EMBEDDING)
+        self.cell = GatedCell(ACTION_EMBEDDING, LATENT)
+        self.first = Affine(LATENT + width, hidden)
+        self.second = Affine(hidden, hidden)
+        self.last = Affine(hidden, outputs)
+        self.register_buffer("feature_mean", torch.zeros(width, 1))
+        self.register_buffer("feature_std", torch.ones(width, 1))
+
+    def initialise(self, generator: torch.Generator) -> None:
+        """Draw all weights; the last layer starts at zero, so that a rollout starts sane."""
+        draw_weights(self, generator)
+        nn.init.zeros_(self.last.weight)
+        nn.init.zeros_(self.last.bias)
+
+    def standardise(self, features: Tensor) -> Tensor:
+        """Return `features` `[*, 19 + conditioning, N]` in units of the training pool's spread."""
+        return (features - self.feature_mean) / self.feature_std
+
+    def encode(self, history: History) -> Tensor:
+        """Return the history code `[32, *batch]`."""
+        latent = self.encoder.last(self.standardise(history_features(history)))
+        return latent.unflatten(1, history.mass_kg.shape)
+
+    def fold(self) -> "FoldedNetwork":
+        """Return the network as the horizon loop runs it, with the weights of this moment."""
+        inverse = 1 / self.feature_std
+        acted = slice(STATE_FEATURES, BASE_FEATURES)
+        embed = _folded(
+            self.embed.weight, self.embed.bias, self.feature_mean[acted], inverse[acted]
+        )
+        given, kept = self.cell.from_input, self.cell.from_latent
+        split = 2 * LATENT
+        # Columns of the gates: embedded action, one, latent.
+        gates = torch.cat(
+            (given.weight[:split], given.bias[:split] + kept.bias[:split], kept.weight[:split]), 1
+        )
+        latent, weight = self.first.weight[:, :LATENT], self.first.weight[:, LATENT:]
+        first = _folded(weight, self.first.bias, self.feature_mean, inverse)
+        return FoldedNetwork(
+            embed=_with_one(embed),
+            gates=gates,
+            candidate=torch.cat((given.weight[split:], given.bias[split:]), 1),
+            remembered=torch.cat((kept.bias[split:], kept.weight[split:]), 1),
+            first=_with_one(torch.cat((latent, first), 1)),
+            second=_with_one(torch.cat((self.second.weight, self.second.bias), 1)),
+            last=torch.cat((self.last.weight, self.last.bias), 1),
+        )
+
+
+@dataclass(frozen=True)
+class FoldedNetwork:
+    """The step network as plain matrices over raw features.
+
+    Standardisation is folded into the weights, and biases are columns that meet a row of ones, so
+    that a layer is one product and no copy. Hidden layers pass the one on in their last row.
+    """
+
+    embed: Tensor  # (action, 1) -> (embedding, 1)
+    gates: Tensor  # (embedding, 1, latent) -> (reset, update)
+    candidate: Tensor  # (embedding, 1) -> candidate's part of the input
+    remembered: Tensor  # (1, latent) -> candidate's part of the latent
+    first: Tensor  # (latent, features, 1) -> (hidden, 1)
+    second: Tensor
+    last: Tensor
+
+    def roll(
+        self,
+        latent: Tensor,
+        state: State,
+        command: Tensor,
+        mass_kg: Tensor,
+        conditioning: Calibration | None = None,
+    ) -> tuple[Tensor, Tensor]:
+        """Advance a latent `[32, S, 1 or K]` under `command` `[4, S, K]`; return it and outputs."""
+        batch = command.shape[1:]
+        motion = (state.velocity, state.rotation, state.rate)
+        given = features(*motion, command, mass_kg, conditioning).flatten(1)
+        ones = given.new_ones(1, given.shape[1])
+        latent = latent.expand(LATENT, *batch).flatten(1)
+
+        action = torch.cat((given[STATE_FEATURES:BASE_FEATURES], ones))
+        known = torch.cat(((self.embed @ action).relu_(), latent))
+        reset, update = (self.gates @ known).sigmoid_().split(LATENT)
+        split = ACTION_EMBEDDING + 1
+        remembered = self.remembered @ known[split - 1 :]
+        candidate = torch.addcmul(self.candidate @ known[:split], reset, remembered).tanh_()
+        latent = torch.lerp(candidate, latent, update)
+
+        hidden = (self.first @ torch.cat((latent, given, ones))).relu_()
+        outputs = self.last @ (self.second @ hidden).relu_()
+        return latent.unflatten(1, batch), outputs.unflatten(1, batch)
+
+
+def _folded(weight: Tensor, bias: Tensor, mean: Tensor, inverse_std: Tensor) -> Tensor:
+    scaled = weight * inverse_std.T
+    return torch.cat((scaled, bias - scaled @ mean), 1)
+
+
+def _with_one(weights: Tensor) -> Tensor:
+    """Add the row that passes the last input, a one, on."""
+    row = torch.zeros_like(weights[:1])
+    row[0, -1] = 1
+    return torch.cat((weights, row))
+
+
+def features(
+    velocity: Tensor,
+    rotation: Tensor,
+    rate: Tensor,
+    command: Tensor,
+    mass_kg: Tensor,
+    conditioning: Calibration | None,
+) -> Tensor:
+    """Return raw features `[19 or 21, *batch]`; `mass_kg` is the supplied mass.
+
+    `command` `[4, *batch]` decides the batch; the rest may broadcast against it.
+    """
+    batch = command.shape[1:]
+    rows = [
+        velocity.expand(3, *batch),
+        rotation.flatten(0, 1).expand(9, *batch),
+        rate.expand(3, *batch),
+        command[:1] / (mass_kg * GRAVITY_MPS2),
+        command[1:],
+    ]
+    if conditioning is not None:
+        values = (conditioning.mass_kg, conditioning.thrust_scale)
+        rows += [value.expand(1, *batch) for value in values]
+    return torch.cat(rows)
+
+
+def history_features(history: History) -> Tensor:
+    """Return raw features of a history, `[T, 19 or 21, N]`, its batch flattened."""
+    stacked = features(
+        history.velocity_mps,
+        history.rotation,
+        history.rate_radps,
+        history.commands,
+        history.mass_kg,
+        history.conditioning,
+    )
+    return stacked.movedim(1, 0).flatten(2)

@@ -1,0 +1,54 @@
+"""A gated recurrent unit over a sequence, compiled."""
+
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.native.lending import lend
+from faultpath_quadrotor.native.library import Kernels
+
+LATENT = 32
+GATES = 3 * LATENT
+MOST_INPUTS = 32
+"""Fixed in `recurrent.cpp`."""
+
+
+def fits(inputs: int, latent: int) -> bool:
+    """Return whether the kernel has room for a cell of this size."""
+    return 0 < inputs <= MOST_INPUTS and latent == LATENT
+
+
+def recur(
+    kernels: Kernels,
+    given: tuple[Tensor, Tensor],
+    kept: tuple[Tensor, Tensor],
+    sequence: Tensor,
+) -> Tensor:
+    """Return the latent `[32, N]` after a sequence, from zero.
+
+    Args:
+        kernels: Compiled kernels.
+        given: Weights `[96, inputs]` and biases of the inputs' layer; at most 32 inputs.
+        kept: Weights `[96, 32]` and biases of the latent's layer.
+        sequence: `[T, inputs, N]`, float32.
+
+    Raises:
+        ValueError: There are more inputs.
+    """
+    steps, inputs, columns = sequence.shape
+    if not fits(inputs, LATENT):
+        raise ValueError(f"the recurrent kernel takes 1 to {MOST_INPUTS} inputs, not {inputs}")
+    latent = torch.empty(LATENT, columns)
+    (weights, biases), (kept_weights, kept_biases) = (
+        (weight.detach(), bias.detach()) for weight, bias in (given, kept)
+    )
+    kernels.call(
+        "faultpath_recur",
+        lend("weights of the inputs", weights, GATES, inputs),
+        lend("biases of the inputs", biases, GATES, 1),
+        lend("weights of the latent", kept_weights, GATES, LATENT),
+        lend("biases of the latent", kept_biases, GATES, 1),
+        lend("sequence", sequence.contiguous(), steps, inputs, columns),
+        *(steps, inputs, columns),
+        lend("latent", latent, LATENT, columns),
+    )
+    return latent

@@ -1,0 +1,159 @@
+"""The true-parameter predictor: the vehicle's own inner loop and aerodynamics, stepped coarsely."""
+
+from dataclasses import dataclass, replace
+
+import torch
+from torch import Tensor
+from typing_extensions import override
+
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors.base import (
+    History,
+    Memory,
+    Physics,
+    Predictor,
+    PredictorInputs,
+)
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN_PER_S
+
+CODE = 32
+"""Numbers of a history code, as the interface declares it."""
+SUBSTEPS = 4
+FOLLOWED = 4
+"""Intervals of the history that are replayed: after four of 50 ms even the slowest motors of the
+ranges, 0.08 s, have forgotten where they began but for a twelfth."""
+
+
+@dataclass(frozen=True)
+class _Memory:
+    physics: Physics
+    thrust_gain: Tensor
+    inverse_mass: Tensor
+    wind: Tensor
+    stiffness: Tensor  # torque per rate error
+    keep: Tensor  # share of a motor's lag left after a substep
+    mean: Tensor  # its mean share over the substep
+    thrust: Tensor  # lagged collective thrust, N
+    torque: Tensor  # lagged body torque, N m
+
+
+class TrueParameter(Predictor):
+    """Rigid body, rate loop, motor lag and linear drag with the vehicle's true parameters.
+
+    Mass and thrust scale still come from the calibration taps. It is not the plant: it has no
+    mixer, no motor limits, and steps of 12.5 ms in a semi-implicit scheme (paper, Section IV-A:
+    "integration is separate").
+
+    It replays the commands that were executed over the last intervals, so that it knows the thrust
+    and the torque that its motors hold.
+    """
+
+    reads = frozenset(
+        {"initial_state", "trim", "dynamics", "wind_map", "physics", "history", "latent"}
+    )
+
+    def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
+        self._h = dt_s / SUBSTEPS
+
+    @override
+    def encode(self, history: History) -> Tensor:
+        """Return the last body rates and commands, `[32, *batch]`: what the replay starts from.
+
+        The motors' parameters are read elsewhere, so the replay itself is in `begin`.
+        """
+        past = torch.cat((history.rate_radps, history.commands))[:, -FOLLOWED:]
+        code = past.flatten(0, 1)
+        return torch.cat((code, code.new_zeros(CODE - len(code), *code.shape[1:])))
+
+    def begin(self, inputs: PredictorInputs) -> Memory:
+        """Return constants, and motors as they are now; `ValueError` without true parameters."""
+        physics = inputs.physics
+        if physics is None:
+            raise ValueError("the true-parameter predictor was given no physical parameters")
+        assert inputs.dynamics is not None
+        assert inputs.wind_map_mass_kg is not None
+        assert inputs.wind_mps is not None
+        inverse_mass = 1 / inputs.wind_map_mass_kg
+        lag = physics.motor_time_constant_s / self._h
+        keep = torch.exp(-1 / lag)
+        start = _Memory(
+            physics=physics,
+            thrust_gain=inputs.dynamics.thrust_scale / inputs.dynamics.mass_kg,
+            inverse_mass=inverse_mass,
+            wind=inputs.wind_mps,
+            stiffness=torch.stack(
+                [
+                    inertia * k
+                    for inertia, k in zip(physics.inertia_kgm2, RATE_GAIN_PER_S, strict=True)
+                ]
+            ),
+            keep=keep,
+            mean=lag * (1 - keep),
+            thrust=physics.collective_thrust_n,
+            torque=torch.zeros_like(inputs.state.rate),
+        )
+        assert inputs.code is not None
+        return self._followed(start, inputs.code)
+
+    def _followed(self, start: _Memory, code: Tensor) -> _Memory:
+        """Return the memory with motors that have followed the last commands.
+
+        They start as they would be had the oldest command been held for long.
+        """
+        past = code[: 7 * FOLLOWED].unflatten(0, (7, FOLLOWED)).unbind(1)
+        thrust, torque = past[0][3], start.torque
+        for now in past:
+            rate, command = now[:3], now[3:]
+            for _ in range(SUBSTEPS):
+                thrust = torch.lerp(command[0], thrust, start.keep)
+                rate, torque = self._turn(rate, command[1:], torque, start)
+        return replace(start, thrust=thrust, torque=torque)
+
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        """Advance one interval; see `Predictor.step`."""
+        now: _Memory = memory
+        thrust, torque = now.thrust, now.torque
+        for _ in range(SUBSTEPS):
+            lag = thrust - command[0]
+            average = torch.addcmul(command[0], lag, now.mean)  # over the substep: exact
+            thrust = torch.addcmul(command[0], lag, now.keep)
+            state, torque = self._substep(state, command[1:], average, torque, now)
+        return state, _Memory(
+            now.physics,
+            now.thrust_gain,
+            now.inverse_mass,
+            now.wind,
+            now.stiffness,
+            now.keep,
+            now.mean,
+            thrust,
+            torque,
+        )
+
+    def _substep(
+        self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, now: _Memory
+    ) -> tuple[State, Tensor]:
+        h = self._h
+        physics = now.physics
+        rate, torque = self._turn(state.rate, target, torque, now)
+        rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))
+
+        acceleration = rotation[:, 2] * (now.thrust_gain * thrust)
+        body = so3.rotate_back(rotation, now.wind - state.velocity)
+        air = so3.rotate(rotation, physics.drag_kgps * body)
+        acceleration = torch.addcmul(acceleration, air, now.inverse_mass)
+        acceleration[2] -= GRAVITY_MPS2
+        velocity = torch.add(state.velocity, acceleration, alpha=h)
+        position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * h)
+        return State(position, velocity, rotation, rate), torque
+
+    def _turn(
+        self, rate: Tensor, target: Tensor, torque: Tensor, now: _Memory
+    ) -> tuple[Tensor, Tensor]:
+        inertia = now.physics.inertia_kgm2
+        gyroscopic = torch.linalg.cross(rate, inertia * rate, dim=0)
+        wanted = now.stiffness * (target - rate) + gyroscopic
+        torque = torch.lerp(wanted, torque, now.keep)
+        turned = now.physics.torque_scale * torque - gyroscopic
+        return rate + self._h * turned / inertia, torque

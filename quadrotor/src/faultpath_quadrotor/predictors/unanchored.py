@@ -1,0 +1,90 @@
+"""WM-U: a learned predictor without the kinematic integrator."""
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor
+from typing_extensions import override
+
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.predictors.base import (
+    Calibration,
+    History,
+    Memory,
+    Predictor,
+    PredictorInputs,
+)
+from faultpath_quadrotor.predictors.network import (
+    FoldedNetwork,
+    LatentNetwork,
+)
+from faultpath_quadrotor.state import State
+
+HIDDEN = 128  # paper, Section IV-A
+OUTPUTS = 12
+
+
+class UnanchoredNetwork(LatentNetwork):
+    """The network of WM-U: its outputs are increments in units of the training pool's spread."""
+
+    increment_std: Tensor
+
+    def __init__(self) -> None:
+        super().__init__(HIDDEN, OUTPUTS, conditioning=2)
+        self.register_buffer("increment_std", torch.ones(OUTPUTS, 1))
+
+
+@dataclass(frozen=True)
+class _Memory:
+    network: FoldedNetwork
+    latent: Tensor
+    mass_kg: Tensor
+    conditioning: Calibration
+
+
+class UnanchoredPredictor(Predictor):
+    """Increments of position, velocity, body rate and attitude come straight from a network (WM-U).
+
+    The rotation increment is composed with the present attitude, so that attitudes stay rotations.
+    The supplied calibration enters by the thrust's normalisation and as two features; there is no
+    analytic branch, and no wind input (paper, Section IV-A).
+    """
+
+    reads = frozenset(
+        {"initial_state", "trim", "normalise_thrust", "history", "features", "latent"}
+    )
+
+    def __init__(self, network: UnanchoredNetwork) -> None:
+        self.network = network
+
+    @staticmethod
+    def build_network() -> UnanchoredNetwork:
+        """Return a network of the right shape."""
+        return UnanchoredNetwork()
+
+    @override
+    def encode(self, history: History) -> Tensor:
+        return self.network.encode(history)
+
+    def begin(self, inputs: PredictorInputs) -> Memory:
+        """Start every candidate with the history code."""
+        assert inputs.code is not None
+        assert inputs.thrust_mass_kg is not None
+        assert inputs.conditioning is not None
+        return _Memory(self.network.fold(), inputs.code, inputs.thrust_mass_kg, inputs.conditioning)
+
+    def step(self, state: State, command: Tensor, memory: Memory) -> tuple[State, Memory]:
+        """Advance one interval; see `Predictor.step`."""
+        now: _Memory = memory
+        latent, outputs = now.network.roll(
+            now.latent, state, command, now.mass_kg, now.conditioning
+        )
+        scale = self.network.increment_std.reshape(-1, *(1,) * (outputs.ndim - 1))
+        moved, pushed, spun, turned = (outputs * scale).split(3)
+        ahead = State(
+            state.position + moved,
+            state.velocity + pushed,
+            so3.compose(state.rotation, so3.exp(turned)),
+            state.rate + spun,
+        )
+        return ahead, _Memory(now.network, latent, now.mass_kg, now.conditioning)

@@ -1,0 +1,193 @@
+"""The quadrotor as a system that can be audited."""
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Self
+
+import torch
+from typing_extensions import override
+
+from faultpath.core.errors import UserError
+from faultpath.faults import FaultPreset
+from faultpath.interface import Interface
+from faultpath.loop import Deliverer, Loop, Module, Plant
+from faultpath_quadrotor import native
+from faultpath_quadrotor.user_parts import bring
+from faultpath_quadrotor.checkpoint import shipped_folder
+from faultpath_quadrotor.choices import ClearanceName, DeviceName
+from faultpath_quadrotor.device import arithmetic, describe
+from faultpath_quadrotor.estimators import Estimator
+from faultpath_quadrotor.estimators.protocol import SENSORS, with_estimators
+from faultpath_quadrotor.interface import quadrotor_interface
+from faultpath_quadrotor.models import clearance_model
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
+from faultpath_quadrotor.perception.module import Perception
+from faultpath_quadrotor.planners.module import Planning
+from faultpath_quadrotor.plant import TorchPlant
+from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.presets import calibration, noisy_state
+from faultpath_quadrotor.scenes.draw import floor_plan
+from faultpath_quadrotor.scenes.field import DistanceField
+from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.variants import modelled, setups
+from faultpath_quadrotor.vehicle import CONTROL_DT_S
+from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
+from faultpath.trials.metrics import VEHICLE
+
+
+class Quadrotor(LoopSystem):
+    """Flies a block of scenes with the modules under test behind taps."""
+
+    name = "quadrotor"
+    trained = True
+    control_dt_s = CONTROL_DT_S
+    metrics = VEHICLE
+    more_signals = "faultpath_quadrotor.evidence.signals:quadrotor_signals"
+
+    def __init__(self, options: QuadrotorOptions) -> None:
+        self.options = options
+        self.parallel = options.device is DeviceName.CPU
+        self.block_size = 50 if self.parallel else 100  # a GPU takes a library
+        self._scenes: dict[str, Scene] = {}
+        self.brought = bring(options.parts, options.sampling)
+        self.setups = {setup.name: setup for setup in setups(options, self.brought)}
+
+    @classmethod
+    def parse(cls, **options: str) -> Self:
+        """Return the system of some options; see `QuadrotorOptions.parse`."""
+        return cls(QuadrotorOptions.parse(**options))
+
+    @property
+    def interface(self) -> Interface:
+        """See `System.interface`; the clearance is asked for along the planner's candidates."""
+        settings, candidates = PLATFORM, self.options.candidates
+        horizon = settings.planner.sampler.horizon
+        clearance = dict.fromkeys(("estimated_clearance", "true_clearance"), (horizon, candidates))
+        shapes = {**clearance, "predicted_motion": (6, horizon, candidates)}
+        return with_estimators(quadrotor_interface().shaped(shapes), self._estimators)
+
+    @property
+    @override
+    def fault_presets(self) -> Mapping[str, FaultPreset]:
+        return {"calibration": calibration, "noisy_state": noisy_state}
+
+    @property
+    def _estimators(self) -> Sequence[Estimator]:
+        parts = (part.blank for part in self.brought.values())
+        return tuple(part for part in parts if isinstance(part, Estimator))
+
+    def library(self, name: str) -> Library:
+        """See `System.library`; a file's library keeps its path for a name, to be found again."""
+        library = load_library(name)
+        self._scenes |= {s.id: PLATFORM.scene(s) for s in library.scenes}
+        refs = tuple(SceneRef(s.id, s.index, s.topology) for s in library.scenes)
+        return Library(name, refs, library.content_hash)
+
+    @override
+    def floor_plan(self, scene: str) -> FloorPlan:
+        return floor_plan(self.scene(scene), free_space=self.options.free_space)
+
+    @property
+    @override
+    def backend(self) -> str:
+        options = self.options
+        computes = (
+            native.describe() if options.device is DeviceName.CPU else describe(options.device)
+        )
+        return computes + ("" if options.plant == "torch" else f", the plant {options.plant}")
+
+    def fingerprint(self) -> str:
+        """See `System.fingerprint`: the kernels' arithmetic on this machine, and the options."""
+        options = self.options.model_dump(mode="json")
+        return json.dumps({"kernels": native.numerics(), "options": options}, sort_keys=True)
+
+    @property
+    def data_files(self) -> Sequence[Path]:
+        """See `System.data_files`: the interface, the weights, and what kernels are built from."""
+        own = (file for part in self.brought.values() for file in part.data_files)
+        return (*_weights(shipped_folder()), Path("interface.yaml"), Path("native/source"), *own)
+
+    @property
+    @override
+    def parts(self) -> Sequence[str]:
+        return tuple(self.brought)
+
+    @property
+    @override
+    def wirings(self) -> Mapping[str, Wiring]:
+        return {name: setup.wiring(self.options) for name, setup in self.setups.items()}
+
+    @override
+    def plant(self) -> Plant:
+        options, free, place = self.options, self.options.free_space, self.options.place
+        own = self.brought.get(options.plant)
+        read = {port.channel for each in self._estimators for port in each.ports}
+        sensors = sorted(SENSORS.keys() & read)
+
+        def world(scenes: Sequence[str]) -> World:
+            flown, winds = self._records(scenes), PLATFORM.winds
+            flies = TorchPlant if own is None else own.load(None)
+            return World(flown, options.wind, free, place, flies, winds)
+
+        def camera(scenes: Sequence[str]) -> DepthRenderer:
+            return _renderer(self._records(scenes), free, place)
+
+        def field(scenes: Sequence[str]) -> DistanceField:
+            return _field(self._records(scenes), free, place)
+
+        if options.clearance is ClearanceName.TRUE:
+            return VehiclePlant(world, None, field, sensors, options.sensor_noise)
+        return VehiclePlant(world, camera, None, sensors, options.sensor_noise)
+
+    @override
+    def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
+        setup, place = self.setups[variant], self.options.place
+        predictor = setup.load_predictor(seed, place)
+        reconstruction = setup.load_reconstruction(seed, place)
+        found = modelled(predictor, reconstruction, place, setup.load_estimator(seed, place))
+        found.append(Planning(setup.load_planner(seed, self.options), place))
+        if self.options.clearance is not ClearanceName.TRUE:
+            found.append(
+                Perception(
+                    lambda: DepthClearance(clearance_model(place), place, PLATFORM.perception)
+                )
+            )
+        return found
+
+    @arithmetic()
+    @torch.inference_mode()
+    @override
+    def fly(self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int) -> list[Outcome]:
+        return super().fly(loop, scenes, taps, seed)
+
+    def _records(self, scenes: Sequence[str]) -> tuple[Scene, ...]:
+        return tuple(self.scene(scene) for scene in scenes)
+
+    def scene(self, scene: str) -> Scene:
+        """Return a scene of a library that was asked for before, or of a frozen one."""
+        if scene not in self._scenes:
+            self.library(scene.rpartition("/")[0])
+        if scene not in self._scenes:
+            raise UserError(f"there is no scene '{scene}' in its libraries.")
+        return self._scenes[scene]
+
+
+@cache
+def _weights(folder: Path) -> tuple[Path, ...]:
+    return tuple(sorted(folder.glob("*.safetensors")))
+
+
+@lru_cache(maxsize=4)  # a library's blocks; each arm flies over the same ones
+def _field(scenes: tuple[Scene, ...], free_space: bool, place: torch.device) -> DistanceField:
+    return DistanceField.bake(scenes, free_space, device=place)
+
+
+@lru_cache(maxsize=4)
+def _renderer(scenes: tuple[Scene, ...], free_space: bool, place: torch.device) -> DepthRenderer:
+    return DepthRenderer(scenes, free_space, place)

@@ -1,0 +1,152 @@
+"""Everything of the quadrotor that can be fitted, by name.
+
+The tasks load when they are built: the names alone must not cost their imports, torch included.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from faultpath.core.errors import UserError
+
+if TYPE_CHECKING:
+    from faultpath_quadrotor.training.fitting import ModelTask
+
+Factory = Callable[[str, int, Path], "ModelTask"]
+"""Makes a task from its name, its seed and the folder of the data; a function of a module, so that
+worker processes find it."""
+
+MODEL_SEEDS = (0, 1, 2)
+"""Seeds of the models that results average over (paper, captions of its tables)."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A model that can be fitted."""
+
+    name: str
+    factory: Factory
+    pools: tuple[str, ...]
+    """Pools of data that it needs and `collect_missing` makes, `<data folder>/<pool>.*`."""
+    description: str
+    cost: float
+    """Expected time of a fit relative to the other models: the order of work depends on it, and
+    the time left until a fit has shown its pace."""
+    seeds: tuple[int, ...] = MODEL_SEEDS
+    after: tuple[str, ...] = ()
+    """Models whose seed 0 flies for its data, with the checkpoint in the package."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One model with one seed."""
+
+    entry: Entry
+    seed: int
+
+    @property
+    def stem(self) -> str:
+        """Name of its files without their ending."""
+        return f"{self.entry.name}-{self.seed}"
+
+    def task(self, data: Path) -> ModelTask:
+        """Return what is to be fitted, with data from a folder."""
+        return self.entry.factory(self.entry.name, self.seed, data)
+
+
+def _predictor(name: str, seed: int, data: Path) -> ModelTask:
+    from faultpath_quadrotor.training.predictor_task import PredictorTask
+
+    return PredictorTask(name, seed, data)
+
+
+def _reconstruction(name: str, seed: int, data: Path) -> ModelTask:
+    from faultpath_quadrotor.training.reconstruction_task import ReconstructionTask
+
+    return ReconstructionTask(name, seed, data)
+
+
+def _clearance(name: str, seed: int, data: Path) -> ModelTask:
+    from faultpath_quadrotor.training.clearance_task import ClearanceTask
+
+    del name
+    return ClearanceTask(seed, data)
+
+
+_BOTH = ("nominal", "wind")
+PREDICTORS = (
+    Entry("wm-a", _predictor, ("nominal",), "physics-anchored predictor", 4),
+    Entry("wm-a+dcc", _predictor, ("nominal",), "wm-a fitted with perturbed calibration", 4),
+    Entry("wm-u", _predictor, ("nominal",), "unanchored predictor", 12),
+    Entry("wm-u+dcc", _predictor, ("nominal",), "wm-u fitted with perturbed calibration", 12),
+    Entry("wm-a-wind", _predictor, _BOTH, "wm-a with the wind as an input", 8),
+    Entry("wm-a-nowind", _predictor, _BOTH, "wm-a on the same windy data without that input", 8),
+)
+RECONSTRUCTIONS = (
+    Entry("gru", _reconstruction, ("wind",), "wind from the history, given calibration", 5),
+    Entry("gru+dcc", _reconstruction, ("wind",), "gru fitted with perturbed calibration", 5),
+    Entry("gru-withheld", _reconstruction, ("wind",), "gru without calibration", 5),
+    Entry(
+        "gru-trajectory",
+        _reconstruction,
+        ("trajectory",),
+        "gru on closed-loop flights of selection scenes",
+        2,
+        after=("wm-a-wind",),
+    ),
+)
+CLEARANCE_POOL = "clearance"
+CLEARANCE = Entry(
+    "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, seeds=(0,)
+)
+
+ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)
+GROUPS: dict[str, tuple[Entry, ...]] = {
+    "predictors": PREDICTORS,
+    "reconstructions": RECONSTRUCTIONS,
+    "all": ALL,
+}
+
+
+def choose(
+    names: Sequence[str],
+    seeds: Sequence[int] = (),
+) -> tuple[Job, ...]:
+    """Return the jobs of some models or groups, each once, in the order of the catalogue.
+
+    Without names: everything. Without seeds: the default seeds of each model. Raises `UserError`
+    for a name that is not known and a seed below 0.
+    """
+    if wrong := [seed for seed in seeds if seed < 0]:
+        raise UserError(f"the seed {wrong[0]} is negative: seeds start at 0.")
+    wanted = {entry.name for name in names or ("all",) for entry in _named(name)}
+    entries = [entry for entry in ALL if entry.name in wanted]
+    return tuple(_jobs(entries, seeds))
+
+
+def stages(jobs: Sequence[Job]) -> tuple[tuple[Job, ...], ...]:
+    """Part the jobs into those that come first and those whose data are flown with them."""
+    first = tuple(job for job in jobs if not job.entry.after)
+    rest = tuple(job for job in jobs if job.entry.after)
+    return tuple(stage for stage in (first, rest) if stage)
+
+
+def _named(name: str) -> tuple[Entry, ...]:
+    if name in GROUPS:
+        return GROUPS[name]
+    found = tuple(entry for entry in ALL if entry.name == name)
+    if not found:
+        known = ", ".join(entry.name for entry in ALL)
+        raise UserError(
+            f"the quadrotor has no model '{name}' to train; it has {known}, and the groups "
+            f"{', '.join(GROUPS)}."
+        )
+    return found
+
+
+def _jobs(entries: Iterable[Entry], seeds: Sequence[int]) -> Iterable[Job]:
+    for entry in entries:
+        yield from (Job(entry, seed) for seed in dict.fromkeys(seeds or entry.seeds))

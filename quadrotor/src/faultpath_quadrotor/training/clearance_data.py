@@ -1,0 +1,248 @@
+"""Depth images and labelled points for the clearance model: one file a scene, made from its id.
+
+Poses are as flown: anywhere the vehicle fits, any heading, level as the camera's mount. Points lie
+where the planner asks: over the field of view, close to what is seen, and all round the vehicle. A
+scene's file depends on nothing but the recipe and the scene, so a run that was killed goes on where
+it was and ends with the same bytes.
+"""
+
+import hashlib
+import json
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import torch
+from pydantic import BaseModel, ConfigDict
+from safetensors import SafetensorError
+from safetensors.torch import load, save
+from torch import Tensor
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, read_json
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
+from faultpath_quadrotor.perception.labels import visible_distance
+from faultpath_quadrotor.perception.render import DepthRenderer
+from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import Library, load_library
+from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.parts import Part, make_missing
+from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
+from faultpath.trials.store import atomic
+from faultpath.trials.store.lock import locked
+from faultpath.core.streams import generator
+
+FORMAT = 2
+PER_METRE = 10_000
+"""Depths are stored in tenths of a millimetre, 16 bits each."""
+
+Progress = Callable[[float, float], None]
+"""Called with the scenes done and those asked for."""
+
+
+class Recipe(BaseModel):
+    """What decides every number of the data set."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: int = FORMAT
+    library: str = "training"
+    images: int = 200
+    """Images a scene."""
+    in_view: int = 128
+    """Points an image that are spread over the field of view and a little beyond it."""
+    near_surface: int = 128
+    """Points about what random pixels see, or about their rays where that is beyond `depth_m`."""
+    around: int = 64
+    """Points all round the vehicle."""
+    height_m: tuple[float, float] = (0.4, 2.5)
+    depth_m: float = 4.5
+    """Depth to which points are spread: what a second at the top speed reaches, and a margin."""
+    scatter_m: float = 0.35
+    """Standard deviation of the points about the surface."""
+    around_m: float = 2.0
+    seed: int = 0
+
+    @property
+    def points(self) -> int:
+        """Points an image."""
+        return self.in_view + self.near_surface + self.around
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Images with their labelled points.
+
+    Attributes:
+        depth: z-depth, `[I, 36, 64]`, uint16, tenths of a millimetre.
+        points: In the capture frame, `[I, 3, Q]`, m.
+        clearance: Visible-space signed distance, `[I, Q]`, m.
+        scene: Index of each image's scene in its library, `[I]`.
+    """
+
+    depth: Tensor
+    points: Tensor
+    clearance: Tensor
+    scene: Tensor
+
+    def __len__(self) -> int:
+        return len(self.depth)
+
+    def take(self, index: Tensor) -> "Samples":
+        """Return some of the images."""
+        return Samples(**{name: part[index] for name, part in vars(self).items()})
+
+    def depth_m(self) -> Tensor:
+        """Return the images in metres, float32."""
+        return self.depth.float() / PER_METRE
+
+
+def collect(
+    folder: Path,
+    recipe: Recipe | None = None,
+    workers: int = 2,
+    progress: Progress | None = None,
+) -> Path:
+    """Make the data set below `folder` and return its provenance file.
+
+    What is there already is kept. Raises `UserError` when the folder holds a data set of another
+    recipe or cannot be written.
+    """
+    recipe = recipe or Recipe()
+    library = load_library(recipe.library)
+    path = provenance_path(folder)
+    asked = _provenance(recipe, library)
+    if path.exists():
+        if _read_provenance(path) == asked:
+            return path
+        raise UserError(
+            f"{path} was made by another recipe or other code: choose another folder, or delete "
+            f"it and the folder {path.with_suffix('')} to make the data again."
+        )
+    shards = _shards(folder, recipe, library)
+    place = shards[0][1].parent
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        with locked(place, lambda notice: print(notice, file=sys.stderr)):
+            atomic.sweep(place)
+            parts = [Part(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards]
+            make_missing([parts], workers, progress)
+        atomic.write_text(path, json.dumps(asked, indent=2, sort_keys=True) + "\n")
+    except OSError as error:
+        raise UserError(
+            f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to."
+        ) from error
+    return path
+
+
+def read(folder: Path, recipe: Recipe | None = None) -> Samples:
+    """Return the data set that `collect` made below `folder`; `UserError` when it is not whole."""
+    recipe = recipe or Recipe()
+    library = load_library(recipe.library)
+    path = provenance_path(folder)
+    if not path.exists() or _read_provenance(path) != _provenance(recipe, library):
+        raise UserError(f"{folder} holds no clearance data of this recipe: collect it first.")
+    parts: list[Samples] = []
+    for scene, shard in _shards(folder, recipe, library):
+        try:
+            content = load(contents(shard))
+        except (OSError, SafetensorError) as error:
+            raise UserError(f"{shard} cannot be read: delete {path} and collect again.") from error
+        parts.append(Samples(**content, scene=torch.full((recipe.images,), scene.index)))
+    return join(parts)
+
+
+def join(parts: Sequence[Samples]) -> Samples:
+    """Return the images of several sets as one, in their order."""
+    columns = zip(*(vars(part).values() for part in parts), strict=True)
+    return Samples(*map(torch.cat, columns))
+
+
+def provenance_path(folder: Path) -> Path:
+    """Return the file that says how the data set below `folder` was made; it is written last."""
+    return folder / "clearance.json"
+
+
+@native.using(native.PORTABLE)
+def draw(recipe: Recipe, scene: Scene) -> Samples:
+    """Return the images and labelled points of one scene."""
+    random = generator("clearance-data", scene.id, recipe.seed)
+    state = _poses(recipe, scene, random)
+    renderer = DepthRenderer([scene] * recipe.images)
+    stored = (renderer.render(state) * PER_METRE).round().to(torch.uint16)
+    images = stored.float() / PER_METRE
+    points = torch.stack([_points(recipe, image, random) for image in images])
+    clearance = [visible_distance(*pair) for pair in zip(images, points, strict=True)]
+    return Samples(
+        depth=stored,
+        points=points,
+        clearance=torch.stack(clearance).float(),
+        scene=torch.full((recipe.images,), scene.index),
+    )
+
+
+def _poses(recipe: Recipe, scene: Scene, random: np.random.Generator) -> State:
+    """Draw poses at which the vehicle touches nothing."""
+    low, high = np.array(scene.bounds.low_m), np.array(scene.bounds.high_m)
+    low[2], high[2] = recipe.height_m
+    geometry = Geometry.stack([scene])
+    found = torch.empty(3, 0, dtype=torch.float64)
+    while found.shape[1] < recipe.images:
+        drawn = torch.from_numpy(random.uniform(low, high, (recipe.images, 3)).T.copy())
+        free = geometry.distance(drawn[:, None])[0] > COLLISION_RADIUS_M
+        found = torch.cat((found, drawn[:, free]), 1)
+    position = found[:, : recipe.images]
+    rotation = so3.from_yaw(torch.from_numpy(random.random(recipe.images)) * 2 * np.pi)
+    return State(position, torch.zeros_like(position), rotation, torch.zeros_like(position))
+
+
+def _points(recipe: Recipe, image: Tensor, random: np.random.Generator) -> Tensor:
+    """Draw points of one image `[3, Q]`, in the capture frame."""
+    seen = rays().flatten(1).numpy()
+    spread = random.uniform(-1, 1, (2, recipe.in_view)) * np.abs(seen[1:]).max(1)[:, None] * 1.15
+    depth = random.uniform(0.05, recipe.depth_m, recipe.in_view)
+    over_view = np.concatenate((depth[None], depth * spread))
+
+    pixel = random.integers(0, HEIGHT * WIDTH, recipe.near_surface)
+    at = np.minimum(image.flatten().numpy()[pixel], recipe.depth_m)
+    about = seen[:, pixel] * at + random.normal(0, recipe.scatter_m, (3, pixel.size))
+
+    direction = random.normal(size=(3, recipe.around))
+    direction /= np.linalg.norm(direction, axis=0)
+    around = direction * random.uniform(0, recipe.around_m, recipe.around)
+    return torch.from_numpy(np.concatenate((over_view, about, around), 1)).float()
+
+
+def _shards(folder: Path, recipe: Recipe, library: Library) -> list[tuple[Scene, Path]]:
+    content = json.dumps(_provenance(recipe, library), sort_keys=True)
+    digest = hashlib.sha256(content.encode()).hexdigest()
+    place = provenance_path(folder).with_suffix("") / digest[:16]
+    return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
+
+
+def _make(recipe: Recipe, scene: Scene, shard: Path) -> None:
+    made = draw(recipe, scene)
+    parts = {"depth": made.depth, "points": made.points, "clearance": made.clearance}
+    atomic.write(shard, save(parts))
+
+
+def _provenance(recipe: Recipe, library: Library) -> dict:
+    return {
+        "recipe": recipe.model_dump(mode="json"),
+        "library_sha": library.content_hash,
+        "code_sha256": code_of("training.clearance_data"),
+    }
+
+
+def _read_provenance(path: Path) -> dict:
+    try:
+        return read_json(contents(path))
+    except (OSError, Misread):
+        return {}

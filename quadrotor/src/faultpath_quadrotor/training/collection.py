@@ -1,0 +1,167 @@
+"""Collects pools of training episodes, batch by batch, joined when all batches are there.
+
+A batch depends on nothing but its pool's recipe and its place, so a run that was killed loses at
+most the batches in flight, and the next one goes on there and ends with the same bytes.
+"""
+
+import hashlib
+import json
+import logging
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from faultpath.core.errors import UserError
+from faultpath.trials.execution.provenance import packages
+from faultpath_quadrotor.training.flight import fly
+from faultpath_quadrotor.training.parts import Part, Progress, make_missing
+from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights
+from faultpath_quadrotor.training.provenance import (
+    Provenance,
+    Recipe,
+    code_sha256,
+    provenance_path,
+    read_provenance,
+)
+from faultpath_quadrotor.training.recorded import Flights
+from faultpath.trials.store import atomic
+from faultpath.trials.store.lock import locked
+from faultpath.core.version import __version__
+
+EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
+BATCH = 1024
+"""Episodes flown together. The plant's cost a vehicle still falls beyond this; a larger batch would
+need more memory for its winds, and a kill would lose more."""
+
+_log = logging.getLogger("faultpath")
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Episodes that are flown together."""
+
+    name: str
+    """Of its files."""
+    episodes: range
+    fly: Callable[[], Flights]
+    """A function of a module bound to its arguments, so that a worker process can call it."""
+
+    def make(self, place: Path) -> None:
+        """Fly and write them; `OSError` when the disk will not."""
+        write_flights(place / self.name, self.episodes, self.fly())
+
+
+def collect(
+    folder: Path,
+    pools: Sequence[str] = ("nominal", "wind"),
+    workers: int = 2,
+    episodes: Mapping[str, int] | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Path]:
+    """Collect `pools` into `folder` and return the file of each pool.
+
+    A pool that is there already is kept, one that was begun is finished. `episodes` gives the
+    number of episodes of a pool where it is not the paper's; `workers` is the number of processes,
+    0 for this one. `progress` is called with the episodes done and those in all of a pool. Raises
+    `UserError` for a pool that does not exist, for one that was collected by another recipe, and
+    when `folder` cannot be written.
+    """
+    recipes = [recipe(name, (episodes or {}).get(name), seed) for name in pools]
+    return {
+        asked.pool: make_pool(folder, asked, _batches(asked), workers, progress)
+        for asked in recipes
+    }
+
+
+def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> Recipe:
+    """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
+    if pool not in EPISODES:
+        raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
+    count = EPISODES[pool] if episodes is None else episodes
+    if count < 1:
+        raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
+    return Recipe(pool=pool, episodes=count, seed=seed, code_sha256=code_sha256())
+
+
+def is_there(path: Path, asked: Recipe) -> bool:
+    """Say whether a pool is finished; `UserError` for one of another recipe."""
+    found = read_provenance(path)
+    if found is None:
+        return False
+    for field in Recipe.model_fields:
+        if getattr(found, field) != getattr(asked, field):
+            how = "by other code" if field == "code_sha256" else f"with another '{field}'"
+            raise UserError(
+                f"the pool at {path} was collected {how}, with faultpath "
+                f"{found.faultpath_version}: choose another folder, or delete its "
+                f"{path.stem}.json to collect it again."
+            )
+    return True
+
+
+def make_pool(
+    folder: Path,
+    asked: Recipe,
+    batches: Sequence[Batch],
+    workers: int,
+    progress: Progress | None = None,
+) -> Path:
+    """Fly the batches of a pool that are missing, join them, and return the file of its rows.
+
+    The batches' folder changes with anything that decides them. The number of episodes does not: a
+    pool that is asked for larger uses what is there.
+    """
+    path = folder / f"{asked.pool}.parquet"
+    content = json.dumps([asked.model_dump(mode="json", exclude={"episodes"}), packages()])
+    place = folder / f".{asked.pool}-{hashlib.sha256(content.encode()).hexdigest()[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with locked(folder, _log.warning):
+            atomic.sweep(folder)
+            if is_there(path, asked):
+                return path
+            place.mkdir(exist_ok=True)
+            atomic.sweep(place)
+            parts = [
+                Part(place / f"{each.name}.rows", partial(each.make, place), len(each.episodes))
+                for each in batches
+            ]
+            make_missing([parts], workers, progress)
+            _join(path, asked, [place / batch.name for batch in batches])
+            for old in folder.glob(f".{asked.pool}-*"):  # also of recipes that are no more
+                shutil.rmtree(old)
+    except OSError as error:
+        raise UserError(
+            f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to "
+            "and that has room."
+        ) from error
+    return path
+
+
+def _join(path: Path, recipe: Recipe, stems: Sequence[Path]) -> None:
+    """Write a finished pool, its provenance last."""
+    rows, episodes = join_flights(stems)
+    provenance = Provenance(
+        **dict(recipe),
+        faultpath_version=__version__,
+        packages=packages(),
+        rows_sha256=hashlib.sha256(rows).hexdigest(),
+        episodes_sha256=hashlib.sha256(episodes).hexdigest(),
+    )
+    atomic.write(episodes_path(path), episodes)
+    atomic.write(path, rows)
+    atomic.write(provenance_path(path), provenance.encode())
+
+
+def _batches(asked: Recipe) -> list[Batch]:
+    members = [
+        range(first, min(first + BATCH, asked.episodes))
+        for first in range(0, asked.episodes, BATCH)
+    ]
+    return [
+        Batch(f"{m.start:06d}+{len(m)}", m, partial(fly, asked.pool, m, asked.seed))
+        for m in members
+    ]

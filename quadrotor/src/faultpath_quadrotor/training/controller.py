@@ -1,0 +1,183 @@
+"""The waypoint controller that flies the training episodes.
+
+It is part of the simulator, not of what is audited: it knows the true state, mass, thrust scale
+and wind, and passes through no tap.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.flight_settings import ControllerSettings
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.perturbation import Perturbation
+from faultpath_quadrotor.vehicle import (
+    COLLECTIVE_MAX_N,
+    CONTROL_RATE_HZ,
+    GRAVITY_MPS2,
+    RATE_LIMIT_RADPS,
+)
+
+LEAST_LIFT = 0.3
+"""The wanted vertical specific force is at least this part of gravity: the vehicle never turns
+over to fall faster."""
+_TINY = 1e-12
+"""Added to norms that divide: their quotients are then zero at zero."""
+
+
+@dataclass(frozen=True)
+class Course:
+    """What the controller does in a batch of episodes; M waypoints, N control steps, *b lanes."""
+
+    waypoint_m: Tensor
+    """[3, M, *b]"""
+    speed_mps: Tensor
+    """[M, *b]"""
+    leg_s: Tensor
+    """[M, *b]"""
+    heading_offset_rad: Tensor
+    """[M, *b]"""
+    gains: Tensor
+    """Position, velocity, attitude and heading gain in 1/s, [4, *b]."""
+    tilt_slope: Tensor
+    """Tangent of the largest tilt asked for, [*b]."""
+    drag_share: Tensor
+    """[*b]"""
+    offset: Tensor
+    """`Perturbation.offset`, [4, N, *b]."""
+    held: Tensor
+    """`Perturbation.held`, [N, *b]."""
+
+    @classmethod
+    def draw(
+        cls,
+        stream: np.random.Generator,
+        settings: ControllerSettings,
+        perturbation: Perturbation,
+    ) -> Course:
+        """Return the course of one episode, without batch axes."""
+        count = settings.waypoints
+        lows, highs = np.array(settings.arena_m).T
+        values = {
+            "waypoint_m": stream.uniform(lows[:, None], highs[:, None], (3, count)),
+            "speed_mps": stream.uniform(*settings.speed_mps, count),
+            "leg_s": stream.uniform(*settings.leg_s, count),
+            "heading_offset_rad": settings.heading_offset_rad * stream.uniform(-1, 1, count),
+            "gains": np.array(
+                [
+                    stream.uniform(*settings.position_gain_per_s),
+                    stream.uniform(*settings.velocity_gain_per_s),
+                    stream.uniform(*settings.attitude_gain_per_s),
+                    stream.uniform(*settings.heading_gain_per_s),
+                ]
+            ),
+            "tilt_slope": np.tan(np.radians(stream.uniform(*settings.tilt_limit_deg))),
+            "drag_share": np.array(stream.uniform(*settings.drag_share)),
+            "offset": perturbation.offset,
+            "held": perturbation.held,
+        }
+        return cls(**{name: torch.as_tensor(value) for name, value in values.items()})
+
+    @classmethod
+    def stack(cls, courses: Sequence[Course]) -> Course:
+        """Return single courses as one batch, in their order."""
+        return cls(
+            **{
+                field.name: torch.stack([getattr(c, field.name) for c in courses], dim=-1)
+                for field in fields(cls)
+            }
+        )
+
+    def take(self, index: Tensor) -> Course:
+        """Return the lanes that `index` (long, [n]) picks."""
+        return Course(
+            **{field.name: getattr(self, field.name)[..., index] for field in fields(self)}
+        )
+
+
+class WaypointController:
+    """Position to velocity to acceleration to thrust and attitude to body rates, at 20 Hz.
+
+    A cascade of proportional loops, the attitude by the reduced error of Brescianini, Hehn and
+    D'Andrea (2013, "Nonlinear quadrocopter attitude control"): thrust direction first, heading
+    for itself. All operations are elementwise over lanes.
+    """
+
+    def __init__(self, vehicle: Vehicle, course: Course, arrival_m: float) -> None:
+        self._vehicle = vehicle
+        self._course = course
+        self._arrival_m = arrival_m
+        self._leg = torch.zeros_like(vehicle.mass_kg, dtype=torch.long)
+        self._on_leg_s = torch.zeros_like(vehicle.mass_kg)
+        self._last = vehicle.hover_command()
+        self._limit = torch.tensor(RATE_LIMIT_RADPS).to(vehicle.mass_kg)[:, None]
+
+    def command(self, step: int, state: State, wind_mps: Tensor) -> Tensor:
+        """Return the perturbed command [4, L] of a control step, within the vehicle's limits.
+
+        It is rounded to single precision, so that what is recorded is what was flown.
+        """
+        fresh = self._feedback(state, wind_mps)
+        self._last = torch.where(self._course.held[step], self._last, fresh)
+        offset = self._course.offset[:, step]
+        thrust = self._last[0] + offset[0] * self._vehicle.hover_thrust_n
+        rate = torch.clamp(self._last[1:] + offset[1:], -self._limit, self._limit)
+        command = torch.cat((thrust.clamp(0.0, COLLECTIVE_MAX_N)[None], rate))
+        return command.float().to(command.dtype)
+
+    def _feedback(self, state: State, wind_mps: Tensor) -> Tensor:
+        way = self._way(state.position)
+        velocity = self._wanted_velocity(way)
+        force = self._wanted_force(state, velocity, wind_mps)
+        lift = (state.rotation[:, 2] * force).sum(0)
+        thrust = lift * self._vehicle.mass_kg / self._vehicle.thrust_scale
+        rate = torch.cat((self._tilt_rate(state, force), self._heading_rate(state, velocity)))
+        return torch.cat((thrust[None], torch.clamp(rate, -self._limit, self._limit)))
+
+    def _way(self, position: Tensor) -> Tensor:
+        left = self._at_leg(self._course.waypoint_m) - position
+        arrived = (left * left).sum(0).sqrt() < self._arrival_m
+        late = self._on_leg_s >= self._at_leg(self._course.leg_s)
+        turn = (arrived | late) & (self._leg < self._course.leg_s.shape[0] - 1)
+        self._leg = self._leg + turn
+        self._on_leg_s = torch.where(turn, 0.0, self._on_leg_s + 1 / CONTROL_RATE_HZ)
+        return self._at_leg(self._course.waypoint_m) - position
+
+    def _at_leg(self, values: Tensor) -> Tensor:
+        index = self._leg.expand(*values.shape[:-2], 1, -1)
+        return values.gather(-2, index).squeeze(-2)
+
+    def _wanted_velocity(self, way: Tensor) -> Tensor:
+        velocity = self._course.gains[0] * way
+        speed = (velocity * velocity).sum(0).sqrt() + _TINY
+        return velocity * (self._at_leg(self._course.speed_mps) / speed).clamp(max=1.0)
+
+    def _wanted_force(self, state: State, velocity: Tensor, wind_mps: Tensor) -> Tensor:
+        air = so3.rotate_back(state.rotation, wind_mps - state.velocity)
+        drag = so3.rotate(state.rotation, self._vehicle.drag_kgps * air) / self._vehicle.mass_kg
+        force = self._course.gains[1] * (velocity - state.velocity) - self._course.drag_share * drag
+        up = (force[2] + GRAVITY_MPS2).clamp(min=LEAST_LIFT * GRAVITY_MPS2)
+        level = (force[0] * force[0] + force[1] * force[1]).sqrt() + _TINY
+        shrink = (self._course.tilt_slope * up / level).clamp(max=1.0)
+        return torch.stack((force[0] * shrink, force[1] * shrink, up))
+
+    def _tilt_rate(self, state: State, force: Tensor) -> Tensor:
+        wanted = so3.rotate_back(state.rotation, force)
+        sine = (wanted[0] * wanted[0] + wanted[1] * wanted[1]).sqrt() + _TINY
+        gain = self._course.gains[2] * torch.atan2(sine, wanted[2]) / sine
+        return torch.stack((-wanted[1] * gain, wanted[0] * gain))
+
+    def _heading_rate(self, state: State, velocity: Tensor) -> Tensor:
+        travel = torch.atan2(velocity[1], velocity[0])
+        heading = torch.atan2(state.rotation[1, 0], state.rotation[0, 0])
+        error = travel + self._at_leg(self._course.heading_offset_rad) - heading
+        error = error - 2 * math.pi * torch.round(error / (2 * math.pi))
+        return (self._course.gains[3] * error)[None]

@@ -1,0 +1,72 @@
+"""Calibration noise for training (DCC), by the same taps and faults that an audit uses."""
+
+from collections.abc import Collection, Iterable, Mapping
+
+from torch import Tensor
+
+from faultpath.faults import AnyFault, Coupled, Fault, UniformScale
+from faultpath_quadrotor.interface import quadrotor_interface
+from faultpath_quadrotor.training.replay import DeliveredInputs
+from faultpath_quadrotor.vehicle import CONTROL_DT_S
+from faultpath.learning.windows import window_taps
+from faultpath.loop.taps import Reading
+
+CALIBRATION = ("mass", "thrust_scale")
+DCC_HALF_RANGE = 0.2  # paper, Section IV-B
+
+
+def dcc(consumers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> Coupled:
+    """Return independent uniform noise on mass and thrust scale at `consumers`.
+
+    Each channel has its own cause: the two factors are independent, and all consumers of a
+    channel get the same one (paper, Section IV-B and appendix). Consumers that read neither are
+    left alone, and one may read one channel only.
+    """
+    interface = quadrotor_interface()
+    noise = UniformScale(half_range=half_range)
+    faults = tuple(
+        Fault(channel=channel, intervention=noise, cause=f"dcc/{channel}")
+        for channel in CALIBRATION
+    )
+    readers = {name for channel in CALIBRATION for name in interface.channel(channel).consumers}
+    return Coupled(name="dcc", faults=faults).striking(*sorted(readers & set(consumers)))
+
+
+def corrupted(
+    faults: Iterable[AnyFault],
+    consumers: Collection[str],
+    windows: tuple[str, ...],
+    seed: int,
+    epoch: int,
+    readings: Mapping[str, Tensor],
+) -> DeliveredInputs:
+    """Return what each consumer gets of each window's readings, by (channel, consumer), `[W]`.
+
+    Windows are the scenes of the taps and an epoch is one control step: every window has one draw
+    an epoch, held throughout it, keyed by its id, the model's seed and the epoch. The draws come
+    from streams of the faults' own, so initial weights and the order of minibatches are untouched.
+
+    Args:
+        faults: What is done to the readings; none: every consumer gets the readings themselves.
+        consumers: Consumers that the model under training has.
+        windows: Ids, one a row of every reading.
+        seed: Seed of the model.
+        epoch: Counted from 0.
+        readings: Values by channel, `[W]`.
+
+    Raises:
+        UserError: A name is unknown, or a fault acts on nobody here.
+        NotDelivered: A fault missed a consumer that it names.
+    """
+    interface = quadrotor_interface()
+    taps = window_taps(interface, faults, windows, CONTROL_DT_S, seed, epoch, consumers)
+    delivered = {
+        (channel, consumer): taps.deliver(
+            channel, consumer, Reading(value, taps.bindings[channel], 0), 0
+        )
+        for channel, value in readings.items()
+        for consumer in interface.channel(channel).consumers
+        if consumer in consumers
+    }
+    taps.verify(last_step=0)
+    return delivered

@@ -1,0 +1,151 @@
+"""Training episodes: what is drawn for each, and how a batch of them flies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor import native, so3
+from faultpath_quadrotor.flight_settings import FlightSettings
+from faultpath_quadrotor.plant import TorchPlant
+from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.state import State, padded_lanes
+from faultpath_quadrotor.training import perturbation
+from faultpath_quadrotor.training.controller import Course, WaypointController
+from faultpath_quadrotor.training.recorded import Flights, blank_values, record
+from faultpath_quadrotor.vehicle import (
+    CONTROL_RATE_HZ,
+    PLANT_RATE_HZ,
+    STEPS_PER_CONTROL,
+    VehicleParameters,
+    draw,
+)
+from faultpath.core.streams import generator
+
+EPISODE_S = 6.0  # paper, Section IV-A
+EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)
+
+
+@dataclass(frozen=True)
+class _Start:
+    """What is drawn for one episode."""
+
+    vehicle: VehicleParameters
+    course: Course
+    state: State
+    winds: np.ndarray | None
+    """[T, 3] at the plant's steps, m/s; `None` is still air."""
+
+
+@torch.inference_mode()
+@native.using(native.PORTABLE)
+def fly(
+    pool: str,
+    episodes: Sequence[int],
+    seed: int,
+    settings: FlightSettings = PLATFORM.collection,
+) -> Flights:
+    """Fly some episodes of a pool together; each comes out the same in any company, bit for bit.
+
+    The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
+    vectors. All fly in free air for as long, diverged or not; nothing passes a tap.
+    """
+    starts = [_draw(pool, episode, seed, settings) for episode in episodes]
+    lanes = padded_lanes(len(starts))
+    vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
+    course = Course.stack([start.course for start in starts]).take(lanes)
+    plant, winds = TorchPlant(vehicle), _winds(starts)
+    controller = WaypointController(vehicle, course, settings.controller.arrival_m)
+    now = plant.start(_stack([start.state for start in starts]).take(lanes))
+    running = torch.ones(len(lanes), dtype=torch.bool)
+    steps = torch.zeros(len(lanes), dtype=torch.long)
+    values = blank_values(EPISODE_STEPS, len(starts))
+
+    def blown(step: int, count: int) -> Tensor:
+        first = step * STEPS_PER_CONTROL
+        return winds[first : first + count].double()[..., lanes]
+
+    for step in range(EPISODE_STEPS):
+        wind_mps = blown(step, 1)[0]
+        command = controller.command(step, now.state, wind_mps)
+        record(values, step, now, wind_mps, command)
+        now = plant.advance(now, command, blown(step, STEPS_PER_CONTROL))
+        running &= _in_bounds(now.state, settings)
+        steps += running
+    record(values, EPISODE_STEPS, now, blown(EPISODE_STEPS, 1)[0])
+    vehicles = tuple(start.vehicle for start in starts)
+    return Flights(values, steps[: len(starts)].numpy(), vehicles)
+
+
+def _draw(pool: str, episode: int, seed: int, settings: FlightSettings) -> _Start:
+
+    def stream(what: str) -> np.random.Generator:
+        return generator(f"collection/{pool}/{what}", str(episode), seed)
+
+    disturbed = perturbation.draw(stream("perturbation"), EPISODE_STEPS, settings.perturbation)
+    winds = None
+    if pool == "wind":  # one sample more than the plant needs: the wind at the last instant
+        winds = PLATFORM.winds.pool_series(seed, episode, EPISODE_S + 1 / PLANT_RATE_HZ)
+    return _Start(
+        vehicle=draw(stream("vehicle"), PLATFORM.ranges),
+        course=Course.draw(stream("course"), settings.controller, disturbed),
+        state=_draw_state(stream("start"), settings),
+        winds=winds,
+    )
+
+
+def _draw_state(stream: np.random.Generator, settings: FlightSettings) -> State:
+    """A start in the arena with any heading, some tilt, speed and rates; no batch axes."""
+    lows, highs = np.array(settings.controller.arena_m).T
+    position = stream.uniform(lows, highs)
+    direction = stream.standard_normal(3)
+    speed = settings.start_speed_mps * stream.uniform() ** (1 / 3)
+    velocity = speed * direction / np.linalg.norm(direction)
+    heading, towards = stream.uniform(-np.pi, np.pi, 2)
+    tilt = np.radians(settings.start_tilt_deg) * stream.uniform()
+    axis = torch.tensor([np.cos(towards), np.sin(towards), 0.0], dtype=torch.float64)
+    level = so3.from_yaw(torch.tensor(heading, dtype=torch.float64))
+    rate = np.array(settings.start_rate_radps) * stream.uniform(-1, 1, 3)
+    return State(
+        torch.from_numpy(position),
+        torch.from_numpy(velocity),
+        so3.compose(so3.exp(tilt * axis), level),
+        torch.from_numpy(rate),
+    )
+
+
+def _stack(states: Sequence[State]) -> State:
+    return State(
+        torch.stack([s.position for s in states], -1),
+        torch.stack([s.velocity for s in states], -1),
+        torch.stack([s.rotation for s in states], -1),
+        torch.stack([s.rate for s in states], -1),
+    )
+
+
+def _winds(starts: Sequence[_Start]) -> Tensor:
+    """Return the winds of a batch at the plant's steps, [T, 3, B]; still air is a broadcast zero.
+
+    In single precision, so that the wind that is recorded is the wind that blew.
+    """
+    steps = EPISODE_STEPS * STEPS_PER_CONTROL + 1
+    out = torch.zeros(1, 3, len(starts)).expand(steps, -1, -1)
+    if any(start.winds is not None for start in starts):
+        out = out.clone()
+        for lane, start in enumerate(starts):
+            if start.winds is not None:
+                out[..., lane] = torch.from_numpy(start.winds)
+    return out
+
+
+def _in_bounds(state: State, settings: FlightSettings) -> Tensor:
+    lows, highs = torch.tensor(settings.volume_m, dtype=torch.float64).T[..., None]
+    inside = ((state.position > lows) & (state.position < highs)).all(0)
+    slow = (state.velocity * state.velocity).sum(0) < settings.speed_limit_mps**2
+    upright = state.rotation[2, 2] > np.cos(np.radians(settings.tilt_limit_deg))
+    return inside & slow & upright

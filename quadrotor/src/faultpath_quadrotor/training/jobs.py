@@ -1,0 +1,135 @@
+"""Fit many models on several worker processes, each with one thread.
+
+Models are independent, so that the weights do not depend on the number of workers. What is finished
+of one, epoch by epoch, is in the folder.
+"""
+
+import time
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from faultpath.core.errors import Stopped, UserError
+from faultpath_quadrotor import native
+from faultpath_quadrotor.checkpoint import ModelCard, ship
+from faultpath_quadrotor.training.catalogue import Job
+from faultpath_quadrotor.training.fitting import fit
+from faultpath_quadrotor.training.job_pools import check_pools
+from faultpath.learning.model_card import read_card
+from faultpath.learning.loop import Moment
+from faultpath.trials.store import make_folder
+from faultpath.trials.store.atomic import sweep
+from faultpath.trials.store.lock import locked
+from faultpath.trials.work import Lost, Returned, local, run_each, tell
+
+_TELL_EVERY_S = 0.2
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A model that was not fitted, why, and the file with the traceback when there is one."""
+
+    job: Job
+    error: str
+    details: Path | None = None
+
+
+@dataclass(frozen=True)
+class Overview:
+    """How far all models together are."""
+
+    done: int
+    total: int
+    fraction: float
+    """Part of the work that is done, by the costs in the catalogue."""
+    running: Mapping[str, Moment | None]
+    """Models at work, as `<name>-<seed>`; `None` until the first minibatch."""
+
+
+def run_jobs(
+    jobs: Sequence[Job],
+    data: Path,
+    out: Path,
+    workers: int,
+    progress: Callable[[Overview], None],
+    notice: Callable[[str], None],
+    shipped: bool = False,
+) -> tuple[ModelCard | Failure, ...]:
+    """Fit models, the longest first, from wherever an earlier call left them, into a folder.
+
+    Returns what came of the jobs, in their order. `workers` is the number of processes; 0 fits in
+    this one. `progress` is called a few times a second, `notice` with sentences for the user.
+    `shipped` copies each finished model into the package.
+
+    A model that fails does not stop the others. Raises `Stopped` on Ctrl-C and `UserError` when
+    nothing can be fitted at all.
+    """
+    executor = local(workers)
+    check_pools(jobs, data)
+    make_folder(out)
+    order = sorted(jobs, key=lambda job: -job.entry.cost)
+    running: dict[str, Moment | None] = {}
+    results: dict[str, ModelCard | Failure] = {}
+
+    def show() -> None:
+        parts = {stem: moment.fraction for stem, moment in running.items() if moment}
+        parts |= dict.fromkeys(results, 1.0)
+        done = sum(job.entry.cost * parts.get(job.stem, 0.0) for job in order)
+        whole = sum(job.entry.cost for job in order)
+        progress(Overview(len(results), len(order), done / whole, dict(running)))
+
+    def told(place: int, message: Moment | str | None) -> None:
+        if isinstance(message, str):
+            notice(message)
+        else:
+            running[order[place].stem] = message
+        show()
+
+    try:
+        with locked(out, notice), executor:
+            sweep(out)
+            for place, end in run_each(
+                executor, [partial(fit_job, j, data, out) for j in order], told
+            ):
+                job = order[place]
+                running.pop(job.stem, None)
+                details = out / f"{job.stem}.error.txt"
+                if isinstance(end, Returned):
+                    details.unlink(missing_ok=True)
+                    results[job.stem] = read_card(end.value, ModelCard)
+                    if shipped:
+                        ship(end.value)
+                elif isinstance(end, Lost):
+                    results[job.stem] = Failure(job, f"{end.how}; its epochs are kept")
+                elif isinstance(end.error, UserError):
+                    results[job.stem] = Failure(job, str(end.error))
+                else:
+                    traced = "".join(traceback.format_exception(end.error))
+                    details.write_text(traced, encoding="utf-8")
+                    error = f"{type(end.error).__name__}: {end.error}"
+                    results[job.stem] = Failure(job, error, details)
+                show()
+    except KeyboardInterrupt:
+        done = sum(isinstance(found, ModelCard) for found in results.values())
+        raise Stopped(
+            f"interrupted with {done} of {len(jobs)} models finished; they and the finished "
+            f"epochs of the others are kept in {out}; run the same command again to resume."
+        ) from None
+    return tuple(results[job.stem] for job in jobs)
+
+
+@native.using(native.PORTABLE)
+def fit_job(job: Job, data: Path, out: Path) -> Path:
+    """Fit a model and return its file; a few times a second it tells how far it is."""
+    tell(None)  # it has begun: its data may take a while
+    told = 0.0
+
+    def advance(moment: Moment) -> None:
+        nonlocal told
+        if time.monotonic() - told > _TELL_EVERY_S:
+            told = time.monotonic()
+            tell(moment)
+
+    return fit(job.task(data), out, advance, tell)

@@ -1,0 +1,42 @@
+"""Files that are made one by one, by worker processes, where they are not there yet."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from faultpath.trials.work import local, run_all
+
+Progress = Callable[[float, float], None]
+"""Called with what is done and what all comes to; its first call counts what was there."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A file and what makes it. It is made when the file is there, so that is written last."""
+
+    path: Path
+    make: Callable[[], None]
+    """A function of a module bound to its arguments, so that a worker process can call it."""
+    size: int = 1
+    """What it counts for in the progress."""
+
+
+def make_missing(
+    stages: Sequence[Sequence[Part]],
+    workers: int,
+    progress: Progress | None,
+) -> None:
+    """Make what is missing, one stage after the other, with so many processes (0: this one).
+
+    Raises the error of the first part that fails.
+    """
+    tell = progress or (lambda done, total: None)
+    missing = [[part for part in stage if not part.path.exists()] for stage in stages]
+    total = sum(part.size for stage in stages for part in stage)
+    done = total - sum(part.size for stage in missing for part in stage)
+    tell(done, total)
+    with local(workers) as executor:
+        for stage in missing:
+            for place, _ in run_all(executor, [part.make for part in stage]):
+                done += stage[place].size
+                tell(done, total)

@@ -1,0 +1,223 @@
+"""Fitting of the learned predictors (paper, Section IV-A)."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import LongTensor, Tensor, nn
+from typing_extensions import override
+
+from faultpath.core.errors import UserError
+from faultpath_quadrotor import so3
+from faultpath_quadrotor.models import PREDICTORS
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.predictors import (
+    AnchoredPredictor,
+    Calibration,
+    LatentNetwork,
+    Predictor,
+    UnanchoredNetwork,
+    UnanchoredPredictor,
+)
+from faultpath_quadrotor.predictors.network import features
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
+from faultpath_quadrotor.training.fitting import ModelTask
+from faultpath_quadrotor.training.provenance import rows_sha256
+from faultpath_quadrotor.training.replay import DeliveredInputs, correct, predict
+from faultpath_quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
+from faultpath.learning.model_card import Schedule
+from faultpath.core.streams import generator
+
+DCC = "+dcc"
+BATCH_SIZE = 256  # paper, Section IV-A
+CLIP_NORM = 1.0
+"""Largest gradient norm: a rollout of 20 steps of a young network can explode (derived)."""
+PARTS = ("position", "velocity", "rotation", "rate")
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a predictor learns from, and for how long (paper, Section IV-A)."""
+
+    pools: tuple[str, ...]
+    epochs: int
+    description: str
+
+
+_BOTH = ("nominal", "wind")
+RECIPES: Mapping[str, Recipe] = {
+    "wm-a": Recipe(("nominal",), 10, "physics-anchored"),
+    "wm-u": Recipe(("nominal",), 30, "unanchored"),
+    "wm-a-wind": Recipe(_BOTH, 10, "wind-conditioned anchored"),
+    "wm-a-nowind": Recipe(_BOTH, 10, "wind-withheld anchored"),
+}
+
+
+class PredictorTask(ModelTask):
+    """One predictor: the error of its own 20-step rollout, in units of how far states move.
+
+    Each prediction is the input to the next step; recorded states are targets only. With `+dcc` in
+    the name the calibration passes through the audit's faults on its way to the model; samples,
+    targets, initial weights and the order of minibatches stay (paper, Equation 1).
+    """
+
+    def __init__(
+        self,
+        name: str,
+        seed: int,
+        data: Path,
+        half_range: float = DCC_HALF_RANGE,
+    ) -> None:
+        self.name = name
+        self.seed = seed
+        self._base = name.removesuffix(DCC)
+        if self._base not in RECIPES:
+            raise UserError(f"there is no predictor '{name}' to fit: choose from {known()}.")
+        self._recipe = RECIPES[self._base]
+        self.schedule = Schedule(
+            epochs=self._recipe.epochs, batch_size=BATCH_SIZE, clip_norm=CLIP_NORM
+        )
+        self._data = data
+        self._half_range = half_range
+        self.platform = PLATFORM.weights_hash(name)
+
+    def load(self) -> None:
+        """See `Task.load`; several pools contribute equally many windows."""
+        pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
+        training, self._validation = _equal_mix(pools)
+        self._train = training
+        self._scales = scales(training)
+        self._consumers = self._blank().consumers()
+        self._faults = [dcc(self._consumers, self._half_range)] if self.is_dcc else []
+        self._delivered: DeliveredInputs = {}
+
+    @property
+    def is_dcc(self) -> bool:
+        """Whether the calibration is corrupted in training."""
+        return self.name.endswith(DCC)
+
+    @property
+    @override
+    def count(self) -> int:
+        return len(self._train)
+
+    @property
+    @override
+    def order_key(self) -> str:
+        return self._base
+
+    @override
+    def module(self) -> nn.Module:
+        network = self._blank().network
+        stream = generator("training/weights", self._base, self.seed)
+        network.initialise(torch.Generator().manual_seed(int(stream.integers(2**62))))
+        _measure(network, self._train)
+        return network
+
+    def begin_epoch(self, epoch: int) -> None:
+        """Draw what each window's consumers get of the calibration in this epoch."""
+        self._delivered = corrupted(
+            self._faults,
+            self._consumers,
+            self._train.ids,
+            self.seed,
+            epoch,
+            self._train.calibration,
+        )
+
+    @override
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        batch = self._train.take(index)
+        delivered = {tap: value[index] for tap, value in self._delivered.items()}
+        predicted = list(predict(self._predictor(net), batch, delivered))
+        return error(predicted, batch, self._scales)
+
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
+        """Return the median 20-step position error under correct calibration, and the loss."""
+        predictor = self._predictor(net)
+        windows = self._validation
+        predicted = list(predict(predictor, windows, correct(predictor, windows)))
+        missed = (predicted[-1].position[..., 0] - windows.position[:, -1]).norm(dim=0)
+        return {
+            "position_error_20_m": float(missed.median()),
+            "loss": float(error(predicted, windows, self._scales)),
+        }
+
+    @override
+    def describe(self) -> Mapping[str, Any]:
+        return {
+            "description": f"{self._recipe.description} predictor"
+            + (", fitted with calibration noise" if self.is_dcc else ""),
+            "data_sha256": rows_sha256(self._data, self._recipe.pools),
+            "history": HISTORY,
+            "horizon": HORIZON,
+            "calibration_half_range": self._half_range if self.is_dcc else 0.0,
+            "validation_windows": len(self._validation),
+            "scales": {name: float(value) for name, value in self._scales.items()},
+        }
+
+    def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
+        made = PREDICTORS[self._base].build()
+        assert isinstance(made, AnchoredPredictor | UnanchoredPredictor)
+        return made
+
+    def _predictor(self, network: nn.Module) -> Predictor:
+        made: Any = self._blank()
+        made.network = network
+        return made
+
+
+def known() -> str:
+    """Return the names of all predictors that can be fitted."""
+    return ", ".join(name for base in RECIPES for name in (base, base + DCC))
+
+
+def scales(windows: Windows) -> dict[str, Tensor]:
+    """Return how far each part of the state moves over the horizon: its root mean square change."""
+    return {
+        name: (ahead - ahead[..., :1, :]).square().mean().sqrt()
+        for name in PARTS
+        for ahead in [getattr(windows, name)[..., HISTORY:, :]]
+    }
+
+
+def error(predicted: Sequence[State], windows: Windows, scale: Mapping[str, Tensor]) -> Tensor:
+    """Return the mean squared error of rollouts, in units of `scale`, the parts weighing alike."""
+    parts = []
+    for name in PARTS:
+        ahead = torch.stack([getattr(state, name)[..., 0] for state in predicted], dim=-2)
+        recorded = getattr(windows, name)[..., HISTORY + 1 :, :]
+        parts.append((ahead - recorded).square().mean() / scale[name] ** 2)
+    return torch.stack(parts).mean()
+
+
+def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
+    halves = [pool.split() for pool in pools]
+    training = [half[0] for half in halves]
+    fewest = min(len(windows) for windows in training)
+    mixed = [windows.take(torch.arange(fewest) * len(windows) // fewest) for windows in training]
+    return Windows.join(mixed), Windows.join([half[1] for half in halves])
+
+
+def _measure(network: LatentNetwork, windows: Windows) -> None:
+    """Store the training windows' statistics, under true calibration, in the network."""
+    now = windows.state(HISTORY)
+    known = Calibration(windows.mass_kg, windows.thrust_scale) if network.conditioned else None
+    raw = features(
+        now.velocity, now.rotation, now.rate, windows.command[:, HISTORY], windows.mass_kg, known
+    )
+    network.feature_mean.copy_(raw.mean(1, keepdim=True))
+    network.feature_std.copy_(raw.std(1, keepdim=True))
+    if isinstance(network, UnanchoredNetwork):
+        network.increment_std.copy_(_increments(windows).std(1, keepdim=True))
+
+
+def _increments(windows: Windows) -> Tensor:
+    now, then = windows.state(HISTORY), windows.state(HISTORY + 1)
+    turned = so3.log(so3.compose(now.rotation.transpose(0, 1), then.rotation))
+    return torch.cat(
+        [then.position - now.position, then.velocity - now.velocity, then.rate - now.rate, turned]
+    )

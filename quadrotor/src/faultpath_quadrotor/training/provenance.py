@@ -1,0 +1,82 @@
+"""Where a pool comes from: what decides every number of it, and what came of it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict
+
+from faultpath.trials.code import Root, read_code
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, model_of
+
+FORMAT = 2
+
+
+class Recipe(BaseModel):
+    """What decides every number of a pool."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    format: int = FORMAT
+    pool: str
+    episodes: int
+    seed: int
+    code_sha256: str
+    """Of the code that draws and flies the episodes, with all its settings."""
+
+
+class Provenance(Recipe):
+    """A recipe, what it was cooked with, and what came of it."""
+
+    faultpath_version: str
+    packages: dict[str, str]
+    rows_sha256: str
+    episodes_sha256: str
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
+
+
+def provenance_path(path: Path) -> Path:
+    """Return where the provenance of the pool whose rows are in `path` stands."""
+    return path.with_suffix(".json")
+
+
+@cache
+def code_of(*modules: str) -> str:
+    """Return a hash of some modules of the quadrotor and of all that they import.
+
+    What they made is made anew where one of these files has changed.
+    """
+    return read_code([Root(f"faultpath_quadrotor.{module}") for module in modules]).state.contents
+
+
+def code_sha256() -> str:
+    """Return a hash of the files that draw and fly episodes: another code, another pool."""
+    return code_of("training.flight", "training.pool")
+
+
+def rows_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
+    """Return the digest of the rows of each pool in a folder, as far as it is finished."""
+    found = (read_provenance(data / f"{name}.parquet") for name in pools)
+    return {each.pool: each.rows_sha256 for each in found if each is not None}
+
+
+def read_provenance(path: Path) -> Provenance | None:
+    """Return the provenance of the pool at `path`, `None` without one; `UserError` if damaged."""
+    place = provenance_path(path)
+    try:
+        return model_of(contents(place), Provenance)
+    except FileNotFoundError:
+        return None
+    except (OSError, Misread) as error:
+        raise UserError(
+            f"{place} cannot be read as a pool's provenance: delete the pool and collect it again."
+        ) from error

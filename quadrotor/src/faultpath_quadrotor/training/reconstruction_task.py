@@ -1,0 +1,193 @@
+"""Fitting the learned wind reconstruction: its data, its corruption and its loss."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import torch
+from torch import LongTensor, Tensor, nn
+from torch.nn import functional
+from typing_extensions import override
+
+from faultpath.core.errors import UserError
+from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.reconstruction.network import INTERVALS, WindNetwork
+from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
+from faultpath_quadrotor.training.fitting import ModelTask
+from faultpath_quadrotor.training.provenance import rows_sha256
+from faultpath_quadrotor.training.windows import HISTORY, Windows, windows_of
+from faultpath.learning.model_card import Schedule
+from faultpath.core.streams import generator
+
+HEAD = "reconstruction.head"
+SHORT_HISTORIES = 0.14
+"""Share of training windows with 1 to 11 intervals only: 11 of the roughly 80 control steps of a
+flight have no more (derived, docs/design/reconstruction.md)."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """What tells the models apart."""
+
+    description: str
+    pool: str = "wind"
+    calibrated: bool = True
+    half_range: float | None = None
+    """Of the noise on the head's calibration; `None`: the values are delivered as they are."""
+
+
+MODELS: Mapping[str, Model] = MappingProxyType(
+    {
+        "gru": Model("Wind from twelve completed intervals and calibration."),
+        "gru+dcc": Model(
+            "The same, trained with noise on the calibration that enters its head.",
+            half_range=DCC_HALF_RANGE,
+        ),
+        "gru-withheld": Model(
+            "Wind from twelve completed intervals alone, without calibration.", calibrated=False
+        ),
+        "gru-trajectory": Model(
+            "Wind from twelve completed intervals alone, learned in closed loop.",
+            pool="trajectory",
+            calibrated=False,
+        ),
+    }
+)
+"""The reference module, its repair, the control without calibration, and the one that learns from
+closed-loop flights, which has no calibration input (paper, Section V-A and V-B)."""
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """Windows as the network wants them, standardised once; N windows."""
+
+    intervals: Tensor  # [22, 12, N]
+    latest: Tensor  # [18, N]
+    calibration: Tensor  # m and T as they are, [2, N]
+    target: Tensor  # standardised wind, [3, N]
+    ids: tuple[str, ...]
+
+    @classmethod
+    def of(cls, windows: Windows, network: WindNetwork) -> _Samples:
+        intervals, latest = network.inputs(*_history(windows))
+        return cls(
+            intervals, latest, _calibration(windows), network.target(_wind(windows)), windows.ids
+        )
+
+
+class ReconstructionTask(ModelTask):
+    """One reconstruction: mean squared error of the standardised wind vector (paper, appendix).
+
+    A window's history is its commands 0..11 with the states 1..12 that they led to; the target is
+    the wind at state 12. A share of the windows keeps fewer intervals, drawn anew each epoch from
+    a stream of its own, because a flight begins with few.
+    """
+
+    def __init__(self, name: str, seed: int, data_folder: Path) -> None:
+        if name not in MODELS:
+            raise UserError(
+                f"there is no wind reconstruction '{name}' to fit; choose from {', '.join(MODELS)}."
+            )
+        self.name = name
+        self.seed = seed
+        self.platform = PLATFORM.weights_hash(name)
+        self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
+        self._model = MODELS[name]
+        self._data = data_folder
+        self._base = name.removesuffix("+dcc")
+        self._scaled = WindNetwork(self._model.calibrated)
+
+    @override
+    def load(self) -> None:
+        self.use(*windows_of(self._data / f"{self._model.pool}.parquet").split())
+
+    def use(self, training: Windows, validation: Windows) -> None:
+        """Take windows from memory, and the scales of inputs and target from the training ones."""
+        history = _history(training)
+        self._scaled.measure(*history, _calibration(training), _wind(training))
+        self._training = _Samples.of(training, self._scaled)
+        self._validation = _Samples.of(validation, self._scaled)
+        self._known = self._delivered = torch.empty(0)
+
+    @property
+    @override
+    def count(self) -> int:
+        return len(self._training.ids)
+
+    @property
+    @override
+    def order_key(self) -> str:
+        return self._base
+
+    @override
+    def module(self) -> nn.Module:
+        network = copy.deepcopy(self._scaled)
+        stream = generator("initial weights", self._base, self.seed)
+        network.initialise(torch.Generator().manual_seed(int(stream.integers(2**63))))
+        return network
+
+    def begin_epoch(self, epoch: int) -> None:
+        """Draw the lengths of the histories and what the head gets of the calibration."""
+        stream = generator("short histories", self._base, self.seed, epoch)
+        short = stream.random(self.count) < SHORT_HISTORIES
+        lengths = stream.integers(1, INTERVALS, size=self.count)
+        self._known = torch.from_numpy(lengths).masked_fill(torch.from_numpy(~short), INTERVALS)
+        if self._model.calibrated:
+            half_range = self._model.half_range
+            faults = () if half_range is None else (dcc([HEAD], half_range),)
+            mass, scale = self._training.calibration
+            readings = {"mass": mass, "thrust_scale": scale}
+            delivered = corrupted(faults, [HEAD], self._training.ids, self.seed, epoch, readings)
+            got = torch.stack([delivered["mass", HEAD], delivered["thrust_scale", HEAD]])
+            self._delivered = self._scaled.calibration(got)
+
+    @override
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        samples = self._training
+        estimate = net(
+            samples.intervals.index_select(2, index),
+            samples.latest.index_select(1, index),
+            self._delivered.index_select(1, index) if self._model.calibrated else None,
+            self._known[index],
+        )
+        return functional.mse_loss(estimate, samples.target.index_select(1, index))
+
+    @override
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
+        """Return the root mean square length of the wind's error, m/s.
+
+        Histories are full and the calibration is correct.
+        """
+        scales, samples = self._scaled, self._validation
+        known = scales.calibration(samples.calibration) if scales.calibrated else None
+        estimate = net(samples.intervals, samples.latest, known) * scales.wind_std
+        error = estimate - samples.target * scales.wind_std
+        return {"wind_rmse_mps": float(error.square().sum(0).mean().sqrt())}
+
+    @override
+    def describe(self) -> Mapping[str, Any]:
+        return {
+            "description": self._model.description,
+            "data_sha256": rows_sha256(self._data, [self._model.pool]),
+            "calibration_inputs": self._model.calibrated,
+            "calibration_noise_half_range": self._model.half_range,
+            "short_histories": SHORT_HISTORIES,
+        }
+
+
+def _history(windows: Windows) -> tuple[Tensor, Tensor]:
+    parts = (windows.position, windows.velocity, windows.rotation.flatten(0, 1), windows.rate)
+    return torch.cat(parts)[:, : HISTORY + 1], windows.command[:, :HISTORY]
+
+
+def _calibration(windows: Windows) -> Tensor:
+    return torch.stack((windows.mass_kg, windows.thrust_scale))
+
+
+def _wind(windows: Windows) -> Tensor:
+    return windows.wind_mps[:, HISTORY]

@@ -1,0 +1,66 @@
+"""What a flight leaves behind at every control instant, whoever flew it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor
+
+from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.plant import PlantState
+from faultpath_quadrotor.vehicle import VehicleParameters
+
+SIGNALS = {
+    "position": ("x_m", "y_m", "z_m"),
+    "velocity": ("vx_mps", "vy_mps", "vz_mps"),
+    "rotation": tuple(f"r{i}{j}" for i in range(3) for j in range(3)),
+    "rate": ("roll_rate_radps", "pitch_rate_radps", "yaw_rate_radps"),
+    "command": ("thrust_n", "roll_command_radps", "pitch_command_radps", "yaw_command_radps"),
+    "wind_mps": ("wind_x_mps", "wind_y_mps", "wind_z_mps"),
+    "motor_thrust_n": ("motor_thrust_n",),
+}
+"""What is recorded at each control instant, and the names of its components."""
+COMPONENTS = tuple(name for names in SIGNALS.values() for name in names)
+
+
+@dataclass(frozen=True)
+class Flights:
+    """What a batch of episodes left behind."""
+
+    values: np.ndarray
+    """float32 [C, N + 1, B] at the control instants, in the order of `COMPONENTS`; a command
+    stands at the instant from which it acts, and is not a number at the last one."""
+    steps: np.ndarray
+    """Control steps of each episode before it ended, [B]. Its states are 0..steps; what comes
+    after them is not part of it."""
+    vehicles: tuple[VehicleParameters, ...]
+
+
+def blank_values(steps: int, count: int) -> NDArray[np.float32]:
+    """Return `Flights.values` of flights of at most so many steps, all not a number yet."""
+    return np.full((len(COMPONENTS), steps + 1, count), np.nan, np.float32)
+
+
+def record(
+    values: NDArray[np.float32],
+    step: int,
+    now: PlantState,
+    wind_mps: Tensor,
+    command: Tensor | None = None,
+) -> None:
+    """Fill in one control instant from lanes of which the first are the flights.
+
+    `wind_mps` is `[3, L]`, `command` `[4, L]`; `None` where none acts any more.
+    """
+    state = now.state
+    parts = (
+        state.position,
+        state.velocity,
+        state.rotation.flatten(0, 1),
+        state.rate,
+        torch.full_like(wind_mps[:1], torch.nan).expand(4, -1) if command is None else command,
+        wind_mps,
+        now.thrusts.sum(0, keepdim=True),
+    )
+    values[:, step] = torch.cat(parts).float()[:, : values.shape[2]].to(CPU).numpy()

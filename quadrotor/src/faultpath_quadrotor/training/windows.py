@@ -1,0 +1,177 @@
+"""The windows that predictors and the reconstruction learn from: 12 steps of history, 20 ahead."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from faultpath_quadrotor.predictors import Physics
+from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.pool import FlightData, read_pool
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+
+HISTORY = 12  # paper, Section IV-A
+HORIZON = 20  # paper, Section IV-A
+COMMANDS = HISTORY + HORIZON
+STRIDE = 29
+"""Least spacing of the windows of an episode: four in one of 6 s. The paper's counts, 25,684 from
+7,150 episodes and 53,344 from 14,891, are 3.6 an episode of up to 6 s."""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Windows as float32 tensors, components first, then time, then the W windows.
+
+    Command k acts from state k to state k + 1. The present is state 12: history is states and
+    commands 0..11, the future is commands 12..31 and states 13..32.
+    """
+
+    position: Tensor
+    """World frame, m, [3, 33, W]."""
+    velocity: Tensor
+    """World frame, m/s, [3, 33, W]."""
+    rotation: Tensor
+    """Body to world, [3, 3, 33, W]."""
+    rate: Tensor
+    """Body frame, rad/s, [3, 33, W]."""
+    command: Tensor
+    """Collective thrust in N and body rates in rad/s, [4, 32, W]."""
+    wind_mps: Tensor
+    """World frame, at the control instants, [3, 33, W]."""
+    mass_kg: Tensor
+    """[W]"""
+    thrust_scale: Tensor
+    """[W]"""
+    inertia_kgm2: Tensor
+    """[3, W]"""
+    torque_scale: Tensor
+    """[W]"""
+    motor_time_constant_s: Tensor
+    """[W]"""
+    drag_kgps: Tensor
+    """[3, W]"""
+    motor_thrust_n: Tensor
+    """Sum of the motors before the thrust scale, [33, W]."""
+    episode: Tensor
+    """Index of the episode in its pool, long [W]."""
+    ids: tuple[str, ...]
+    """Pool, episode, and window in the episode: "nominal/00012/2"."""
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    def take(self, index: Tensor) -> Windows:
+        """Return the windows that `index` (long or bool, [n]) picks."""
+        if index.dtype == torch.bool:
+            index = index.nonzero()[:, 0]
+        return self._build(
+            lambda name: getattr(self, name).index_select(-1, index),
+            tuple(self.ids[i] for i in index.tolist()),
+        )
+
+    @property
+    def calibration(self) -> dict[str, Tensor]:
+        """The true calibration by channel, `[W]` each."""
+        return {"mass": self.mass_kg, "thrust_scale": self.thrust_scale}
+
+    def state(self, k: int) -> State:
+        """Return state `k` (0..32) of every window."""
+        return State(
+            self.position[:, k], self.velocity[:, k], self.rotation[:, :, k], self.rate[:, k]
+        )
+
+    def physics(self, k: int) -> Physics:
+        """Return the vehicles' own parameters, and what their motors hold at state `k`."""
+        return Physics(
+            self.inertia_kgm2,
+            self.torque_scale,
+            self.motor_time_constant_s,
+            self.drag_kgps,
+            self.motor_thrust_n[k],
+        )
+
+    def split(self, fraction_validation: float = 0.05) -> tuple[Windows, Windows]:
+        """Return the windows for training and those for validation, by episode.
+
+        A hash of pool and episode decides, so an episode is on the same side whatever else is
+        collected, joined or taken.
+        """
+        episodes = [name.rpartition("/")[0] for name in self.ids]
+        draws = {name: _unit(name) for name in dict.fromkeys(episodes)}
+        held_out = torch.tensor([draws[name] < fraction_validation for name in episodes])
+        return self.take(~held_out), self.take(held_out)
+
+    @classmethod
+    def join(cls, parts: Sequence[Windows]) -> Windows:
+        """Return the windows of several pools as one, in their order."""
+        return cls._build(
+            lambda name: torch.cat([getattr(part, name) for part in parts], dim=-1),
+            tuple(name for part in parts for name in part.ids),
+        )
+
+    @classmethod
+    def _build(cls, tensor: Callable[[str], Tensor], ids: tuple[str, ...]) -> Windows:
+        names = [field.name for field in fields(cls) if field.name != "ids"]
+        return cls(**{name: tensor(name) for name in names}, ids=ids)
+
+
+def windows_of(pool_path: Path) -> Windows:
+    """Return all windows of a pool; `UserError` when there is no finished pool to read."""
+    return cut(read_pool(pool_path))
+
+
+def starts(steps: int, stride: int = STRIDE) -> list[int]:
+    """Return the first step of each window in an episode of `steps` control steps.
+
+    They are spread evenly, at least `stride` apart, from the episode's start to its end.
+    """
+    room = steps - COMMANDS
+    if room < 0:
+        return []
+    gaps = room // stride
+    return [room * i // gaps for i in range(gaps + 1)] if gaps else [room // 2]
+
+
+def places(pool: FlightData, stride: int = STRIDE) -> np.ndarray:
+    """Return where the windows of a pool stand, [W, 3]: episode, number in it, first step."""
+    found = [
+        (episode, i, first)
+        for episode, steps in enumerate(pool.steps.tolist())
+        for i, first in enumerate(starts(steps, stride))
+    ]
+    return np.array(found, dtype=np.int64).reshape(-1, 3)
+
+
+def cut(pool: FlightData, stride: int = STRIDE) -> Windows:
+    """Return the windows of a pool in memory."""
+    table = places(pool, stride)
+    episode, first = table[:, 0].copy(), table[:, 2]
+    rows = np.arange(COMMANDS + 1)[:, None] + pool.first_row[episode] + first
+
+    def signal(name: str) -> Tensor:
+        channels = [COMPONENTS.index(component) for component in SIGNALS[name]]
+        at = rows[:-1] if name == "command" else rows
+        return torch.from_numpy(np.stack([pool.values[channel][at] for channel in channels]))
+
+    def tensor(name: str) -> Tensor:
+        if name == "episode":
+            return torch.from_numpy(episode)
+        if name in pool.vehicles:
+            return torch.from_numpy(np.take(pool.vehicles[name], episode, axis=-1)).float()
+        values = signal(name)
+        if name == "rotation":
+            return values.view(3, 3, *values.shape[1:])
+        return values[0] if name == "motor_thrust_n" else values
+
+    return Windows._build(tensor, tuple(f"{pool.name}/{e:05d}/{i}" for e, i, _ in table.tolist()))
+
+
+def _unit(name: str) -> float:
+    digest = hashlib.blake2b(name.encode(), digest_size=8, person=b"validation").digest()
+    return int.from_bytes(digest, "little") / 2**64

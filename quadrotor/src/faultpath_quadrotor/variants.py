@@ -1,0 +1,192 @@
+"""The ways to wire the quadrotor: which predictor plans, and what feeds its wind input.
+
+A variant is named by its wind input (`zero-wind`, `gru`, `dob`, `true-wind`), by its predictor
+(`wm-a+dcc`), or by both (`wm-a-wind/gru`). What a variant names takes the seed of its arm as the
+seed of its training; a predictor that it does not name is that of the options. Parts that the user
+brings stand beside those that ship, under the names by which they were brought; a planner makes a
+variant with the predictor of the options.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import torch
+
+from faultpath.loop import Module
+from faultpath_quadrotor.user_parts import Brought
+from faultpath_quadrotor.choices import ClearanceName
+from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators import Estimator, ExactEstimator
+from faultpath_quadrotor.models import (
+    PREDICTORS,
+    RECONSTRUCTIONS,
+    Kind,
+    predictor,
+    reconstruction,
+)
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.planners import Planner
+from faultpath_quadrotor.predictors import Predictor
+from faultpath_quadrotor.predictors.history import HistoryEncoder
+from faultpath_quadrotor.predictors.module import Prediction
+from faultpath_quadrotor.reconstruction import Reconstruction
+from faultpath_quadrotor.reconstruction.module import WindReconstruction
+from faultpath.trials import Wiring
+
+ZERO_WIND = "zero-wind"
+TRUE_WIND = "true-wind"
+
+_FIXED = {
+    ZERO_WIND: ("zero_wind", "taken for zero"),
+    TRUE_WIND: ("true_wind", "that of the simulator, as a reference"),
+}
+"""Source of the wind channel and its description, where no reconstruction supplies it."""
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a variant puts where."""
+
+    name: str
+    predictor: str
+    predictor_seed: int | None
+    """`None`: the seed of the arm."""
+    wind: str | None
+    """`None` for a predictor without a wind input."""
+    planner: str | None = None
+    """One that the user brings; `None` for that of the options."""
+    estimator: str | None = None
+    """One that the user brings; `None` for the exact one."""
+    brought: Mapping[str, Brought] = field(default_factory=dict[str, Brought])
+
+    @property
+    def uses(self) -> set[str | None]:
+        """The parts that it flies with."""
+        return {self.predictor, self.wind, self.planner, self.estimator}
+
+    def load_predictor(self, seed: int | None, device: torch.device = CPU) -> Predictor:
+        """Return the predictor for an arm of this seed; blank for `None`."""
+        fixed = self.predictor_seed is not None and seed is not None
+        trained = self.predictor_seed if fixed else seed
+        if self.predictor in self.brought:
+            return self.brought[self.predictor].load(trained, device)
+        return predictor(self.predictor, trained, device)
+
+    def load_reconstruction(
+        self, seed: int | None, device: torch.device = CPU
+    ) -> Reconstruction | None:
+        """Return the wind reconstruction for an arm of this seed, if the variant has one."""
+        if self.wind is None or self.wind in _FIXED:
+            return None
+        if self.wind in self.brought:
+            return self.brought[self.wind].load(seed, device)
+        return reconstruction(self.wind, seed, device)
+
+    def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
+        """Return the planner for an arm of this seed."""
+        if self.planner is None:
+            return options.build_planner()
+        return self.brought[self.planner].load(seed, options.place)
+
+    def load_estimator(self, seed: int | None, device: torch.device = CPU) -> Estimator | None:
+        """Return the user's estimator for an arm of this seed, if the variant has one."""
+        return self.brought[self.estimator].load(seed, device) if self.estimator else None
+
+    def wiring(self, options: QuadrotorOptions) -> Wiring:
+        """Describe the setup to an audit: in words, and which sources it takes."""
+        seen = options.clearance is not ClearanceName.TRUE
+        bindings = {
+            "clearance": "estimated_clearance" if seen else "true_clearance",
+            "wind": "zero_wind",
+        }
+        words = f"Prediction: {self._said(self.predictor, PREDICTORS)}"
+        if self.wind is not None:
+            bindings["wind"], said = _FIXED.get(self.wind) or (
+                "reconstructed_wind",
+                self._said(self.wind, RECONSTRUCTIONS),
+            )
+            words = f"{words}. Wind: {said}"
+        if self.planner is not None:
+            words = f"{words}. Planning: {self.brought[self.planner].description}"
+        if self.estimator is not None:
+            words = f"{words}. Estimating: {self.brought[self.estimator].description}"
+        return Wiring(f"{words}.", bindings)
+
+    def _said(self, name: str, shipped: Mapping[str, Kind[Any]]) -> str:
+        return (self.brought.get(name) or shipped[name]).description
+
+
+def setups(
+    options: QuadrotorOptions, brought: Mapping[str, Brought] | None = None
+) -> Iterator[Setup]:
+    """Yield every way to wire the quadrotor under these options, with the parts brought to it.
+
+    First come those that fly with what the options name: as many as there are such parts cover all.
+    """
+    every = list(_setups(options, brought or {}))
+    first: dict[str, Setup] = {}
+    named = {options.predictor, *(brought or {})}
+    for part in (options.predictor, *(brought or {})):
+        if not any(part in setup.uses for setup in first.values()):
+            using = (setup for setup in every if part in setup.uses)
+            best = max(using, key=lambda setup: len(setup.uses & named), default=None)
+            first |= {} if best is None else {best.name: best}
+    yield from first.values()
+    yield from (setup for setup in every if setup.name not in first)
+
+
+def _setups(options: QuadrotorOptions, mine: Mapping[str, Brought]) -> Iterator[Setup]:
+    chosen, seed = options.predictor, options.predictor_seed
+    winds = (ZERO_WIND, *RECONSTRUCTIONS, *_of(Reconstruction, mine), TRUE_WIND)
+    base = Setup(
+        chosen,
+        chosen,
+        seed,
+        None,
+        planner=options.planner if options.planner in mine else None,
+        estimator=options.estimator if options.estimator in mine else None,
+        brought=mine,
+    )
+    if _has_wind(chosen, mine):
+        for wind in winds:
+            yield replace(base, name=wind, wind=wind)
+    named = [
+        replace(base, name=name, predictor=name, predictor_seed=None)
+        for name in (*PREDICTORS, *_of(Predictor, mine))
+    ]
+    named += [replace(base, name=name, planner=name) for name in _of(Planner, mine)]
+    named += [replace(base, name=name, estimator=name) for name in _of(Estimator, mine)]
+    for setup in named:
+        windy = _has_wind(setup.predictor, mine)
+        yield replace(setup, wind=ZERO_WIND if windy else None)
+        for wind in winds if windy else ():
+            yield replace(setup, name=f"{setup.name}/{wind}", wind=wind)
+
+
+def _of(kind: type, brought: Mapping[str, Brought]) -> Iterator[str]:
+    return (name for name, part in brought.items() if isinstance(part.blank, kind))
+
+
+def _has_wind(name: str, brought: Mapping[str, Brought]) -> bool:
+    reads = brought[name].reads if name in brought else predictor(name, None).reads
+    return "wind_map" in reads
+
+
+def modelled(
+    predictor: Predictor,
+    reconstruction: Reconstruction | None,
+    device: torch.device,
+    estimator: Estimator | None = None,
+) -> list[Module]:
+    """Return the estimators and the modules of a predictor and a wind reconstruction, if any.
+
+    A flight has them before its planner, a recorded window before what was executed.
+    """
+    found: list[Module] = [] if estimator is None else [estimator]
+    found += [ExactEstimator(estimator.writes if estimator else ()), Prediction(predictor, device)]
+    if reconstruction is not None:
+        found.append(WindReconstruction(reconstruction, device))
+    if "history" in predictor.reads:
+        found.append(HistoryEncoder(predictor, device))
+    return found

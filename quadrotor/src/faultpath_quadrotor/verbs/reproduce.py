@@ -1,0 +1,119 @@
+"""`faultpath reproduce`: the paper's tables, figures and claims."""
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path, refuse_with
+
+if TYPE_CHECKING:
+    from faultpath_quadrotor.paper.reproduction import ReproductionRun
+    from faultpath.decisions import Ledger
+
+
+def command(
+    pages: Annotated[
+        list[str] | None, typer.Argument(help="`table-4`, `figure-3`, `text`, …; default all.")
+    ] = None,
+    profile: Annotated[
+        str | None, typer.Option(help="quick (few scenes, one seed; default) or paper (its size).")
+    ] = None,
+    judge: Annotated[
+        bool,
+        typer.Option(
+            "--judge",
+            help="Run nothing: judge the claims by the run that ships, or by that in --out.",
+        ),
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option(parser=path, help="Run folder; default runs/<name>-<code>.")
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="Worker processes; default one per core, or per GPU.")
+    ] = None,
+    device: Annotated[str | None, typer.Option(help="cpu (default) or cuda.")] = None,
+    executor: Executor = "local",
+    time_limit: TimeLimit = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print folder and record as JSON; words go to stderr.")
+    ] = False,
+) -> int:
+    """Run every study of the paper, or some of its pages, and compare the results with it."""
+    if judge:
+        refuse_with(
+            "--judge",
+            pages=pages or None,
+            profile=profile,
+            workers=workers,
+            device=device,
+            time_limit=time_limit,
+        )
+        return _judge(out, as_json)
+
+    from faultpath.api.display import Display, SafeConsole
+    from faultpath_quadrotor.paper.reproduction import reproduce
+
+    run = reproduce(
+        pages or (),
+        profile=profile or "quick",
+        folder=out,
+        workers=workers,
+        executor=executor,
+        device=device,
+        time_limit_s=time_limit,
+        progress=Display(SafeConsole(stderr=as_json), ("faultpath", *sys.argv[1:])),
+    )
+    if as_json:
+        record = run.record.model_dump(mode="json")
+        typer.echo(json.dumps({"folder": str(run.folder), "record": record}, indent=1))
+    else:
+        tell(run, whole=not pages)
+    return FAILED_TRIALS if run.record.failed_trials else 0
+
+
+def _judge(folder: Path | None, as_json: bool) -> int:
+    """Show the claims; those of a run that did not ship are judged by the code that is here."""
+    if folder is None:
+        from faultpath_quadrotor.paper.shipped import shipped_ledger
+
+        answers, profile = shipped_ledger(), "paper"
+    else:
+        answers, profile = _judged(folder)
+    if as_json:
+        typer.echo(json.dumps([each.model_dump(mode="json") for each in answers.claims], indent=2))
+        return 0
+    from faultpath.api.display import SafeConsole
+    from faultpath_quadrotor.paper.report.terminal import ledger_view
+
+    SafeConsole().print(ledger_view(answers, profile))
+    return 0
+
+
+def _judged(folder: Path) -> "tuple[Ledger, str]":
+    from faultpath_quadrotor.paper.claims import again
+    from faultpath_quadrotor.paper.run import read_results
+
+    results, found = read_results(folder)
+    return again(results, found.ledger), found.profile
+
+
+def tell(run: "ReproductionRun", whole: bool) -> None:
+    """Print what came out: the ledger of the whole paper, or the tables of its pages."""
+    from faultpath.api.display import SafeConsole
+    from faultpath_quadrotor.paper.report import words
+    from faultpath_quadrotor.paper.report.terminal import ledger_view
+    from faultpath.decisions.tables.terminal import drawn
+
+    console = SafeConsole()
+    profile = run.record.profile
+    if whole:
+        console.print(ledger_view(run.record.ledger, profile))
+    elif profile == words.QUICK:
+        console.print(f"{words.headline(run.record.ledger, profile)}. {words.VERDICTS}\n")
+    for table in () if whole else run.record.tables:
+        console.print(drawn(table))
+    page = run.folder / "reproduction.html"
+    console.print(f"Report: {page}", markup=False, soft_wrap=True)

@@ -1,0 +1,110 @@
+"""`faultpath.compare`: several finished audits side by side."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from faultpath.api.saved import RECORD
+from faultpath.core.errors import UserError
+from faultpath.trials.store.sealed import read_regular
+
+if TYPE_CHECKING:
+    from faultpath.api.run import Run
+    from faultpath.report.comparison.runs import Compared
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Comparison:
+    """Finished audits side by side; a notebook shows what differs, and the effects."""
+
+    runs: "tuple[Compared, ...]"
+    """Each with its `number`, `folder`, `record` and `provenance`."""
+
+    @property
+    def headline(self) -> str:
+        """How many audits there are, and where they are decided in opposite directions."""
+        from faultpath.report.comparison.page import headline
+
+        return headline(self.runs)
+
+    def report(self, path: str | PathLike[str]) -> Path:
+        """Write one page that needs no network, and return its path.
+
+        `UserError` where it cannot be written.
+        """
+        from faultpath.report.comparison.page import page
+        from faultpath.trials.store import write_text
+
+        write_text(Path(path), page(self.runs))
+        return Path(path)
+
+    def as_json(self) -> dict[str, object]:
+        """Return headline, sentences, what differs, and each record, for `json.dumps`."""
+        from faultpath.report.comparison.page import sentences
+        from faultpath.report.comparison.runs import differing
+
+        return {
+            "headline": self.headline,
+            "sentences": sentences(self.runs),
+            "differs": differing(self.runs),
+            "runs": [_folder_and_record(each) for each in self.runs],
+        }
+
+    def __repr__(self) -> str:
+        """Return the headline."""
+        return f"<Comparison: {self.headline}>"
+
+    def _repr_markdown_(self) -> str:
+        from faultpath.report.comparison.page import markdown
+
+        return markdown(self.runs)
+
+
+def _folder_and_record(run: "Compared") -> dict[str, object]:
+    """Return what `--json` prints of an audit, of sizes with what stands over all of them."""
+    found = folder_and_record(Path(run.folder))
+    if run.family is not None:
+        found["over_all_sizes"] = {
+            path: {"sign": sign, "adjusted_p_value": p} for path, (sign, p) in run.family.items()
+        }
+    return found
+
+
+def folder_and_record(folder: Path) -> dict[str, object]:
+    """Return what `--json` prints of an audit, for `json.dumps`."""
+    return {"folder": str(folder), "record": json.loads(read_regular(folder / RECORD))}
+
+
+def compare(runs: "Sequence[str | PathLike[str] | Run]") -> Comparison:
+    """Set finished audits side by side: effects path by path, what differs, who disagrees.
+
+    Nothing is tested between them: each keeps the verdict that it reached by itself. Sizes of one
+    fault are one family, and only what stands over all of them is called decided.
+
+    Args:
+        runs: Two or more finished audits, or their folders; each once.
+
+    Raises:
+        UserError: There are fewer than two, one is given twice, or a folder holds no finished
+            audit, or one that was changed since.
+    """
+    from faultpath.api.run import Run, open_run
+    from faultpath.report.comparison.runs import Compared
+    from faultpath.report.comparison.sweep import together
+
+    if isinstance(runs, str | PathLike) or len(runs) < 2:
+        raise UserError("comparing takes two or more runs: give the folders of finished audits.")
+    found: list[Compared] = []
+    places: set[Path] = set()
+    for number, each in enumerate(runs, 1):
+        run = each if isinstance(each, Run) else open_run(each)
+        if not isinstance(run, Run):
+            raise UserError(f"{run.folder} holds no audit: only finished audits can be compared.")
+        if run.folder.resolve() in places:
+            raise UserError(f"{run.folder} is given twice: give each run once.")
+        places.add(run.folder.resolve())
+        found.append(Compared(number, str(run.folder), run.record, run.provenance))
+    return Comparison(together(found))

@@ -1,0 +1,215 @@
+"""Flying trials of a finished run again: whether they come out as they did, and what was heard."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+
+from faultpath.api.saved import read_run
+from faultpath.api.systems import choose
+from faultpath.core.errors import UserError
+from faultpath.trials.execution.again import difference
+from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
+from faultpath.trials.execution.provenance import amend
+from faultpath.trials.execution.worker import Job
+from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.question import AuditQuestion
+from faultpath.decisions import DecisionRecord
+from faultpath.report.html import write_report
+from faultpath.report.inputs import ReportInput, Traces
+from faultpath.report.pairing import by_scene, read_pairs
+from faultpath.report.viewer_choice import choose as picked
+from faultpath.systems.checks.hearing import Listening, Overheard, listen, listen_here
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.atomic import write_file
+from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
+from faultpath.core.text import unknown
+from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
+from faultpath.trials.attempt import Died, Done, Wrong
+from faultpath.trials.state import system_code
+from faultpath.trials.work import Executor, local
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """One trial, flown again."""
+
+    address: TrialAddress
+    outcome: Outcome
+    """Of the run."""
+    differs: str
+    """How the second flight differs; empty where it is the same to the bit."""
+    signals: tuple[Signal, ...] = field(default=(), repr=False)
+
+
+def chosen_scenes(
+    held: ReportInput, scenes: Sequence[str], paths: Sequence[str]
+) -> tuple[str, ...]:
+    """Return the scenes to fly again, by default those that the report begins with.
+
+    `UserError` for a scene or path that the run has not got.
+    """
+    flown = list(dict.fromkeys(row.outcome.scene for row in held.outcomes.rows))
+    named = [path.name for path in held.record.paths]
+    for what, asked, known in (("scene", scenes, flown), ("path", paths, named)):
+        for name in asked:
+            if name not in known:
+                raise UserError(f"the run: {unknown(what, name, known)}")
+    if scenes:
+        return tuple(dict.fromkeys(scenes))
+    return tuple(scene for scene, _ in shown_first(held.record, held.outcomes, held.traces))
+
+
+def shown_first(
+    record: DecisionRecord, outcomes: OutcomeTable, traces: Traces
+) -> tuple[tuple[str, int], ...]:
+    """Return the scenes that the report begins with, and the seed of each."""
+    pairs = read_pairs(outcomes, record)
+    return picked(record, traces, pairs) or tuple(by_scene(pairs))[:1]
+
+
+def replay(
+    held: ReportInput,
+    scenes: Sequence[str],
+    paths: Sequence[str] = (),
+    tell: Callable[[str], None] = lambda said: None,
+) -> list[Replayed]:
+    """Fly the trials of some scenes again, on all paths or on some, in both arms.
+
+    Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
+    of the run.
+    """
+    asked = held.record.question
+    if SystemSpec(name=asked.system).is_object:
+        raise UserError(
+            f"the run flew a {asked.system}, which only its own process had: put what builds the "
+            "system into a file, and audit that."
+        )
+    chosen = choose(asked.system, asked.options, None, (asked.baseline, asked.repair))
+    system = chosen.system
+    library = library_of(system, asked.library)
+    if library.content_hash != asked.library_hash:
+        raise UserError(
+            f"library '{asked.library}' has other scenes than the run flew: bring its file back."
+        )
+    request = AuditQuestion(
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        seeds=asked.seeds,
+    )
+    study = plan_audit(system, chosen.spec, request, library).study
+    before = as_flown(held.outcomes, held.traces)
+    wanted = [
+        at
+        for at in before
+        if at.scene in scenes and at.path in (paths or {row.path for row in study.rows})
+    ]
+
+    def note(arm: Arm, done: int, total: int) -> None:
+        faults = " and ".join(fault.describe() for fault in arm.faults) or "correct inputs"
+        tell(f"Flew {arm.variant}, seed {arm.seed}, again: {faults} ({done} of {total}).")
+
+    with local(0) as hands:
+        return fly_again(before, study, asked.library_hash, system, hands, wanted, note)
+
+
+def as_flown(outcomes: OutcomeTable, traces: Traces) -> dict[TrialAddress, Outcome]:
+    """Return the trials of a run that ran to their end, with their tracks."""
+    return {
+        (at := TrialAddress(row.variant, row.path, row.seed, row.outcome.scene)): replace(
+            row.outcome, trace=traces.positions.get(at)
+        )
+        for row in outcomes.rows
+        if not row.outcome.failed
+    }
+
+
+def fly_again(
+    before: Mapping[TrialAddress, Outcome],
+    study: Study,
+    library_hash: str,
+    system: System,
+    executor: Executor,
+    asked: Iterable[TrialAddress],
+    note: Callable[[Arm, int, int], None],
+    time_limit_s: float | None = None,
+) -> list[Replayed]:
+    """Run some trials of a study again and listen; an arm that several paths share runs once.
+
+    Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
+    """
+    wanted = set(asked)
+    tasks: dict[str, Listening] = {}
+    addresses: dict[tuple[str, str], list[TrialAddress]] = {}
+    for row in study.rows:
+        scenes: list[str] = []
+        for scene in study.scenes:
+            at = TrialAddress(row.variant, row.path, row.seed, scene)
+            if at in wanted and at in before:
+                addresses.setdefault((row.arm.key(), scene), []).append(at)
+                scenes.append(scene)
+        if scenes:
+            old = tasks.get(row.arm.key())
+            every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
+            tasks[row.arm.key()] = Listening(row.arm, tuple(every))
+    code = system_code(system, study.system).state
+    found: list[Replayed] = []
+    waiting, done = list(tasks.values()), 0
+
+    def settle(task: Listening, reply: Overheard | Died | Wrong) -> None:
+        nonlocal done
+        done += 1
+        found.extend(_compared(task, reply, before, addresses))
+        note(task.arm, done, len(tasks))
+
+    job = Job(study.system, study.library, code, library_hash)
+    there, here = partial(listen, job), partial(listen_here, system)
+    call = here if executor.in_process else there
+    seconds = block_limit_s(system, time_limit_s)
+    dispatch = Dispatch[Listening](
+        executor, lambda task: partial(call, task), seconds, study.system.name
+    )
+    dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
+    order = {at: place for place, at in enumerate(before)}
+    return sorted(found, key=lambda each: order[each.address])
+
+
+def _compared(
+    task: Listening,
+    reply: Overheard | Died | Wrong,
+    before: Mapping[TrialAddress, Outcome],
+    addresses: dict[tuple[str, str], list[TrialAddress]],
+) -> Iterable[Replayed]:
+    heard = reply if isinstance(reply, Overheard) else Overheard(error=_said(reply))
+    for place, scene in enumerate(task.scenes):
+        for at in addresses[task.arm.key(), scene]:
+            if heard.error:
+                yield Replayed(at, before[at], f"failed: {heard.error}")
+                continue
+            differs = difference([before[at]], Done((heard.outcomes[place],), (), 0.0))
+            yield Replayed(at, before[at], differs, () if differs else heard.signals[place])
+
+
+def _said(reply: Died | Wrong) -> str:
+    if isinstance(reply, Died):
+        return reply.how
+    if isinstance(reply.error, UserError):
+        raise reply.error
+    return f"{type(reply.error).__name__}: {reply.error}"
+
+
+def keep_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> list[Path]:
+    """Write the signals beside the run's outcomes, with those of before, and its report again.
+
+    Returns what was written. `UserError` where the folder cannot be written.
+    """
+    write_signals(folder, held, found)
+    return [folder / SIGNALS, *write_report(read_run(folder)[0], folder)]
+
+
+def write_signals(folder: Path, held: ReportInput, found: Sequence[Replayed]) -> None:
+    """Write the signals beside the run's outcomes, with those of before."""
+    signals = {**held.signals, **{each.address: each.signals for each in found if each.signals}}
+    write_file(folder / SIGNALS, encode_signals(dict(sorted(signals.items()))), folder)
+    amend(folder, held.provenance, [SIGNALS])

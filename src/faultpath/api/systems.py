@@ -1,0 +1,163 @@
+"""A system from whatever names it: a name, a file, or the object itself."""
+
+import os
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import cast
+
+from faultpath import trials
+from faultpath.core.errors import UserError
+from faultpath.trials import System, SystemSpec
+from faultpath.trials.checks import check_system
+from faultpath.trials.options import as_text
+from faultpath.trials.registry import factory_name
+from faultpath.trials.work import Executor, local
+
+LOCAL, RAY = "local", "ray"
+"""Where trials fly."""
+
+_BRING = "bring"
+"""The option of a system that takes parts of the user's own, separated by commas; a system without
+it takes no parts."""
+
+_PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
+
+_LOADED = "_faultpath_loaded"
+"""Under which name an object keeps what it was loaded from."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A system, and how it is named."""
+
+    system: System
+    spec: SystemSpec
+    workers: int | None
+    executor: str = LOCAL
+    own: bool = False
+    """Whether it is an object of the caller's: nothing but this process has it."""
+    notice: str = ""
+
+
+def load_system(
+    system: str | PathLike[str], *, options: Mapping[str, object] | None = None
+) -> System:
+    """Build a system: what it reads, its variants, its libraries of scenes, to look at or to audit.
+
+    `system` is a name, `module:attribute`, `file.py:attribute`, or a file in which `create` builds
+    it; `options` are its own, such as `{"wind": "L3"}`. Raises `UserError` for a name or an option
+    that does not exist, and for a package that is missing.
+    """
+    spec = _spec(system, options or {})
+    built = trials.load_system(spec)
+    vars(built)[_LOADED] = spec, dict(vars(built))
+    return built
+
+
+def choose(
+    system: str | PathLike[str] | System,
+    options: Mapping[str, object],
+    workers: int | None,
+    variants: Sequence[str],
+    executor: str = LOCAL,
+) -> Chosen:
+    """Return the system to audit, with the parts that its variants name.
+
+    Raises as `load_system`, and for what an object cannot do and an executor that there is not.
+    """
+    check_executor(executor)
+    if not isinstance(system, System):
+        spec = with_parts(_spec(system, options), variants)
+        return Chosen(trials.load_system(spec), spec, workers, executor)
+    if options:
+        raise UserError(
+            "options build a system, and this one is built: give its name with the options, or "
+            "give them to load_system."
+        )
+    spec = _loaded(system)
+    if spec is not None:
+        spec = with_parts(spec, variants)
+        return Chosen(trials.load_system(spec), spec, workers, executor)
+    if workers or executor != LOCAL:
+        idle = "workers" if workers else "executor"
+        raise UserError(
+            "an object cannot be sent to worker processes: put what builds the system into a file "
+            f"and name that, as 'my_system.py:create', or leave {idle} out."
+        )
+    spec = SystemSpec.of_class(type(system))
+    check_system(system, spec.name)
+    notice = (
+        "The system is an object, so it runs in this process; one that is named, as "
+        "'my_system.py:create', runs in several."
+    )
+    return Chosen(system, spec, 0, own=True, notice=notice)
+
+
+def check_executor(executor: object) -> None:
+    """Raise `UserError` for what names no executor."""
+    if executor != LOCAL and executor != RAY and not str(executor).startswith(f"{RAY}:"):
+        raise UserError(
+            f"there is no executor {executor!r:.80}: use 'local', 'ray', or 'ray:HOST:PORT' with "
+            "the address of a cluster's head."
+        )
+
+
+def hands(system: System, workers: int | None, executor: str = LOCAL) -> Executor:
+    """Return what flies: processes of this machine, or the workers of a Ray cluster.
+
+    Where `workers` is left out, one for each core or CPU if the system gains by several. Raises
+    `UserError` for an executor that there is not or that cannot be used.
+    """
+    check_executor(executor)
+    count = 1 if workers is None and not system.parallel else workers
+    if executor == LOCAL:
+        return local((os.cpu_count() or 1) if count is None else count)
+    from faultpath.trials.work.ray_cluster import RayWorkers
+
+    return RayWorkers(executor.removeprefix(RAY).removeprefix(":"), count)
+
+
+def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
+    if not isinstance(system, str | PathLike):
+        raise UserError(
+            f"a system is a name, a file or a faultpath.System, not {system!r:.80}: name one as "
+            "'quadrotor' or 'my_system.py:create'."
+        )
+    name = os.fspath(cast("str | PathLike[str]", system))
+    return SystemSpec(name=factory_name(name), options=as_text(options))
+
+
+def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
+    """Return a system with the parts of the user's own that `variants` name among its options.
+
+    So worker processes, fingerprint and record get them as they get every option. A variant is
+    named by a part, or by a part and more after a slash, as in `my_model.py:create/gru`.
+    `UserError` for a file without the name of what builds the part, or a comma in its path.
+    """
+    named = [name for name in variants if ":" in name or name.endswith(".py")]
+    if not named or _BRING not in {option.name for option in trials.system_options(spec.name)}:
+        return spec
+    for name in named:
+        if ":" not in name:
+            raise UserError(
+                f"'{name}' is a file: name the function in it that builds your part too, as in "
+                f"'{name}:create'."
+            )
+        if "," in name:
+            raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
+    found = [part for part in spec.options.get(_BRING, "").split(",") if part]
+    found += [part for name in named for part in _PART.findall(name)]
+    options = {**spec.options, _BRING: ",".join(dict.fromkeys(found))}
+    return SystemSpec(name=spec.name, options=options)
+
+
+def _loaded(system: System) -> SystemSpec | None:
+    spec, before = vars(system).get(_LOADED, (None, {}))
+    now = {name: value for name, value in vars(system).items() if name != _LOADED}
+    same = all(name in now and now[name] is value for name, value in before.items())
+    more = [name for name in now if name not in before]
+    cached = (isinstance(getattr(type(system), name, None), cached_property) for name in more)
+    return spec if same and all(cached) else None

@@ -1,0 +1,116 @@
+"""Whose code an error comes from: that of a user's system, or faultpath's.
+
+A traceback is read from its innermost frame outward. Frames of the standard library and of
+installed packages are passed over, because they do what they are told. The first that is left
+decides.
+"""
+
+import os
+import sys
+import sysconfig
+import traceback
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, cast
+
+from faultpath.core.errors import SystemMistake, UserError
+from faultpath.core.misfits import misfit_of
+from faultpath.core.text import one_line
+
+_OURS = str(Path(__file__).resolve().parent) + os.sep
+_STANDARD = tuple(
+    os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
+)
+_PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
+
+_systems: set[str] = set()
+"""Folders of systems that are loaded, for those that are installed packages themselves."""
+
+_MISUSE = (TypeError, ValueError, AttributeError, LookupError)
+"""What comes of handing a function something that it does not take."""
+
+
+def note_system(file: str) -> None:
+    """Note that the code beside `file` is a system's, even where it is an installed package.
+
+    Python's own modules are nobody's system, whoever names one by mistake.
+    """
+    folder = os.path.dirname(os.path.realpath(file)) + os.sep
+    if not folder.startswith(_STANDARD) or any(part in folder for part in _PACKAGES):
+        _systems.add(folder)
+
+
+def place(error: BaseException) -> str:
+    """Return the innermost line of a system's own code that an error came through, or nothing."""
+    return next(filter(None, _frames(error)), "")
+
+
+def described(error: BaseException) -> str:
+    """Return kind and message of an error, in one line. It is stored with outcomes, so it names no
+    path: those differ from machine to machine."""
+    pydantic, refused = sys.modules.get("pydantic"), cast(Any, error)
+    if pydantic is not None and isinstance(error, pydantic.ValidationError):
+        return one_line(f"{refused.title} cannot be made: {misfit_of(refused)}")
+    try:
+        said = error.msg if isinstance(error, SyntaxError) else str(error)
+    except Exception:  # an error of the system's own may fail even at that
+        said = ""
+    return one_line(f"{type(error).__name__}: {said}" if said else type(error).__name__)
+
+
+def located(error: UserError) -> UserError:
+    """Note in a `SystemMistake` which line of the system's code brought it about."""
+    if isinstance(error, SystemMistake) and not error.place:
+        error.place = place(error)
+    return error
+
+
+def explained(error: BaseException) -> UserError | None:
+    """Return what to tell the author of a system; `None` for an error that is faultpath's own.
+
+    An error raised in the system's code is its author's. Where that code called faultpath's, and
+    the error is of a kind that a wrong argument causes, either may be at fault.
+    """
+    if isinstance(error, UserError):
+        return located(error)
+    found, innermost = place(error), next(_frames(error), "")
+    if not found or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
+        return None
+    what = described(error)
+    if isinstance(error, SystemExit):
+        said = f"the system ends the program ({what}); let it raise an error instead"
+    elif innermost:
+        said = f"{what}; correct the system there, or see all of it with --traceback"
+    else:
+        said = (
+            f"faultpath fails on what it is handed there ({what}); correct the call, or see with "
+            "--traceback whether the fault is faultpath's"
+        )
+    mistake = SystemMistake(said)
+    mistake.place, mistake.__cause__ = found, error
+    return mistake
+
+
+def _frames(error: BaseException) -> Iterator[str]:
+    if isinstance(error, SyntaxError) and error.filename and not _passed_over(error.filename):
+        yield _said(error.filename, error.lineno or 1)
+    for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
+        file = os.path.realpath(frame.f_code.co_filename)
+        if file.startswith(_OURS):
+            yield ""
+        elif not _passed_over(frame.f_code.co_filename):
+            yield _said(file, line)
+
+
+def _passed_over(name: str) -> bool:
+    if name.startswith("<"):  # code without a file: frozen modules, generated methods
+        return True
+    file = os.path.realpath(name)
+    if file.startswith(tuple(_systems)):
+        return False
+    return file.startswith((_OURS, *_STANDARD)) or any(part in file for part in _PACKAGES)
+
+
+def _said(file: str, line: int) -> str:
+    near = os.path.relpath(file)
+    return f"{file if near.startswith(os.pardir) else near}, line {line}"

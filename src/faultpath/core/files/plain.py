@@ -1,0 +1,244 @@
+"""Data in YAML and JSON, read strictly: what is a number to one reader is text to none.
+
+Numbers are those of JSON, finite and in ASCII. Keys are text, each once. Aliases and tags, which
+let a short file grow without end, are not read.
+"""
+
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, NoReturn, TypeVar, cast
+
+import yaml
+from pydantic import BaseModel, ValidationError
+from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, NodeEvent
+from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+
+from faultpath.core.misfits import misfit_of
+
+LONGEST = 1_000_000
+"""Bytes of a YAML file."""
+_DEEPEST = 12
+_DIGITS = 19
+_TYPE = "tag:yaml.org,2002:"
+_Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C it is four times as fast
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+class Misread(ValueError):
+    """Why data cannot be read, in words that follow a colon; `line` where that is known."""
+
+    def __init__(self, says: str, line: int | None = None) -> None:
+        super().__init__(says)
+        self.line = line
+
+    def at(self, where: object) -> str:
+        """Return `where`, the line, and what is wrong."""
+        return f"{where}: {self}" if self.line is None else f"{where}, line {self.line}: {self}"
+
+
+def text_of(data: bytes) -> str:
+    """Return UTF-8 text; `Misread` for anything else."""
+    if data.startswith(b"\xef\xbb\xbf"):
+        raise Misread("begins with a byte order mark; save it as UTF-8 without one")
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise Misread("is not UTF-8 text; save it as UTF-8") from None
+    if "\0" in text:
+        raise Misread(
+            "holds a null character, and is no text", text[: text.index("\0")].count("\n") + 1
+        )
+    return text
+
+
+def read_json(data: bytes) -> Any:
+    """Return what JSON says; `Misread` for anything that is not strictly JSON."""
+
+    def no_number(said: str) -> NoReturn:
+        raise Misread(f"holds {said}, which is no number of JSON")
+
+    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for key, value in pairs:
+            if key in found:
+                raise Misread(f"key '{key}' appears twice; drop one")
+            found[key] = value
+        return found
+
+    try:
+        return json.loads(
+            text_of(data),
+            parse_constant=no_number,
+            parse_int=_whole,
+            parse_float=_fraction,
+            object_pairs_hook=once,
+        )
+    except json.JSONDecodeError as error:
+        raise Misread(f"is not JSON ({error.msg})", error.lineno) from None
+    except RecursionError:
+        raise Misread("is nested too deeply") from None
+
+
+def model_of(data: bytes, model: type[_Model]) -> _Model:
+    """Return a model from JSON that faultpath wrote; `Misread` for what is none."""
+    read_json(data)
+    try:
+        return model.model_validate_json(data)
+    except ValidationError as error:
+        raise Misread(str(misfit_of(error))) from None
+
+
+@dataclass(frozen=True)
+class Document:
+    """A YAML file that was read."""
+
+    data: Any
+    """Of the types of JSON."""
+    _root: Node | None
+
+    def line(self, path: Sequence[str | int]) -> int:
+        """Return the line of the deepest part of `path` that the file has, counted from one."""
+        node = self._root
+        line = 1 if node is None else node.start_mark.line + 1
+        for part in path:
+            for key, shown, value in _items(node):
+                if key == part:
+                    node, line = value, shown.start_mark.line + 1
+                    break
+            else:
+                break
+        return line
+
+    def fill(self, model: type[_Model]) -> _Model:
+        """Return the data as a model; `Misread` for what does not fit, and how much more."""
+        try:
+            return model.model_validate_json(json.dumps(self.data), strict=True)
+        except ValidationError as error:
+            found = misfit_of(error, model)
+            tail = f" ({found.more} more to correct after it)" if found.more else ""
+            raise Misread(f"{found}{tail}", self.line(found.place)) from None
+
+
+def read_yaml(data: bytes) -> Document:
+    """Return what a YAML file says; `Misread` for anything that is not plain."""
+    if len(data) > LONGEST:
+        raise Misread(f"is too long; at most {LONGEST} bytes are read")
+    text = text_of(data)
+    try:
+        _check_events(cast(Any, yaml).parse(text, Loader=_Loader))
+        root: Node | None = cast(Any, yaml).compose(text, Loader=_Loader)
+    except yaml.MarkedYAMLError as error:
+        said = " ".join(" ".join(filter(None, (error.context, error.problem))).split())
+        line = None if error.problem_mark is None else error.problem_mark.line + 1
+        raise Misread(f"is not plain YAML ({said}); correct it", line) from None
+    except yaml.YAMLError as error:
+        said = " ".join(str(error).split())
+        raise Misread(f"is not plain YAML ({said}); correct it") from None
+    return Document(None if root is None else _value(root), root)
+
+
+def yaml_text(data: Any, **style: Any) -> str:
+    """Return YAML that `read_yaml` reads as the same, and other readers too."""
+    return cast(Any, yaml).dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, **style)
+
+
+class _Loader(_Safe):
+    """Knows text, numbers, truth values and nothing else."""
+
+    yaml_implicit_resolvers: ClassVar[dict[str, Any]] = {}
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes what either reader would take for something else than text."""
+
+
+_INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*)$")
+_NUMBER = re.compile(
+    r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?$"
+    r"|[-+]?\.(?:inf|Inf|INF)$|\.(?:nan|NaN|NAN)$"
+)
+_TRUTH = re.compile(
+    r"(?:yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF)$"
+)
+_NOTHING = re.compile(r"(?:~|null|Null|NULL|)$")
+for _class in (_Loader, _Dumper):
+    for _name, _pattern, _first in (
+        ("null", _NOTHING, ["~", "n", "N", ""]),
+        ("bool", _TRUTH, list("yYnNtTfFoO")),
+        ("int", _INTEGER, list("-+0123456789")),
+        ("float", _NUMBER, list("-+.0123456789")),
+    ):
+        cast(Any, _class).add_implicit_resolver(_TYPE + _name, _pattern, _first)
+
+
+def _check_events(events: Iterator[Any]) -> None:
+    """Refuse what makes a short file expensive to read, before anything is made of it."""
+    depth = 0
+    for event in events:
+        line = event.start_mark.line + 1
+        depth += isinstance(event, CollectionStartEvent) - isinstance(event, CollectionEndEvent)
+        if depth > _DEEPEST:
+            raise Misread("is nested too deeply; a file of this kind has few levels", line)
+        if isinstance(event, AliasEvent):
+            raise Misread("aliases are not read; write it out", line)
+        if isinstance(event, NodeEvent) and (tag := getattr(event, "tag", None)) is not None:
+            raise Misread(f"tags are not read; drop '{tag.replace(_TYPE, '!!')}'", line)
+
+
+def _value(node: Node) -> Any:
+    if isinstance(node, MappingNode):
+        found: dict[str, Any] = {}
+        for key, value in cast(list[tuple[Node, Node]], node.value):
+            line = key.start_mark.line + 1
+            if not isinstance(key, ScalarNode):
+                raise Misread("a key is no text; write a word before the colon", line)
+            if key.value in found:
+                raise Misread(f"key '{key.value}' appears twice; drop one", line)
+            found[cast(str, key.value)] = _value(value)
+        return found
+    if isinstance(node, SequenceNode):
+        return [_value(each) for each in cast(list[Node], node.value)]
+    text = cast(str, node.value)
+    try:
+        match node.tag.removeprefix(_TYPE):
+            case "null":
+                return None
+            case "bool":
+                return text.lower() in ("yes", "true", "on")
+            case "int":
+                return _whole(text)
+            case "float":
+                return _fraction(text)
+            case _:
+                return text
+    except Misread as error:
+        raise Misread(str(error), node.start_mark.line + 1) from None
+
+
+def _whole(text: str) -> int:
+    if len(text.lstrip("+-")) > _DIGITS:
+        raise Misread(f"the number {_short(text)} is out of range; write at most {_DIGITS} digits")
+    return int(text)
+
+
+def _fraction(text: str) -> float:
+    plain = text.lower().replace(".inf", "inf").replace(".nan", "nan")
+    if not math.isfinite(number := float(plain)):
+        raise Misread(f"the number {_short(text)} is out of range; write a finite one")
+    return number
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:20]}… of {len(text)} characters"
+
+
+def _items(node: Node | None) -> Iterator[tuple[Any, Node, Node]]:
+    if isinstance(node, MappingNode):
+        for key, value in cast(list[tuple[Node, Node]], node.value):
+            yield (key.value if isinstance(key, ScalarNode) else None), key, value
+    elif isinstance(node, SequenceNode):
+        for index, value in enumerate(cast(list[Node], node.value)):
+            yield index, value, value

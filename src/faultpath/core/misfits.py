@@ -1,0 +1,148 @@
+"""What does not fit a model of data, in words: the field, what is wrong, what is allowed.
+
+Pydantic's own sentences are written for programmers; whatever tells a user of one asks here.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast, get_args
+
+from faultpath.core.text import printable, unknown
+
+if TYPE_CHECKING:
+    from pydantic import BaseModel, ValidationError
+
+_BRANCH = re.compile(r".*[\[(].*|constrained-.*|float|int|str|bool|none|[A-Z]\w*")
+"""What stands in a place for a branch that was tried and is no key: `float`, `literal['fit']`."""
+_NUMBER, _WHOLE = "a number", "a whole number"
+_KINDS = {
+    "string": "text",
+    "bytes": "text",
+    "int": _WHOLE,
+    "finite": "a finite number",
+    "bool": "true or false",
+    "none": "nothing",
+    "path": "a path",
+    **dict.fromkeys(("float", "decimal", "complex"), _NUMBER),
+    **dict.fromkeys(("tuple", "list", "set", "frozen", "iterable"), "a list"),
+    **dict.fromkeys(("dict", "mapping", "model", "dataclass"), "a group of fields, `name: value`"),
+}
+"""What is allowed, by the first word of a kind of error."""
+_WITH = {
+    "greater_than": "a number above {gt:g}",
+    "greater_than_equal": "a number of at least {ge:g}",
+    "less_than": "a number below {lt:g}",
+    "less_than_equal": "a number of at most {le:g}",
+    "multiple_of": "a multiple of {multiple_of:g}",
+    "literal_error": "{expected}",
+    "enum": "{expected}",
+    "union_tag_invalid": "of the {discriminator} {expected_tags}",
+    "union_tag_not_found": "fields with a {discriminator} among them",
+    "string_pattern_mismatch": "text of the form {pattern}",
+    "string_too_short": "text of at least {min_length} characters",
+    "string_too_long": "text of at most {max_length} characters",
+    "too_short": "of at least {min_length} values, and has {actual_length}",
+    "too_long": "of at most {max_length} values, and has {actual_length}",
+    "is_instance_of": "a {class}",
+}
+"""What is allowed, by the kind of error, with what the error says of it."""
+_SHOWN = 60
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """What is wrong first, and how much more there is."""
+
+    place: tuple[str | int, ...]
+    """Keys and indices that lead to it."""
+    says: str
+    """In words that follow a colon; what is allowed is among them."""
+    more: int = 0
+    """How many other places are wrong too."""
+    names_it: bool = False
+    """Whether the words name the place themselves."""
+
+    @property
+    def where(self) -> str:
+        """The field: `audits[0].name`; empty for the whole."""
+        steps = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.place)
+        return printable("".join(steps).removeprefix("."))
+
+    def __str__(self) -> str:
+        return self.says if self.names_it or not self.where else f"{self.where}: {self.says}"
+
+
+def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) -> Misfit:
+    """Return what is wrong in words. With the `model`, an unknown field comes with the known."""
+    found = error.errors(include_url=False)
+    first = found[0]
+    if where := first.get("ctx", {}).get("where"):  # a sentence of faultpath's own
+        return Misfit(tuple(where), str(first["msg"]), len(found) - 1, names_it=True)
+    if first["type"] == "missing":
+        # What is misspelt is missing as well; the word that stands there says more.
+        beside = first["loc"][:-1]
+        strange = (e for e in found if e["type"] == "extra_forbidden" and e["loc"][:-1] == beside)
+        first = next(strange, first)
+    place = _place(first)
+    same = [each for each in found if _place(each) == place]
+    rest = {_place(each) for each in found} - {place}
+    return Misfit(place, _said(same, _fields(model, place[:-1])), len(rest))
+
+
+def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
+    steps = cast("tuple[str | int, ...]", error["loc"])
+    last = len(steps) - 1 if error["type"] in ("missing", "extra_forbidden") else len(steps)
+    return tuple(
+        step
+        for at, step in enumerate(steps)
+        if isinstance(step, int) or at == last or not _BRANCH.fullmatch(step)
+    )
+
+
+def _said(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
+    """Say what is wrong at one place: `errors` are of the branches that were tried."""
+    first = errors[0]
+    kind, context = str(first["type"]), first.get("ctx", {})
+    if kind == "missing":
+        return "is missing: add it"
+    if kind == "extra_forbidden":
+        name = str(first["loc"][-1])
+        told = unknown("field", name, known).removeprefix(f"unknown field '{name}'")
+        return f"is no field{told if known else ''}; correct its spelling or drop it"
+    if kind in ("value_error", "assertion_error"):
+        return str(context["error"]).rstrip(".") if "error" in context else "does not fit"
+    allowed = [said for said in dict.fromkeys(map(_allowed, errors)) if said]
+    if {_NUMBER, _WHOLE} <= set(allowed):
+        allowed.remove(_WHOLE)
+    must = f"and must be {' or '.join(allowed)}" if allowed else "which does not fit"
+    return f"is {_shown(first['input'])}, {must}"
+
+
+def _allowed(error: Mapping[str, Any]) -> str:
+    kind = str(error["type"])
+    if kind in _WITH:
+        return _WITH[kind].format_map(error.get("ctx", {}))
+    return _KINDS.get(kind.partition("_")[0], "")
+
+
+def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
+    from pydantic import BaseModel
+
+    if isinstance(model, type) and issubclass(model, BaseModel):
+        names = [step for step in place if isinstance(step, str)]
+        if not names:
+            return tuple(model.model_fields)
+        field = model.model_fields.get(names[0])
+        return () if field is None else _fields(field.annotation, names[1:])
+    return tuple(name for part in get_args(model) for name in _fields(part, place))
+
+
+def _shown(given: object) -> str:
+    if given is None or isinstance(given, bool):
+        return {None: "empty", True: "true", False: "false"}[given]
+    try:
+        text = printable(repr(given))
+    except Exception:  # whatever a system's own object does when it is printed
+        return f"a {type(given).__name__}"
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 1]}…"

@@ -1,0 +1,299 @@
+"""From the outcome table to the decision record."""
+
+from collections.abc import Iterable, Sequence
+
+from faultpath.core.errors import UserError
+from faultpath.decisions import phrases, wording
+from faultpath.decisions.compared import Compared, compared
+from faultpath.decisions.described import cells_of, percent, secondary, untested_paths
+from faultpath.decisions.family import Family, alpha_shares, decide_paths, led
+from faultpath.decisions.model import (
+    CORRECT,
+    SHARED,
+    Change,
+    DecisionRecord,
+    Effect,
+    FailedTrials,
+    Path,
+    PathBreakEven,
+    Stopped,
+    Verdict,
+)
+from faultpath.decisions.recorded_question import EarlierLook, Question
+from faultpath.decisions.summary import headline
+from faultpath.statistics import (
+    Region,
+    Resamples,
+    break_even,
+    detectable,
+    mixture_curve,
+    only,
+)
+from faultpath.statistics.distributions import sign_p_value
+from faultpath.statistics.estimate import EM
+from faultpath.trials.pairing import mismatch_words
+from faultpath.trials.table import OutcomeTable
+
+FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
+
+
+def decide(
+    question: Question,
+    paths: Sequence[Path],
+    table: OutcomeTable,
+    resamples_seed: int = 0,
+    findings: Sequence[str] = (),
+) -> DecisionRecord:
+    """Return the decision record of an audit.
+
+    Scenes in which a pair is void on any path are left out of all of them, so that every effect
+    speaks of the same scenes; a path that would leave no scene is left out itself, and named. Seeds
+    that gave the same outcomes everywhere are counted once. The record carries `findings`, and what
+    was found about its pairs. `UserError` when no scene is left under correct inputs, for a primary
+    path that the audit does not have, and where newly trained models are asked for and all seeds
+    gave the same.
+    """
+    asked = question.model_copy(update={"primary": primary_path(question.primary, paths)})
+    found = _compared(asked, paths, table)
+    if asked.generalise == "models" and next(iter(found.arms.values()))[0].shape[1] < 2:
+        raise UserError(
+            "all seeds gave the same outcome in every trial, so they say nothing of newly trained "
+            "models: leave --generalise models out."
+        )
+    cells = cells_of(asked, paths, table)
+    untested = untested_paths(paths, cells)
+    resamples = Resamples.draw(question.library_hash, found.scenes, seed=resamples_seed)
+    family = _family(asked, paths, found, untested, resamples)
+    effects = {
+        path: _effect(asked, path, found, family, resamples, path not in untested)
+        for path in found.arms
+    }
+    record = DecisionRecord(
+        question=asked,
+        paths=tuple(paths),
+        cells=cells,
+        effects=tuple(effects.values()),
+        changes=tuple(_change(asked, path, family) for path in family.changes),
+        break_even=tuple(
+            _break_even(asked, family, effects[CORRECT], effects[path])
+            for path in effects
+            if path != CORRECT and path not in untested
+        ),
+        scenes=found.scenes,
+        scenes_needed=family.scenes_needed,
+        hypotheses=family.hypotheses,
+        estimand=phrases.estimand(asked),
+        verdict=Verdict(headline="", sentences=(), would_change=()),
+        stopped=_stopped(asked, family, table),
+    )
+    noted = (
+        *(f"{phrases.no_pair(path)}: the table shows what failed." for path in found.void),
+        *phrases.failed_trials(record),
+        *mismatch_words(found.mismatches),
+        *findings,  # of a record that is decided anew, with some of the above among them
+    )
+    said = phrases.verdict(record, headline(record))
+    return record.model_copy(update={"verdict": said, "findings": tuple(dict.fromkeys(noted))})
+
+
+def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:
+    """Return whether a sequential audit stops with these trials; their order does not matter."""
+    try:
+        found = _compared(question, paths, table)
+    except UserError:  # no pair is sound so far
+        return False
+    untested = untested_paths(paths, cells_of(question, paths, table))
+    held = _stopped(question, _family(question, paths, found, untested, None), table)
+    return held is not None and held.reached
+
+
+def primary_path(named: str, paths: Sequence[Path]) -> str:
+    """Return the path of the primary contrast: as named, else the shared one, else the isolated.
+
+    `UserError` for a name that the audit does not have.
+    """
+    names = [path.name for path in paths]
+    if named and named not in names:
+        raise UserError(
+            f"the audit has no path '{named}' to be its primary contrast: it has "
+            f"{', '.join(names)}."
+        )
+    return led(named, names)
+
+
+def after_looks(record: DecisionRecord, earlier: Iterable[DecisionRecord]) -> DecisionRecord:
+    """Return a record that tells of other conclusions from its trials, and what they cost.
+
+    `earlier` are records of the same arms by the same code, with the looks that they tell of. The
+    same question asked again is no look, and one with too few scenes to announce anything is none.
+    A sequential audit allows for all looks with the same primary contrast.
+    """
+    known: list[EarlierLook] = []
+    for each in earlier:
+        known += each.earlier if each.few else (*each.earlier, _look(each.question))
+    looks = tuple(look for look in dict.fromkeys(known) if look != _look(record.question))
+    if not looks:
+        return record
+    record = record.model_copy(update={"earlier": looks})
+    return record.model_copy(update={"findings": (*record.findings, phrases.looks(record))})
+
+
+def _look(asked: Question) -> EarlierLook:
+    if asked.stop is not None:
+        return EarlierLook(scenes=None, primary=asked.primary)
+    return EarlierLook(
+        scenes=asked.n_scenes,
+        primary=asked.primary,
+        generalise=asked.generalise,
+        rule=asked.rule,
+    )
+
+
+def _compared(question: Question, paths: Sequence[Path], table: OutcomeTable) -> Compared:
+    names = [path.name for path in paths]
+    arms = question.repair, question.baseline
+    return compared(*arms, names, table, distinct=question.stop is None)
+
+
+def _family(
+    question: Question,
+    paths: Sequence[Path],
+    found: Compared,
+    untested: Sequence[str],
+    resamples: Resamples | None,
+) -> Family:
+    shares = alpha_shares([path.name for path in paths], question.primary)
+    return decide_paths(
+        found.arms,
+        rule=question.rule,
+        primary=question.primary,
+        resamples=resamples,
+        models=question.generalise == "models",
+        untested=untested,
+        shares=None if question.stop is None else shares,
+        voids=found.voids,
+    )
+
+
+def _stopped(question: Question, family: Family, table: OutcomeTable) -> Stopped | None:
+    """Return how a sequential audit stands with these trials; `None` of one that is not."""
+    rule = question.stop
+    if rule is None:
+        return None
+    small = tuple(p for p in family.effects if _within(family, p, rule.margin_pp or 0.0))
+    settled = {path for path, effect in family.effects.items() if effect.sign or path in small}
+    wanted = set(family.effects) if rule.when == "all-decided" else {question.primary}
+    scenes = len({row.outcome.scene for row in table.rows})
+    return Stopped(scenes=scenes, reached=wanted <= settled, small=small)
+
+
+def _within(family: Family, path: str, margin_pp: float) -> bool:
+    """Return whether the effect is smaller than the margin, at the level of its share.
+
+    Every claim on a contrast, of who is ahead or of how little, follows from this one interval.
+    """
+    effect = family.effects[path]
+    if effect.decision is None or effect.n_scenes < family.scenes_needed:
+        return False
+    level = 1.0 - effect.decision.critical_p
+    for each in (effect, *family.fills.get(path, ())):  # whatever failed trials would have been
+        low, high = each.ends(level) or (-100.0, 100.0)
+        if low <= -margin_pp or high >= margin_pp:
+            return False
+    return True
+
+
+def _effect(
+    asked: Question,
+    path: str,
+    found: Compared,
+    family: Family,
+    resamples: Resamples,
+    acted: bool,
+) -> Effect:
+    repair, baseline = found.arms[path]
+    effect, pairs = family.effects[path], found.pairs[path]
+    assert effect.counts is not None
+    assert effect.test is not None
+    counts = effect.counts.per_seed
+    wins, losses = (tuple(getattr(c, f) for c in counts) for f in ("first_only", "second_only"))
+    rates = percent(baseline), percent(repair)
+    failed, least = None, None
+    if path in family.fills:
+        fills, voids = family.fills[path], found.voids[path]
+        failed = FailedTrials(
+            repair=voids.failed[0],
+            baseline=voids.failed[1],
+            against_pp=fills.against.value,
+            favour_pp=fills.favour.value,
+            uneven=voids.uneven,
+            unsettled=f"effect/{path}" in family.unsettled,
+        )
+    # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
+    # that stops where it has decided.
+    if effect.decision and asked.generalise == "scenes" and asked.stop is None:
+        level = effect.decision.critical_p
+        least = detectable(repair, baseline, rule=asked.rule, alpha=level, on_top=True)
+    return Effect(
+        path=path,
+        success=effect.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
+        sign=effect.sign,
+        test=effect.test.name,
+        p_value=effect.test.p_value,
+        adjusted_p_value=effect.decision.adjusted_p if effect.decision else None,
+        mcnemar_p_value=sign_p_value(wins[0], losses[0]) if effect.test.name == EM else None,
+        scenes=len(pairs.scenes),
+        void_pairs=pairs.void,
+        failed=failed,
+        wins=wins,
+        losses=losses,
+        baseline_percent=rates[0],
+        repair_percent=rates[1],
+        extreme="floor"
+        if max(rates) < FLOOR_PERCENT
+        else "ceiling"
+        if min(rates) > CEILING_PERCENT
+        else None,
+        acted=acted,
+        minimum_detectable_pp=least,
+        **secondary(pairs, resamples, asked),
+    )
+
+
+def _change(asked: Question, path: str, family: Family) -> Change:
+    found = family.changes[path]
+    assert found.test is not None
+    assert found.decision is not None
+    return Change(
+        isolated=path,
+        shared=SHARED,
+        change=found.estimate().model_copy(update={"estimand": phrases.estimand(asked)}),
+        sign=found.sign,
+        test=found.test.name,
+        p_value=found.test.p_value,
+        adjusted_p_value=found.decision.adjusted_p,
+        unsettled=f"change/{path}" in family.unsettled,
+        turn=family.turns[path],
+    )
+
+
+def _break_even(asked: Question, family: Family, correct: Effect, faulty: Effect) -> PathBreakEven:
+    ends = family.effects[CORRECT], family.effects[faulty.path]
+    level = 1.0 - min(end.decision.critical_p for end in ends if end.decision)
+    found = break_even(*ends, level=level)
+    borne_out = [each for each in found.regions if _borne_out(each, correct, faulty)]
+    return PathBreakEven(
+        path=faulty.path,
+        result=only(found, borne_out),
+        curve=mixture_curve(*ends, level=level),
+        words=phrases.frequency(asked, found.regions, correct, faulty),
+    )
+
+
+def _borne_out(region: Region, correct: Effect, faulty: Effect) -> bool:
+    """Return whether effects bear a region out to the end: what a table and a picture show."""
+    low = region.low > 0.0 or (correct.leads and region.sign == correct.sign)
+    high = region.high < 1.0 or (faulty.leads and region.sign == faulty.sign)
+    inner = region.low > 0.0 and region.high < 1.0
+    shown = wording.last(region.high) > 0 and wording.first(region.low) < 100
+    return low and high and not inner and shown

@@ -1,0 +1,127 @@
+"""What is told of a path and decides nothing: how trials ended, times, metrics."""
+
+from collections.abc import Sequence
+from statistics import median
+from typing import Any
+
+from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
+from faultpath.decisions.recorded_question import Question
+from faultpath.statistics import (
+    Estimate,
+    Resamples,
+    fewest_scenes,
+    mean_effect,
+    median_effect,
+    success_effect,
+)
+from faultpath.trials.outcome import Status
+from faultpath.trials.pairing import Bools, Pairs, Trials
+from faultpath.trials.table import OutcomeTable
+
+MIN_SCENES = fewest_scenes()
+"""Fewer scenes than this cannot give a two-sided 95 % interval of a median: 2 / 2^5 > 0.05."""
+
+
+def percent(success: Bools) -> float:
+    """Return success in percent."""
+    return 100.0 * float(success.sum()) / success.size
+
+
+def cells_of(question: Question, paths: Sequence[Path], table: OutcomeTable) -> tuple[Cell, ...]:
+    """Return how the trials of both arms ended on every path."""
+    found: list[Cell] = []
+    for path in paths:
+        for variant in (question.baseline, question.repair):
+            seeds = table.seeds(variant, path.name)
+            ends = [r.outcome for seed in seeds for r in table.arm(variant, path.name, seed)]
+            count = {status: sum(end.status is status for end in ends) for status in Status}
+            ran = len(ends) - count[Status.FAILED]
+            times = [end.time_s for end in ends if end.status is Status.SUCCESS]
+            found.append(
+                Cell(
+                    variant=variant,
+                    path=path.name,
+                    trials=len(ends),
+                    success=count[Status.SUCCESS],
+                    crash=count[Status.CRASH],
+                    timeout=count[Status.TIMEOUT],
+                    failed=count[Status.FAILED],
+                    success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
+                    median_time_s=median(times) if times else None,
+                    struck_trials=sum(end.struck_steps > 0 for end in ends),
+                    altered_trials=sum(end.altered_steps > 0 for end in ends),
+                )
+            )
+    return tuple(found)
+
+
+def untested_paths(paths: Sequence[Path], cells: Sequence[Cell]) -> tuple[str, ...]:
+    """Return the paths on which the fault changed nothing in any trial."""
+    acted = {cell.path for cell in cells if cell.altered_trials}
+    return tuple(path.name for path in paths if path.name != CORRECT and path.name not in acted)
+
+
+def secondary(pairs: Pairs, resamples: Resamples, asked: Question) -> dict[str, Any]:
+    """Return the fields of an `Effect` on time and metrics, for new scenes and the seeds run.
+
+    Of a sequential audit time and metrics have no interval: theirs need a fixed number of scenes.
+    """
+    first, second = pairs.first, pairs.second
+    joint = first.success & second.success
+    time_s = None
+    if joint.any():
+        time_s = median_effect(first.time_s, second.time_s, joint, resamples).estimate()
+    means = None
+    if asked.metric in first.metrics and asked.metric in second.metrics:
+        arms = second.metrics[asked.metric], first.metrics[asked.metric]
+        means = float(arms[0].mean()), float(arms[1].mean())
+    return {
+        "time_s": time_s and _honest(time_s, "median", asked),
+        "joint_successes": int(joint.sum()),
+        "metrics": {
+            name: _honest(
+                mean_effect(
+                    first.metrics[name], second.metrics[name], resamples, metric.unit
+                ).estimate(),
+                "mean",
+                asked,
+            )
+            for name, metric in asked.metrics.items()
+            if name in first.metrics and name in second.metrics
+        },
+        "metric_means": means,
+        "thresholds": tuple(_at(pairs, asked, each, resamples) for each in asked.thresholds)
+        if means
+        else (),
+    }
+
+
+def _honest(estimate: Estimate, what: str, asked: Question) -> Estimate:
+    if asked.stop is not None:
+        why = f"{what} of the scenes until the audit stopped: no interval"
+    elif estimate.n_scenes < MIN_SCENES:
+        why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
+    elif estimate.low == estimate.high:
+        why = f"{what} of {estimate.n_scenes} scenes that hardly differ: no interval"
+    else:
+        return estimate
+    return estimate.model_copy(update={"low": None, "high": None, "method": why})
+
+
+def _at(pairs: Pairs, asked: Question, threshold: float, resamples: Resamples) -> AtThreshold:
+    less = asked.metrics[asked.metric].better == "less"
+
+    def reached(side: Trials) -> Bools:
+        value = side.metrics[asked.metric]
+        return ~side.crash & (value <= threshold if less else value >= threshold)
+
+    repair, baseline = reached(pairs.first), reached(pairs.second)
+    difference = success_effect(
+        repair, baseline, resamples, sequential=asked.stop is not None, rule=asked.rule
+    )
+    return AtThreshold(
+        threshold=threshold,
+        baseline_percent=percent(baseline),
+        repair_percent=percent(repair),
+        difference=difference.estimate(),
+    )

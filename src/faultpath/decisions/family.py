@@ -1,0 +1,177 @@
+"""What an audit may announce, decided together: one function, from outcomes to decisions."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from faultpath.decisions.compared import Arms, Voids
+from faultpath.decisions.model import CORRECT, SHARED
+from faultpath.statistics import (
+    RULES,
+    Contrast,
+    Resamples,
+    RuleName,
+    Turn,
+    betting,
+    change,
+    decide_family,
+    fewest_scenes,
+    success_effect,
+    turn,
+    with_test,
+)
+from faultpath.statistics.estimate import PairedTest
+
+ALPHA = 0.05
+
+
+class Fills(NamedTuple):
+    """The effect of one path with what failed trials leave open filled in."""
+
+    against: Contrast
+    favour: Contrast
+
+
+@dataclass(frozen=True)
+class Family:
+    """Every contrast of an audit with its decision."""
+
+    effects: Mapping[str, Contrast]
+    """By path; without a decision where nothing was tested."""
+    changes: Mapping[str, Contrast]
+    """Shared minus isolated, by the isolated path."""
+    turns: Mapping[str, Turn]
+    hypotheses: int
+    scenes_needed: int
+    fills: Mapping[str, Fills]
+    """By path, where trials failed: what their outcomes could make of the effect."""
+    unsettled: Collection[str]
+    """Isolated paths whose change, and paths whose effect, would be decided but for those trials;
+    by the names of `alpha_shares`."""
+
+    @property
+    def announces(self) -> bool:
+        """Whether anything is detected: an effect, a change, a reversal."""
+        return any(each.sign for part in (self.effects, self.changes) for each in part.values())
+
+
+def decide_paths(
+    success: Mapping[str, Arms],
+    *,
+    rule: RuleName,
+    primary: str = "",
+    resamples: Resamples | None = None,
+    models: bool = False,
+    untested: Collection[str] = (),
+    alpha: float = ALPHA,
+    shares: Mapping[str, float] | None = None,
+    voids: Mapping[str, Voids] | None = None,
+) -> Family:
+    """Return what is decided of all paths, from paired successes `[scenes, seeds]` alone.
+
+    This is the rule of `faultpath audit`, without words and without secondary outcomes, and what
+    simulations of its error rates call. The family holds the effect on every path and every change
+    from an isolated path to `SHARED`; Holm's procedure runs over all of them at `alpha`, by a
+    `rule` that is weighted with the parts of `alpha_shares` for the `primary` path. Paths in
+    `untested` (the fault never acted there) take no part. `models` speaks of newly trained models
+    as well. `resamples` are drawn where they are not given. `shares` of `alpha`, by the names of
+    `alpha_shares`, say that the audit was sequential: what is decided then holds at whatever scene
+    it stopped, each contrast at its own share. Where `voids` say that a trial of one arm alone
+    failed, what is decided has to be so too with all open outcomes against it.
+    """
+
+    def shown(arms: Mapping[str, Arms], drawn: Resamples | None = None) -> dict[str, Contrast]:
+        sequential, scenes = shares is not None, len(next(iter(arms.values()))[0])
+        drawn = drawn or Resamples.draw("family", scenes, n_resamples=1)  # nothing rests on them
+        return {
+            path: success_effect(*pair, drawn, models=models, sequential=sequential, rule=rule)
+            for path, pair in arms.items()
+        }
+
+    effects, tested = shown(success, resamples), [path for path in success if path not in untested]
+    isolated = _isolated(tested)
+    family = {_effect(path): with_test(effects[path], rule) for path in tested}
+    family |= {_change(p): with_test(change(effects[p], effects[SHARED]), rule) for p in isolated}
+    parts = alpha_shares(tested, led(primary, success))
+    weights = {name: parts[name] for name in family} if RULES[rule].weighted else None
+    made = decide_family(family, alpha, shares, weights)
+    fills, unsettled = dict[str, Fills](), list[str]()
+    if voids:
+        low = shown({path: each.against for path, each in voids.items()})
+        high = shown({path: each.favour for path, each in voids.items()})
+        fills = {path: Fills(low[path], high[path]) for path in voids}
+        # What is open is taken each time as it is nearest to showing nothing, or the contrary.
+        ends = {_effect(path): (low[path], high[path]) for path in tested}
+        ends |= {
+            _change(path): (change(high[path], low[SHARED]), change(low[path], high[SHARED]))
+            for path in isolated
+        }
+        if any(sum(each.alone) for each in voids.values()):
+            least = {name: _nearest(*pair, rule) for name, pair in ends.items()}
+            stands = decide_family(least, alpha, shares, weights)
+            unsettled = [name for name in made if made[name].sign not in (0, stands[name].sign)]
+    for name in unsettled:
+        decision = made[name].decision
+        made[name] = replace(made[name], decision=decision and decision._replace(sign=0))
+    effects = {path: made.get(_effect(path), with_test(e, rule)) for path, e in effects.items()}
+    changes = {path: made[_change(path)] for path in isolated}
+    uneven = {path for path, each in (voids or {}).items() if each.uneven}
+
+    def told(path: str, moved: Contrast) -> Turn:
+        if uneven & {path, SHARED}:  # no reversal rests on it
+            return "interaction" if moved.sign else "none"
+        return turn(effects[path], effects[SHARED], moved)
+
+    largest = max(weights.values()) / sum(weights.values()) if weights else 1.0 / len(family)
+    needed = fewest_scenes(alpha * largest)
+    if shares is not None:
+        needed = betting.fewest_scenes(alpha * max(shares.values()))
+    return Family(
+        effects=effects,
+        changes=changes,
+        turns={path: told(path, each) for path, each in changes.items()},
+        hypotheses=len(family if shares is None else shares),
+        scenes_needed=needed,
+        fills=fills,
+        unsettled=tuple(unsettled),
+    )
+
+
+def _nearest(against: Contrast, favour: Contrast, rule: RuleName) -> Contrast:
+    """Return the tested contrast nearest to no difference that what is open allows."""
+    low, high = with_test(against, rule), with_test(favour, rule)
+    assert low.test is not None
+    assert high.test is not None
+    if low.test.leans > 0:
+        return low
+    return high if high.test.leans < 0 else replace(low, test=PairedTest(low.test.name, 1.0, 0))
+
+
+def led(primary: str, paths: Collection[str]) -> str:
+    """Return the primary path: as named, else the shared one, else the isolated."""
+    isolated = [name for name in paths if name not in (CORRECT, SHARED)]
+    return primary or (SHARED if SHARED in paths else (isolated or list(paths))[0])
+
+
+def alpha_shares(paths: Collection[str], primary: str) -> dict[str, float]:
+    """Return each contrast's share of the error rate, by its name, where they are not equal.
+
+    The effect on the primary path, for which sequential audits stop, has a half; all others share
+    the rest. Where that path has none, the others' shares are equal.
+    """
+    named = [*map(_effect, paths), *map(_change, _isolated(paths))]
+    others = [name for name in named if name != _effect(primary)]
+    shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
+    return {_effect(primary): 0.5 if others else 1.0, **shares}
+
+
+def _effect(path: str) -> str:
+    return f"effect/{path}"
+
+
+def _change(path: str) -> str:
+    return f"change/{path}"
+
+
+def _isolated(tested: Collection[str]) -> list[str]:
+    return [path for path in tested if path not in (CORRECT, SHARED)] if SHARED in tested else []

@@ -1,0 +1,115 @@
+"""What is decided on the map: paired differences of scenes, combined, with one critical value.
+
+Everything looked at is a weighted sum of the differences that scenes show at the sampled points, so
+scenes stay the sample and all points of the map depend on each other as they do.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.decisions.map.lattice import Point
+from faultpath.statistics.contrast import MIN_SCENES, ROUNDING
+from faultpath.statistics.distributions import binomial_cdf, normal_p_value
+from faultpath.statistics.inputs import Floats
+from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.score import SceneValues, interval, quantile, rejects
+
+Signs = NDArray[np.int64]
+RESAMPLES = 2000
+_DIGITS = 9
+"""Of a combined value, so that values which cancel leave exactly 0."""
+
+
+@dataclass(frozen=True, eq=False)
+class Differences:
+    """Success of the repair and of the baseline, `[points, scenes, seeds]`, at `points`."""
+
+    points: tuple[Point, ...]
+    repair: Floats = field(repr=False)
+    baseline: Floats = field(repr=False)
+
+    @cached_property
+    def values(self) -> Floats:
+        """Repair minus baseline `[points, scenes]`, in percentage points, over the seeds."""
+        seeds = self.repair.shape[2]
+        return 100.0 * (self.repair - self.baseline).sum(axis=2) / seeds
+
+    @cached_property
+    def far(self) -> Floats:
+        """How far from 0 a scene may lie that was not observed `[points]`, percentage points."""
+        return np.array([SceneValues.paired(row / 100.0, 1.0).far * 100.0 for row in self.values])
+
+    def mean(self, point: Point) -> float:
+        """Return the mean difference at a point."""
+        return float(self.values[self.points.index(point)].mean())
+
+
+@dataclass(frozen=True, eq=False)
+class Combined:
+    """Weighted sums of the differences, one a spot: `values [spots, scenes]`, `far [spots]`."""
+
+    values: Floats
+    far: Floats
+
+    @classmethod
+    def of(cls, weights: Floats, found: Differences) -> "Combined":
+        """Return the sums with `weights [spots, points]`."""
+        values: Floats = np.sort((weights @ found.values).round(_DIGITS), axis=1)
+        return cls(values, np.abs(weights) @ found.far)
+
+    @property
+    def means(self) -> Floats:
+        """The estimates `[spots]`."""
+        return self.values.mean(axis=1).round(_DIGITS) + 0.0
+
+    def ends(self, z: float) -> tuple[Floats, Floats]:
+        """Return both ends `[spots]` of the score interval with the critical value `z`."""
+        low, high = interval(self.values, np.ones_like(self.values), self.far, z)
+        return low + 0.0, high + 0.0
+
+    def signs(self, z: float, tested: bool = True) -> Signs:
+        """Return `[spots]` the side of 0 that is decided, 0 for neither.
+
+        The score test has to reject at `z`; where `tested` the sign test of the scenes at the same
+        level, and on the same side, as well. Fewer than `MIN_SCENES` decide nothing.
+        """
+        if self.values.shape[1] < MIN_SCENES:
+            return np.zeros(len(self.values), dtype=np.int64)
+        beyond = rejects(self.values, np.ones_like(self.values), 0.0, self.far, z)
+        signs = np.sign(self.means).astype(np.int64) * beyond
+        return signs * (self._tested(z) == signs) if tested else signs
+
+    def _tested(self, z: float) -> Signs:
+        first, second = (self.values > 0).sum(axis=1), (self.values < 0).sum(axis=1)
+        p = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5)
+        return np.sign(first - second) * (p <= normal_p_value(z))
+
+
+def simultaneous(weights: Floats, found: Differences, label: str) -> float:
+    """Return the critical value of all spots together, `weights [spots, points]`.
+
+    Scenes are resampled over the whole map at once: 95 % of the resamples deviate nowhere by more
+    standard errors than this. It is never below that of one spot alone.
+    """
+    values = (weights @ found.values).round(_DIGITS)
+    spread = values.std(axis=1)
+    # Where fewer scenes differ nothing can be decided, and one scene more or less is a great step.
+    looked_at = (spread > ROUNDING) & ((values != 0.0).sum(axis=1) >= MIN_SCENES)
+    one = quantile(0.95)
+    if not looked_at.any():
+        return one
+    n_scenes = values.shape[1]
+    resamples = _resamples(label, n_scenes)
+    errors = spread[looked_at] * np.sqrt(n_scenes)
+    centred = values[looked_at] - values[looked_at].mean(axis=1, keepdims=True)
+    studentised = (centred / errors[:, np.newaxis]).T
+    largest = [np.abs(block @ studentised).max(axis=1) for block in resamples.blocks()]
+    return max(one, float(np.quantile(np.concatenate(largest), 0.95)))
+
+
+@lru_cache(maxsize=4)
+def _resamples(label: str, scenes: int) -> Resamples:
+    return Resamples.draw(f"map/{label}", scenes, n_resamples=RESAMPLES)

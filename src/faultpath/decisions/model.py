@@ -1,0 +1,271 @@
+"""The decision record: what was asked, what came out, and what it means."""
+
+from typing import Literal
+
+from faultpath.decisions.recorded_question import EarlierLook, Question
+from faultpath.core.results import Result
+from faultpath.statistics import BreakEven, Estimate, Sign, Turn
+
+CORRECT = "correct"
+SHARED = "shared"
+Extreme = Literal["floor", "ceiling"]
+"""Both arms below 10 %, or both above 90 %."""
+
+
+class StruckTap(Result):
+    """A tap at which a fault was in force, by its receipts: all scenes and seeds together."""
+
+    channel: str
+    consumer: str
+    struck_steps: int
+    """Control steps with a fault in force while the scene ran."""
+    altered_steps: int
+    """Those in which what the consumer got differed from the reading."""
+
+
+class Path(Result):
+    """One way in which the fault reaches the system."""
+
+    name: str
+    """`correct`, the name of the only faulted module, or `shared`."""
+    title: str
+    consumers: tuple[str, ...]
+    """Taps faulted in the repaired system; empty for `correct`."""
+    baseline_consumers: tuple[str, ...]
+    """Taps faulted in the baseline. Where the baseline has no such consumer the fault cannot reach
+    it, and its trials under correct inputs stand in."""
+    struck: tuple[StruckTap, ...] = ()
+    """What was faulted in the repaired system: from receipts, where `consumers` is the plan."""
+    baseline_struck: tuple[StruckTap, ...] = ()
+    """What was faulted in the baseline."""
+
+
+class Cell(Result):
+    """The trials of one variant on one path, all seeds together."""
+
+    variant: str
+    path: str
+    trials: int
+    success: int
+    crash: int
+    timeout: int
+    failed: int
+    success_percent: float
+    median_time_s: float | None
+    """Over successful trials; `None` without one."""
+    struck_trials: int
+    altered_trials: int
+
+
+class FailedTrials(Result):
+    """What failed trials leave open of an effect, as a record tells it."""
+
+    repair: int
+    """Failed trials of the repair on this path."""
+    baseline: int
+    against_pp: float
+    """The difference where the trials of pairs of which one failed go against the repair."""
+    favour_pp: float
+    """Where they go for it."""
+    uneven: bool
+    """Whether one arm failed more often than chance explains: then no headline rests on it."""
+    unsettled: bool
+    """Whether the scenes compared decide for an arm, and what is open could undo that."""
+
+
+class AtThreshold(Result):
+    """Success under another rule: the trial did not crash, and its metric is good enough."""
+
+    threshold: float
+    baseline_percent: float
+    repair_percent: float
+    difference: Estimate
+    """Percentage points; secondary, with an interval that stands by itself."""
+
+
+class Effect(Result):
+    """The repair minus the baseline on one path, over scenes in which every arm ran."""
+
+    path: str
+    success: Estimate
+    """Percentage points."""
+    sign: Sign
+    """What the family of all paths decides: 1 for the repair, -1 for the baseline, 0 nothing."""
+    test: str
+    p_value: float
+    adjusted_p_value: float | None
+    """Over the family, after Holm or by the shares of a sequential audit; `None` for a path that is
+    not in it."""
+    mcnemar_p_value: float | None = None
+    """Exact McNemar's, to stand beside that of another test of one seed; it decides nothing."""
+    scenes: int
+    """Pairs that the effect rests on: a scene is one, whatever the number of seeds."""
+    void_pairs: int
+    """Pairs of trials, seed by seed, that count for nothing."""
+    failed: FailedTrials | None = None
+    """What failed trials leave open, where some did on any path."""
+    wins: tuple[int, ...]
+    """Scenes where only the repair succeeded, one count for each seed that differs."""
+    losses: tuple[int, ...]
+    baseline_percent: float
+    """Success over the scenes that are compared."""
+    repair_percent: float
+    extreme: Extreme | None
+    """Where both arms are at the floor or at the ceiling; such an effect makes no headline."""
+    acted: bool
+    """Whether the fault changed anything in any trial of the path; correct inputs count as so."""
+    minimum_detectable_pp: float | None
+    """True difference that the deciding rule finds with 80 % power, if it comes on top of the
+    discordance that was seen."""
+    time_s: Estimate | None
+    """Secondary, as all that follow: nothing is decided from it. On jointly successful scenes."""
+    joint_successes: int
+    metrics: dict[str, Estimate]
+    """Of each metric that all trials have."""
+    metric_means: tuple[float, float] | None = None
+    """Of the question's metric: baseline and repair."""
+    thresholds: tuple[AtThreshold, ...] = ()
+    """For each of the question's thresholds."""
+
+    @property
+    def detected(self) -> bool:
+        """Whether the family decides for one of the arms."""
+        return self.sign != 0
+
+    @property
+    def leads(self) -> bool:
+        """Whether a headline may rest on it: decided, away from floor and ceiling, and not among
+        trials that one arm survived."""
+        return self.sign != 0 and self.extreme is None and not self.uneven
+
+    @property
+    def estimate(self) -> Estimate:
+        """The difference in success."""
+        return self.success
+
+    @property
+    def uneven(self) -> bool:
+        """Whether one arm's trials failed more often than chance explains."""
+        return self.failed is not None and self.failed.uneven
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether it would be decided, if failed trials could not undo that."""
+        return self.failed is not None and self.failed.unsettled
+
+
+class PathBreakEven(Result):
+    """The fault frequencies at which neither arm is decided to be ahead, on one path."""
+
+    path: str
+    result: BreakEven
+    curve: tuple[tuple[float, float, float, float], ...]
+    """`(p, expected difference, low, high)` in fractions and percentage points. The band touches 0
+    exactly where p is in the set of `result`."""
+    words: str
+    """What may be said of it, without the path; empty where no end has an effect that leads."""
+
+
+class Change(Result):
+    """How the effect changes from a fault at one module to the shared one."""
+
+    isolated: str
+    shared: str
+    change: Estimate
+    """Effect under the shared fault minus effect under the isolated one, percentage points."""
+    sign: Sign
+    test: str
+    p_value: float
+    adjusted_p_value: float
+    unsettled: bool = False
+    """Whether it would be decided, if failed trials could not undo that."""
+    turn: Turn
+    """`reversal`: both effects are decided, with opposite signs. `interaction`: the change alone
+    is decided."""
+
+    @property
+    def estimate(self) -> Estimate:
+        """The change itself."""
+        return self.change
+
+
+class Stopped(Result):
+    """How far a sequential audit went."""
+
+    scenes: int
+    """Flown; void pairs included."""
+    reached: bool
+    """Whether what it was to stop for came about."""
+    small: tuple[str, ...]
+    """Paths on which the difference was shown to be smaller than the margin."""
+
+
+class Verdict(Result):
+    """The answer in words."""
+
+    headline: str
+    sentences: tuple[str, ...]
+    would_change: tuple[str, ...]
+    """What would change the verdict."""
+
+
+class DecisionRecord(Result):
+    """Everything that tables, pictures and the report show; written as `record.json`."""
+
+    format: Literal[2] = 2
+    question: Question
+    paths: tuple[Path, ...]
+    cells: tuple[Cell, ...]
+    effects: tuple[Effect, ...]
+    changes: tuple[Change, ...]
+    break_even: tuple[PathBreakEven, ...]
+    scenes: int
+    """Scenes that are compared, those with a void pair left out."""
+    scenes_needed: int
+    """With fewer, nothing can be decided, whatever comes out."""
+    hypotheses: int
+    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
+    estimand: str  # what intervals and tests speak of
+    verdict: Verdict
+    findings: tuple[str, ...] = ()
+    """What a reader has to know of the run, a sentence each."""
+    stopped: Stopped | None = None
+    """Of a sequential audit."""
+    earlier: tuple[EarlierLook, ...] = ()
+    """Concluded before, from the same trials and otherwise."""
+
+    @property
+    def few(self) -> bool:
+        """Whether there are too few scenes to decide anything."""
+        return self.scenes < self.scenes_needed
+
+    def winner(self, sign: int) -> str:
+        """Return the arm of a decided side."""
+        return self.question.repair if sign > 0 else self.question.baseline
+
+    def is_small(self, effect: Effect) -> bool:
+        """Whether an effect was shown to be smaller than the margin of a sequential audit."""
+        return self.stopped is not None and effect.path in self.stopped.small
+
+    @property
+    def flown(self) -> str:
+        """The number of scenes, and of how many where an audit could have taken more."""
+        most = str(self.question.n_scenes)
+        if self.stopped is None or self.stopped.scenes == self.question.n_scenes:
+            return most
+        return f"{self.stopped.scenes} of at most {most}"
+
+    @property
+    def stopping(self) -> str:
+        """How a sequential audit was to stop."""
+        rule = self.question.stop
+        if rule is None:
+            return ""
+        what = "the primary contrast" if rule.when == "decided" else "the effect on every path"
+        small = f" or shown to be smaller than {rule.margin_pp:g} pp" if rule.margin_pp else ""
+        return (
+            f"the audit was to stop once {what} is decided{small}, at a look after every "
+            f"{'scene' if rule.look == 1 else f'{rule.look} scenes'}, or after "
+            f"{self.question.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+            f"of the library and the seed {rule.order_seed}"
+        )

@@ -1,0 +1,299 @@
+"""What is said of a record, sentence by sentence, from what was decided and nothing else."""
+
+import math
+from collections.abc import Iterator
+
+from faultpath.decisions.model import Change, DecisionRecord, Effect, PathBreakEven, Verdict
+from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.wording import (
+    capital,
+    counted,
+    first,
+    interval,
+    last,
+    p_value,
+    plain,
+    series,
+    signed,
+    where,
+)
+from faultpath.statistics import Region
+
+FEW_TRAININGS = 10
+"""With fewer, an interval for newly trained models rests on how trainings are distributed."""
+
+
+def estimand(question: Question) -> str:
+    """Return what intervals and tests speak of."""
+    if question.generalise == "models":
+        return "new scenes like these and models newly trained with other seeds"
+    return "new scenes like these" + (", for these trained models" if question.trained else "")
+
+
+def reach(record: DecisionRecord) -> Iterator[str]:
+    """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
+    asked = record.question
+    holds = "The intervals hold" if record.few else "What is decided holds"
+    given = asked.trained and asked.generalise == "scenes"
+    yield f"{holds} for {record.estimand}{'; models trained anew may differ' if given else ''}."
+    run = len(asked.seeds)
+    if asked.generalise == "models" and run < FEW_TRAININGS:
+        yield (
+            f"Caution: {run} trainings say little about new ones. With fewer than "
+            f"{FEW_TRAININGS}, intervals hold only as far as trainings spread evenly around their "
+            "mean."
+        )
+    differ = len(record.effects[0].wins) if record.effects else run
+    if differ < run:
+        same = "All" if differ == 1 else "Some of the"
+        once = "together they count as one" if differ == 1 else f"they count as {differ}"
+        yield f"{same} {run} seeds gave the same outcome in every trial: {once}."
+    yield from _stopping(record)
+
+
+def _stopping(record: DecisionRecord) -> Iterator[str]:
+    held, rule, most = record.stopped, record.question.stop, record.question.n_scenes
+    if held is None or rule is None:
+        return
+    because = "because" if held.reached else "but"
+    if rule.when == "all-decided":
+        also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
+        why = f"{'every' if held.reached else 'not every'} effect was decided{also}"
+    elif record.question.primary in held.small:
+        why = f"the primary contrast was shown to be smaller than {margin(record)}"
+    else:
+        why = f"the primary contrast was {'' if held.reached else 'not '}decided"
+    if held.scenes == most:
+        took = f"it took all that it was allowed, {counted(held.scenes, 'scene')}"
+        because = "and" if held.reached else "but"
+    else:
+        verb = "stopped after" if held.reached else "took"
+        took = f"it {verb} {counted(held.scenes, 'scene')} of at most {most}"
+    trials = counted(held.scenes * rule.trials, "trial")
+    yield f"This audit was sequential: {took} ({trials}), {because} {why}."
+    yield (
+        "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
+        "an audit stops, and are wider for that."
+    )
+    if held.reached:
+        yield "A difference with which an audit stops is on average further from 0 than the truth."
+
+
+def looks(record: DecisionRecord) -> str:
+    """Say what was concluded before, and what that does to what is announced now."""
+    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
+    with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
+    led = series([f"'{name}'" for name in dict.fromkeys(each.primary for each in record.earlier)])
+    return (
+        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, what it "
+        "announces now is wrong more often than in 5 % of audits. Ask again of scenes that no "
+        "audit has looked at, or with --stop-when, which allows for looks."
+    )
+
+
+def margin(record: DecisionRecord) -> str:
+    """Return the margin below which a sequential audit counts a difference as small."""
+    return f"{(record.question.stop and record.question.stop.margin_pp) or 0.0:g} pp"
+
+
+def adjusted(record: DecisionRecord, of: Effect | Change) -> str:
+    """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
+    if of.adjusted_p_value is None:
+        return ""
+    p = p_value(of.adjusted_p_value)
+    return f"p {p if p.startswith('<') else f'= {p}'} {record.question.family}"
+
+
+def only_alone(of: Effect | Change) -> bool:
+    """Return whether the interval by itself leaves out 0 and yet nothing is detected."""
+    low, high = of.estimate.interval or (0.0, 0.0)
+    tested = of.adjusted_p_value is not None and not (of.sign or of.unsettled)
+    return tested and (low > 0 or high < 0)
+
+
+def numbers(record: DecisionRecord, of: Effect | Change) -> str:
+    """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`, and which of the two decides where
+    they disagree."""
+    parts = [f"{signed(of.estimate.value)} pp {interval(of.estimate)}", adjusted(record, of)]
+    shown = ", ".join(part.rstrip() for part in parts if part)
+    return f"{shown}: the interval alone decides nothing" if only_alone(of) else shown
+
+
+def effect(record: DecisionRecord, of: Effect) -> str:
+    """Say what one path shows: who is decided to be ahead, or what could have been found."""
+    place, shown = capital(where(of.path)), numbers(record, of)
+    if not of.acted:
+        return f"{place}, the fault never acted: nothing was tested."
+    if of.sign:
+        aside = ""
+        if of.extreme:
+            aside = f"; {_extreme(of)}, so this carries no headline"
+        elif of.failed and of.uneven:
+            asked, failed = record.question, of.failed
+            aside = (
+                f"; {failed.repair} trials of {asked.repair} and {failed.baseline} of "
+                f"{asked.baseline} failed, so this carries no headline"
+            )
+        return f"{place}, {record.winner(of.sign)} succeeds more often ({shown}){aside}."
+    if of.unsettled:
+        return f"{place}, nothing is decided ({shown}): trials that failed could undo it."
+    if record.few:
+        return f"{place}, nothing is decided ({shown}): the scenes are too few."
+    same = "" if any((*of.wins, *of.losses)) else "both arms succeed in the same scenes; "
+    small = f", and it is smaller than {margin(record)}" if record.is_small(of) else ""
+    said = f"{place}, {same}no difference is detected ({shown}){small}"
+    if of.extreme:
+        return f"{said}; {_extreme(of)}, where a difference can hardly show."
+    if of.minimum_detectable_pp is None:
+        return f"{said}."
+    least = math.ceil(of.minimum_detectable_pp)
+    return f"{said}; a true one of {least} pp would be found with 80 % power."
+
+
+def _extreme(of: Effect) -> str:
+    ends = "fail" if of.extreme == "floor" else "succeed"
+    rates = f"{plain(of.baseline_percent)} and {plain(of.repair_percent)} % success"
+    return f"both arms nearly always {ends} there ({rates})"
+
+
+def change(record: DecisionRecord, of: Change) -> str:
+    """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
+    effects = {each.path: each for each in record.effects}
+    ends = effects[of.isolated], effects[of.shared]
+    values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
+    shown = f"{values}; change {numbers(record, of)}"
+    alone, shared = where(of.isolated), where(of.shared)
+    if of.turn == "reversal":
+        one, other = (record.winner(end.sign) for end in ends)
+        at_end = any(end.extreme for end in ends)
+        aside = " One of the two lies at the floor or ceiling: this carries no headline."
+        return (
+            f"Sharing the fault reverses the ranking: {alone}, {one} succeeds more often; "
+            f"{shared}, {other} does ({shown}).{aside if at_end else ''}"
+        )
+    if of.turn == "interaction":
+        return (
+            f"Interaction detected: the difference is not the same {alone} as {shared} ({shown}); "
+            "a reversal is not shown."
+        )
+    between = f"between the effect {alone} and that {shared} ({shown})"
+    if of.unsettled:
+        return f"Nothing is decided {between}: trials that failed could undo it."
+    return f"{'Nothing is decided' if record.few else 'No change is detected'} {between}."
+
+
+def frequency(
+    question: Question, regions: tuple[Region, ...], correct: Effect, faulty: Effect
+) -> str:
+    """Return who is decided to be ahead at which fault frequencies; empty for nobody anywhere.
+
+    A region counts where it reaches an end (no fault, or the fault in every episode) at which the
+    family detects an effect on the same side, away from floor and ceiling: so no sentence
+    contradicts that on the path.
+    """
+    said: list[str] = []
+    for region in regions:
+        low = region.low <= 0.0 and correct.leads and region.sign == correct.sign
+        high = region.high >= 1.0 and faulty.leads and region.sign == faulty.sign
+        ahead = f"{question.repair if region.sign > 0 else question.baseline} is ahead"
+        if low and high:
+            return f"{ahead} at every frequency"
+        if high and region.low <= 0.0:
+            said.append(f"{ahead} where the fault is frequent; how rare it may be is not decided")
+        elif low and region.high >= 1.0:
+            said.append(f"{ahead} where the fault is rare; how frequent it may be is not decided")
+        elif high and first(region.low) < 100:
+            said.append(f"{ahead} from {first(region.low)} % on")
+        elif low and last(region.high) > 0:
+            said.append(f"{ahead} up to {last(region.high)} %")
+    return ", ".join(said)
+
+
+def frequencies(breaks: tuple[PathBreakEven, ...]) -> Iterator[str]:
+    """Say on all paths at which fault frequencies who is ahead."""
+    decided = [f"{where(each.path)}, {each.words}" for each in breaks if each.words]
+    silent = [where(each.path) for each in breaks if not each.words]
+    if decided:
+        yield f"By fault frequency: {'; '.join(decided)}."
+    if silent:
+        yield f"At no fault frequency is it decided who is ahead {' or '.join(silent)}."
+
+
+def hardly_acted(record: DecisionRecord) -> Iterator[str]:
+    """Name the arms in which the fault changed nothing in most of the trials."""
+    acted = {each.path for each in record.effects if each.acted}
+    faulted = {path.name: (path.baseline_consumers, path.consumers) for path in record.paths}
+    for cell in record.cells:
+        consumers = faulted[cell.path][cell.variant == record.question.repair]
+        if cell.path in acted and consumers and 2 * cell.altered_trials < cell.trials:
+            yield (
+                f"{capital(where(cell.path))}, the fault changed something in only "
+                f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
+            )
+
+
+def would_change(record: DecisionRecord) -> Iterator[str]:
+    """Say what would change the verdict."""
+    held, tested = record.stopped, [each for each in record.effects if each.acted]
+    if held and not all(each.sign for each in record.effects):
+        yield (
+            "More scenes: --stop-when all-decided goes on until every effect is decided."
+            if held.reached
+            else "More scenes: a larger --scenes goes on with those of the same order, and what is "
+            "said then holds as well."
+        )
+    if record.few:
+        yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
+    if len(tested) < len(record.effects):
+        yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
+    if any(each.extreme == "floor" for each in tested):
+        yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
+    if any(each.extreme == "ceiling" for each in tested):
+        yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
+    missed: dict[int, list[str]] = {}
+    for each in tested:
+        if not (record.few or each.sign) and each.minimum_detectable_pp is not None:
+            missed.setdefault(math.ceil(each.minimum_detectable_pp), []).append(where(each.path))
+    if missed:
+        listed = "; ".join(f"{least} pp {' and '.join(at)}" for least, at in missed.items())
+        yield (
+            "Fresh scenes, which no audit has looked at, and more of them, or --stop-when, which "
+            "allows for looks: a smaller true difference than these is found with less than 80 % "
+            f"power: {listed}. Adding scenes to this audit would break its 5 %."
+        )
+    yield "Another size or sign of the fault, another library or wiring: none of these was run."
+
+
+def no_pair(path: str) -> str:
+    """Say that a path has no pair of trials to compare."""
+    return f"{capital(where(path))}, no pair of trials is left to compare and nothing is decided"
+
+
+def failed_trials(record: DecisionRecord) -> Iterator[str]:
+    """Say by arm and path how many trials failed, and what their outcomes could make of it."""
+    asked = record.question
+    for each in record.effects:
+        found = each.failed
+        if found is None or not (found.repair or found.baseline or found.unsettled):
+            continue
+        yield (
+            f"{capital(where(each.path))}, {found.repair} trials of {asked.repair} failed and "
+            f"{found.baseline} of {asked.baseline}: depending on how they would have ended, the "
+            f"difference over all scenes lies anywhere from {signed(found.against_pp)} to "
+            f"{signed(found.favour_pp)} pp."
+        )
+
+
+def verdict(record: DecisionRecord, headline: str) -> Verdict:
+    """Return all that a record says of its decisions."""
+    return Verdict(
+        headline=headline,
+        sentences=(
+            *reach(record),
+            *(effect(record, each) for each in record.effects),
+            *(change(record, each) for each in record.changes),
+            *frequencies(record.break_even),
+            *hardly_acted(record),
+        ),
+        would_change=tuple(would_change(record)),
+    )

@@ -1,0 +1,131 @@
+"""Which source comes first, and which others the same repair has to be audited against."""
+
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import Any, cast
+
+import numpy as np
+
+from faultpath.core.arrays import is_array, to_numpy
+from faultpath.core.errors import UserError
+from faultpath.interface import Interface, module_of, modules
+from faultpath.decisions.plan.sources import Candidate, bound
+from faultpath.core.text import unknown
+from faultpath.trials import LoopSystem, System, Variant
+
+
+def ranked(found: Sequence[Candidate]) -> tuple[Candidate, ...]:
+    """Return candidates, the one with most consumers and then the largest probe response first.
+
+    This is the paper's rule, Section III-C. It compares point estimates: sources that are equal in
+    both share a rank, and stand in the order of declaration, those without a fault last. A response
+    that is not known counts as the smallest, and `placed` tells where that decides.
+    """
+
+    def key(each: Candidate) -> tuple[int, float]:
+        return -len(each.consumers), 1.0 if each.response is None else -each.response
+
+    out: list[Candidate] = []
+    for _, alike in groupby(sorted(found, key=lambda each: (*key(each), not each.fault)), key):
+        rank = len(out) + 1
+        out += [each.model_copy(update={"rank": rank}) for each in alike]
+    return tuple(out)
+
+
+def placed(each: Candidate, found: Sequence[Candidate]) -> bool:
+    """Return whether the rule places a candidate, beside others with as many consumers."""
+    known = [other.response for other in found if len(other.consumers) == len(each.consumers)]
+    return each.response is not None or not any(response is not None for response in known)
+
+
+def repaired_modules(
+    system: System, baseline: Variant, repair: Variant, named: Sequence[str]
+) -> tuple[str, ...]:
+    """Return the modules that the repair changes: as `named`, else as far as can be seen.
+
+    Seen is what reads at other places, writes a source that feeds a channel in one of the variants
+    only, or is of another class or has other numbers in it, weights included. `UserError` for a
+    name that is no module's.
+    """
+    interface = system.interface
+    known = modules(interface)
+    for name in named:
+        if name not in known:
+            raise UserError(f"{system.name}: {unknown('module', name, known)}")
+    found = {module_of(consumer) for consumer in baseline.consumers ^ repair.consumers}
+    for channel in interface.channels:
+        fed = {bound(variant, interface, channel.name) for variant in (baseline, repair)}
+        if len(fed) > 1:
+            found |= {module for module, made in interface.reconstructions if made in fed}
+    if isinstance(system, LoopSystem):
+        one, two = (
+            {each.name: each for each in system.modules(variant.name, None)}
+            for variant in (baseline, repair)
+        )
+        found |= {name for name in one | two if _differ(one.get(name), two.get(name), set())}
+    return tuple(named) or tuple(name for name in known if name in found)
+
+
+def _differ(one: Any, two: Any, seen: set[tuple[int, int]]) -> bool:
+    """Return whether two objects are of other classes or hold other numbers, however deep.
+
+    Words are passed over, for they may only be names, and so is what holds nothing to be seen.
+    """
+    if one is two or (id(one), id(two)) in seen:
+        return False
+    seen.add((id(one), id(two)))
+    if type(one) is not type(two):
+        return True
+    if is_array(one):
+        return not np.array_equal(to_numpy(one), to_numpy(two))
+    if isinstance(one, int | float | complex):
+        return one != two
+    mine, theirs = _parts(one), _parts(two)
+    return mine.keys() != theirs.keys() or any(
+        _differ(part, theirs[name], seen) for name, part in mine.items()
+    )
+
+
+def _parts(of: Any) -> Mapping[Any, Any]:
+    if isinstance(of, list | tuple):
+        return dict(enumerate(cast("Sequence[Any]", of)))
+    return cast("Mapping[Any, Any]", of if isinstance(of, Mapping) else getattr(of, "__dict__", {}))
+
+
+def makers(interface: Interface, variants: Sequence[Variant]) -> dict[str, tuple[str, ...]]:
+    """Return each module that makes a source which another one reads, with these sources."""
+    found: dict[str, dict[str, None]] = {}
+    for module, made in interface.reconstructions:
+        for variant in variants:
+            for channel in interface.channels:
+                readers = variant.consumers.intersection(channel.consumers)
+                if bound(variant, interface, channel.name) == made and any(
+                    module_of(reader) != module for reader in readers
+                ):
+                    found.setdefault(module, {})[made] = None
+    return {module: tuple(sources) for module, sources in found.items()}
+
+
+def recursion(
+    found: Sequence[Candidate],
+    made_by: Mapping[str, Sequence[str]],
+    start: Sequence[str],
+) -> dict[str, str]:
+    """Return the candidates that modules in `start` lead to, by name, each with why.
+
+    The paper's rule is recursive: what a module makes is a source of others, and depends on what
+    it reads, "which require the same audit as its output". So do the inputs of a module that makes
+    one of these inputs, and so on.
+    """
+    why: dict[str, str] = {}
+    waiting = [module for module in start if module in made_by]
+    for module in waiting:  # grows while it is gone through
+        makes = ", ".join(made_by[module])
+        for each in found:
+            if set(each.sources) & set(made_by[module]):
+                why.setdefault(each.name, f"output of {module}")
+            elif any(module_of(consumer) == module for consumer in each.consumers):
+                why.setdefault(each.name, f"input of {module}, which makes {makes}")
+                behind = (m for m, sources in made_by.items() if set(sources) & set(each.sources))
+                waiting += [m for m in behind if m not in waiting]
+    return why

@@ -1,0 +1,181 @@
+"""Uncertain sources, who reads them in the variants compared, and how large their errors are."""
+
+from collections.abc import Sequence
+
+from pydantic import Field
+
+from faultpath.core.errors import UserError
+from faultpath.faults import AnyFault, FaultText
+from faultpath.core.frozen import Frozen
+from faultpath.interface import Interface, Provenance, Source
+from faultpath.trials import System, Variant
+
+_UNCERTAIN = (Provenance.MEASURED, Provenance.ESTIMATED, Provenance.RECONSTRUCTED)
+
+
+class Candidate(Frozen, allow_inf_nan=False):
+    """A source that may err, or several that err together by one cause."""
+
+    name: str
+    """Of the source, or of the group whose sources err together."""
+    sources: tuple[str, ...]
+    channels: tuple[str, ...]
+    consumers: tuple[str, ...]
+    """Places that read it in either variant: every use of a shared source counts."""
+    fault: str = ""
+    """As large as its expected error; empty where that is not known."""
+    unsized: str = ""
+    """Why there is no fault."""
+    note: str = ""
+    responses: dict[str, dict[str, float]] = Field(default_factory=dict[str, dict[str, float]])
+    """By variant and path of the fault, how far a probe moves the commands; see `probing`."""
+    rank: int | None = None
+    """Sources that nothing tells apart share one; `None` before they are ranked."""
+
+    @property
+    def response(self) -> float | None:
+        """The largest of all: errors of several modules may cancel, and that is no reason to audit
+        their source last."""
+        moved = (found for each in self.responses.values() for found in each.values())
+        return max(moved, default=None)
+
+
+def parsed(system: System, text: str) -> AnyFault:
+    """Return a fault from its text; `UserError` for a wrong one."""
+    return system.fault(text)
+
+
+def candidates(
+    system: System, variants: Sequence[Variant], given: Sequence[str]
+) -> tuple[Candidate, ...]:
+    """Return the uncertain sources that a variant reads, in the order of declaration.
+
+    Uncertain is what is measured, estimated or reconstructed, or declares an uncertainty. The
+    faults `given` take the place of declared sizes. `UserError` for one that strikes nobody, and
+    for two of one source.
+    """
+    members: dict[str, list[Source]] = {}
+    for source in system.interface.sources:
+        uncertain = source.provenance in _UNCERTAIN or source.uncertainty is not None
+        if uncertain and _channels(system.interface, variants, source.name):
+            members.setdefault(source.correlation_group or source.name, []).append(source)
+    found = [_candidate(system, variants, name, sources) for name, sources in members.items()]
+    for text in given:
+        made = _given(system, variants, text)
+        replaced = [each for each in found if set(each.channels) <= set(made.channels)]
+        if any(each.fault in given for each in replaced):
+            raise UserError(f"fault '{text}': {replaced[0].name} has been given an error already.")
+        if len(replaced) == 1:
+            made = made.model_copy(update={"name": replaced[0].name})
+        at = found.index(replaced[0]) if replaced else len(found)
+        found.insert(at, made)
+        found = [each for each in found if each not in replaced]
+    return tuple(found)
+
+
+def bound(variant: Variant, interface: Interface, channel: str) -> str:
+    """Return the source that feeds a channel in a variant."""
+    return variant.bindings.get(channel, interface.channel(channel).sources[0])
+
+
+def _channels(interface: Interface, variants: Sequence[Variant], source: str) -> dict[str, None]:
+    return {
+        channel.name: None
+        for variant in variants
+        for channel in interface.channels
+        if bound(variant, interface, channel.name) == source
+        and variant.consumers.intersection(channel.consumers)
+    }
+
+
+def _candidate(
+    system: System, variants: Sequence[Variant], name: str, sources: Sequence[Source]
+) -> Candidate:
+    interface = system.interface
+    channels = {c: None for each in sources for c in _channels(interface, variants, each.name)}
+    text, unsized = _expected(system, name, sources, tuple(channels))
+    consumers = {
+        consumer: None
+        for channel in channels
+        for consumer in interface.channel(channel).consumers
+        if any(consumer in variant.consumers for variant in variants)
+    }
+    return Candidate(
+        name=name,
+        sources=tuple(each.name for each in sources),
+        channels=tuple(channels),
+        consumers=_struck(system, variants, parsed(system, text)) if text else tuple(consumers),
+        fault=text,
+        unsized=unsized,
+        note=_note(interface, variants, tuple(channels)),
+    )
+
+
+def _given(system: System, variants: Sequence[Variant], text: str) -> Candidate:
+    asked = FaultText.read(text)
+    if len(asked.sizes) > 1 or asked.consumers:
+        raise UserError(
+            f"fault '{text}': a plan takes one size, and strikes every module by itself: leave "
+            "further sizes and '@' out."
+        )
+    fault = parsed(system, text)
+    parts = fault.faults if fault.kind == "coupled" else (fault,)
+    channels = tuple(dict.fromkeys(part.channel for part in parts))
+    sources = {bound(each, system.interface, c): None for each in variants for c in channels}
+    consumers = _struck(system, variants, fault)
+    if not consumers:
+        raise UserError(f"fault '{text}' strikes nobody in either variant: neither reads it there.")
+    return Candidate(
+        name=asked.name,
+        sources=tuple(sources),
+        channels=channels,
+        consumers=consumers,
+        fault=text,
+        note=_note(system.interface, variants, channels),
+    )
+
+
+def _struck(system: System, variants: Sequence[Variant], fault: AnyFault) -> tuple[str, ...]:
+    parts = (p for each in variants for p in fault.resolved(system.interface, each.consumers))
+    return tuple(dict.fromkeys(consumer for part in parts for consumer in part.consumers))
+
+
+def _expected(
+    system: System, name: str, sources: Sequence[Source], channels: Sequence[str]
+) -> tuple[str, str]:
+    """Return a fault as large as the uncertainty declared, or why there is none.
+
+    That is the half-range, or one standard deviation, upward, and lasting.
+    """
+    together = sources[0].correlation_group is not None
+    sizes = {
+        (each.uncertainty.relative, each.uncertainty.half_range or each.uncertainty.std or 0.0)
+        if each.uncertainty is not None
+        else None
+        for each in sources
+    }
+    if None in sizes:
+        return "", "declares no uncertainty"
+    if len(sizes) > 1:
+        return "", "has sources of different uncertainties, which one fault cannot have"
+    if len(channels) > 1 and not together:
+        feeds = " and ".join(channels)
+        return "", f"feeds {feeds}, which one fault strikes only with a correlation_group"
+    ((relative, size),) = (each for each in sizes if each is not None)
+    if size == 0.0:
+        return "", "declares that it has no error"
+    if together and relative and name in system.fault_presets:
+        return f"{name}=+{size:g}", ""
+    target = name if together else channels[0]
+    return (f"{target}:scale={1.0 + size:g}" if relative else f"{target}:offset={size:g}"), ""
+
+
+def _note(interface: Interface, variants: Sequence[Variant], channels: Sequence[str]) -> str:
+    for channel in channels:
+        one, two = (bound(variant, interface, channel) for variant in variants)
+        if one != two:
+            return (
+                f"A fault on '{channel}' strikes {one} in {variants[0].name} and {two} in "
+                f"{variants[1].name}, which feed it there."
+            )
+    return ""

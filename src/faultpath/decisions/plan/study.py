@@ -1,0 +1,134 @@
+"""A study file: audits of one repair, with their arms, to be carried out as they stand."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal, Self, get_args
+
+from pydantic import Field, StringConstraints, model_validator
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, read_yaml, yaml_text
+from faultpath.core.frozen import Frozen
+from faultpath.decisions.planning import Audit
+from faultpath.decisions.question import Question
+from faultpath.decisions import CORRECT, SHARED
+
+_MOST = 200
+"""Audits of a file. Each is a finding of its own, and a file of more asks no one question."""
+Role = Literal["correct", "repaired", "shared", "attribution"]
+
+
+class StudyArm(Frozen):
+    """One path of the fault, flown with both variants."""
+
+    path: str
+    role: Role
+    """`repaired`: isolated at the module that the repair changes; `attribution`: at another."""
+    baseline: tuple[str, ...] = ()
+    """Consumers that the fault strikes there; without any the arm is that of correct inputs."""
+    repair: tuple[str, ...] = ()
+
+    @model_validator(mode="after")
+    def _role_of_its_path(self) -> Self:
+        fit = _roles(self.path)
+        if self.role not in fit:
+            raise ValueError(
+                f"path '{self.path}' has the role {' or '.join(fit)}, and not {self.role}"
+            )
+        return self
+
+
+class StudyAudit(Frozen):
+    """One audit of the repair: a fault, and its arms."""
+
+    name: Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]{0,99}$")]
+    """Names its folder."""
+    fault: str
+    why: str = ""
+    arms: tuple[StudyArm, ...] = Field(min_length=2)
+
+    @model_validator(mode="after")
+    def _paths_once(self) -> Self:
+        _check_once("arms", "path", [arm.path for arm in self.arms])
+        return self
+
+
+class StudyFile(Question, strict=False):
+    """What `faultpath plan` writes and `faultpath audit --study` carries out."""
+
+    faultpath_study: Literal[1] = 1
+    """Version of the form."""
+    system: str
+    library_hash: str
+    scenes: int | None = Field(ge=1)
+    audits: tuple[StudyAudit, ...] = Field(min_length=1, max_length=_MOST)
+
+    @model_validator(mode="after")
+    def _names_once(self) -> Self:
+        _check_once("audits", "name", [audit.name for audit in self.audits])
+        return self
+
+    def yaml(self) -> str:
+        """Return the file's text."""
+        data = {"faultpath_study": 1, "system": self.system, **self.model_dump(mode="json")}
+        return yaml_text(data, width=100, default_flow_style=None)
+
+
+def _check_once(what: str, having: str, names: Sequence[str]) -> None:
+    if twice := [name for name, count in Counter(names).items() if count > 1]:
+        raise ValueError(f"two {what} have the {having} '{twice[0]}': give each its own")
+
+
+def read_study(path: Path) -> StudyFile:
+    """Read a study file; `UserError` for one that cannot be read or says something else."""
+    try:
+        return read_yaml(contents(path)).fill(StudyFile)
+    except OSError as error:
+        raise UserError(f"{path}: cannot be read ({error.strerror}): give a study file.") from None
+    except Misread as error:
+        raise UserError(f"{error.at(path)}, or let `faultpath plan` write the file anew.") from None
+
+
+def arms_of(audit: Audit, repaired: tuple[str, ...] = ()) -> tuple[StudyArm, ...]:
+    """Return the arms of an audit path by path, in the order of their roles: the paper's, III-C."""
+    asked = audit.question
+    struck: dict[str, dict[str, tuple[str, ...]]] = {}
+    for row in audit.study.rows:
+        consumers = {c: None for f in row.arm.faults if f.kind != "coupled" for c in f.consumers}
+        struck.setdefault(row.path, {})[row.variant] = tuple(consumers)
+    arms = [
+        StudyArm(
+            path=path,
+            role=_roles(path)[0 if path in repaired else -1],
+            baseline=by_variant[asked.baseline],
+            repair=by_variant[asked.repair],
+        )
+        for path, by_variant in struck.items()
+    ]
+    return tuple(sorted(arms, key=lambda arm: get_args(Role).index(arm.role)))
+
+
+def _roles(path: str) -> tuple[Role, ...]:
+    if path == CORRECT:
+        return ("correct",)
+    if path == SHARED:
+        return ("shared",)
+    return ("repaired", "attribution")
+
+
+def check_arms(study: StudyFile, planned: StudyAudit, audit: Audit) -> None:
+    """Raise `UserError` unless the system still lays out the arms and scenes of the file."""
+    if audit.question.library_hash != study.library_hash:
+        raise UserError(
+            f"library '{study.library}' is not the one of the study file any more: plan anew."
+        )
+    now = {(arm.path, arm.baseline, arm.repair) for arm in arms_of(audit)}
+    then = {(arm.path, arm.baseline, arm.repair) for arm in planned.arms}
+    if now != then:
+        other = sorted({path for path, _, _ in now ^ then})
+        raise UserError(
+            f"audit '{planned.name}' of the study file has other arms than the system now has for "
+            f"'{planned.fault}' ({', '.join(other)}): an audit flies all of its arms, so plan anew."
+        )

@@ -1,0 +1,273 @@
+"""Plan an audit: which arms a question about a repair needs, on which paths of the fault."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from faultpath.decisions import question as asking
+from faultpath.core.errors import UserError
+from faultpath.faults import AnyFault, Fault
+from faultpath.interface import module_of
+from faultpath.decisions.question import AuditQuestion, StopWhen
+from faultpath.decisions import (
+    CORRECT,
+    SHARED,
+    DecisionRecord,
+    Path,
+    Question,
+    StopRule,
+    StruckTap,
+    decide,
+    primary_path,
+    stops,
+)
+from faultpath.core.streams import generator
+from faultpath.loop.taps import TapCount
+from faultpath.core.text import unknown
+from faultpath.trials import (
+    Arm,
+    Deliveries,
+    Library,
+    OutcomeTable,
+    Row,
+    Study,
+    System,
+    SystemSpec,
+    Variant,
+)
+
+LOOK = 5
+"""Scenes from one look to the next of a sequential audit, where the system flies as many at once:
+fewer save few trials and cost much for systems that fly their scenes together."""
+_ORDER_SEED = 0
+"""One order for each library, so that nobody can choose among several."""
+
+
+@dataclass(frozen=True)
+class Audit:
+    """A question and the study that answers it."""
+
+    question: Question
+    paths: tuple[Path, ...]
+    study: Study
+
+    def conclude(self, table: OutcomeTable, deliveries: Deliveries) -> DecisionRecord:
+        """Return the decision record of a run; raises as `faultpath.decisions.decide`."""
+        asked = self.question
+        paths = [
+            path.model_copy(
+                update={
+                    "struck": struck_taps(deliveries.at(asked.repair, path.name)),
+                    "baseline_struck": struck_taps(deliveries.at(asked.baseline, path.name)),
+                }
+            )
+            for path in self.paths
+        ]
+        return decide(asked, paths, table, findings=deliveries.findings)
+
+    def stops(self, table: OutcomeTable) -> bool:
+        """Return whether a sequential audit ends with these trials."""
+        return stops(self.question, self.paths, table)
+
+
+def struck_taps(counts: Sequence[TapCount]) -> tuple[StruckTap, ...]:
+    """Return the taps at which receipts show a fault in force."""
+    return tuple(
+        StruckTap(
+            channel=tap.channel,
+            consumer=tap.consumer,
+            struck_steps=tap.struck_steps,
+            altered_steps=tap.altered_steps,
+        )
+        for tap in counts
+        if tap.struck_steps
+    )
+
+
+def plan_audit(system: System, spec: SystemSpec, asked: AuditQuestion, library: Library) -> Audit:
+    """Lay out the arms: both variants under correct inputs, under the fault at each module that
+    reads it alone, and under the fault shared by all of them.
+
+    The primary path, which leads the headline, is by default the shared one, or the only isolated
+    one.
+
+    Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
+    of scenes that the library does not have, a fault that reaches neither variant, a primary path
+    that does not exist, newly trained models of a system that trains none, from one seed or in a
+    sequential audit, or a margin that is none.
+    """
+    variants = two_variants(system, asked)
+    sequential = asked.stop_when is not None
+    chosen = scenes_of(library, asked.scenes, in_order=not sequential)
+    fault = system.fault(asked.fault)
+    strikes = _strikes(system, fault, variants)
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
+    paths = [
+        Path(
+            name=name,
+            title=titles.get(name, f"{name.replace('_', ' ').capitalize()} only"),
+            consumers=_consumers(system, struck, variants[1]),
+            baseline_consumers=_consumers(system, struck, variants[0]),
+        )
+        for name, struck in strikes.items()
+    ]
+    # Where the fault cannot reach a variant, that is the arm under correct inputs: it runs once.
+    rows = [
+        Row(
+            variant=variant.name,
+            path=path,
+            seed=seed,
+            arm=Arm(variant=variant.name, faults=_faults(system, struck, variant), seed=seed),
+        )
+        for path, struck in strikes.items()
+        for variant in variants
+        for seed in asked.seeds
+    ]
+    if asked.generalise == "models":
+        _check_trainings(system, asked.seeds, asked.stop_when)
+    study = Study(
+        name=f"{spec.name}-{asked.repair}-vs-{asked.baseline}",
+        system=spec,
+        library=library.name,
+        scenes=chosen,
+        rows=tuple(rows),
+        look=min(LOOK, system.block_size) if sequential else 0,
+    )
+    question = Question(
+        system=spec.name,
+        options=spec.options,
+        baseline=asked.baseline,
+        repair=asked.repair,
+        fault=asked.fault,
+        faults=fault.resolved(system.interface),
+        library=library.name,
+        library_hash=library.content_hash,
+        n_scenes=len(chosen),
+        seeds=asked.seeds,
+        primary=primary_path(asked.primary or "", paths),
+        generalise=asked.generalise,
+        trained=system.trained,
+        ends={status.value: words for status, words in system.ends.items()},
+        metrics=dict(system.metrics),
+        metric=_metric(system, asked.metric, asked.thresholds),
+        thresholds=tuple(sorted(set(asked.thresholds))),
+        stop=_stop_rule(asked.stop_when, asked.margin_pp, study),
+        rule=asked.rule,
+    )
+    return Audit(question, tuple(paths), study)
+
+
+def _strikes(
+    system: System, fault: AnyFault, variants: Sequence[Variant]
+) -> dict[str, AnyFault | None]:
+    """Return the fault of each path; `None` under correct inputs. With a single module there is
+    nothing to share: the isolated fault is all of it.
+
+    `UserError` for a fault that reaches no variant, and a module named like a path.
+    """
+    reached = [c for variant in variants for c in _consumers(system, fault, variant)]
+    if not reached:
+        names = " nor ".join(f"'{variant.name}'" for variant in variants)
+        raise UserError(
+            f"the fault ({fault.describe()}) reaches neither {names}: neither reads it there."
+        )
+    by_module: dict[str, list[str]] = {}
+    for consumer in reached:
+        places = by_module.setdefault(module_of(consumer), [])
+        if consumer not in places:
+            places.append(consumer)
+    for reserved in {CORRECT, SHARED} & set(by_module):
+        raise UserError(
+            f"the interface calls a module '{reserved}', which is the name of a path of every "
+            "audit: rename the module."
+        )
+    paths: dict[str, AnyFault | None] = {CORRECT: None}
+    paths |= {module: fault.striking(*by_module[module]) for module in sorted(by_module)}
+    if len(by_module) > 1:
+        paths[SHARED] = fault.striking(*(c for name in sorted(by_module) for c in by_module[name]))
+    return paths
+
+
+def _faults(system: System, fault: AnyFault | None, variant: Variant) -> tuple[Fault, ...]:
+    return () if fault is None else fault.resolved(system.interface, variant.consumers)
+
+
+def _consumers(system: System, fault: AnyFault | None, variant: Variant) -> tuple[str, ...]:
+    struck = (c for each in _faults(system, fault, variant) for c in each.consumers)
+    return tuple(dict.fromkeys(struck))
+
+
+def _metric(system: System, name: str, thresholds: Sequence[float]) -> str:
+    if thresholds and not name:
+        raise UserError("thresholds of what? Name a metric of the system beside them.")
+    if name and name not in system.metrics:
+        raise UserError(f"{system.name}: {unknown('metric', name, system.metrics)}")
+    return name
+
+
+def _stop_rule(when: StopWhen | None, margin_pp: float | None, study: Study) -> StopRule | None:
+    if margin_pp is not None and not (when and 0.0 < margin_pp < 100.0):
+        raise UserError(
+            f"a margin of {margin_pp:g} pp says when a sequential audit counts a difference as "
+            "none: give it with --stop-when, between 0 and 100."
+        )
+    if when is None:
+        return None
+    return StopRule(
+        when=when,
+        margin_pp=margin_pp,
+        order=study.scenes,
+        order_seed=_ORDER_SEED,
+        look=study.look,
+        trials=len(study.arms()),
+    )
+
+
+def _check_trainings(system: System, seeds: Sequence[int], stop_when: StopWhen | None) -> None:
+    if stop_when:
+        raise UserError(
+            "no test of newly trained models holds wherever one stops: leave --stop-when or "
+            "--generalise models out."
+        )
+    if not system.trained:
+        raise UserError(
+            f"{system.name} has no trained models to generalise to: leave --generalise models out."
+        )
+    if len(seeds) < 2:
+        raise UserError(
+            "one seed says nothing about newly trained models: give several, such as "
+            "--seeds 0,1,2, "
+            "or leave --generalise models out."
+        )
+
+
+def two_variants(system: System, asked: asking.Question) -> tuple[Variant, Variant]:
+    """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
+    found = variant_of(system, asked.baseline), variant_of(system, asked.repair)
+    if asked.baseline == asked.repair:
+        raise UserError(
+            f"baseline and repair are both '{asked.repair}': name two different variants."
+        )
+    return found
+
+
+def variant_of(system: System, name: str) -> Variant:
+    """Return a variant by its name; `UserError` for an unknown one."""
+    if name not in system.variants:
+        raise UserError(f"{system.name}: {unknown('variant', name, system.variants)}")
+    return system.variants[name]
+
+
+def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tuple[str, ...]:
+    """Return the first scenes of a library, in its order or the random one of sequential audits;
+    `UserError` for a number that it has not got."""
+    available = len(library.scenes)
+    if count is not None and not 1 <= count <= available:
+        raise UserError(
+            f"cannot run {count} scenes of library '{library.name}': choose 1 to {available}."
+        )
+    scenes = library.scenes
+    if not in_order:
+        stream = generator("scene order", library.content_hash, _ORDER_SEED)
+        drawn: list[int] = stream.permutation(available).tolist()
+        scenes = tuple(scenes[place] for place in drawn)
+    return tuple(scene.id for scene in scenes[:count])

@@ -1,0 +1,83 @@
+"""What an audit asks, and by which rule it is answered."""
+
+from pydantic import Field
+
+from faultpath.faults import Fault
+from faultpath.decisions.question import Generalise, StopWhen
+from faultpath.core.results import Result
+from faultpath.statistics import RULES, RuleName
+from faultpath.trials.metrics import VEHICLE, Metric, MetricName
+
+
+class StopRule(Result):
+    """When a sequential audit stops."""
+
+    when: StopWhen
+    """`decided`: the primary contrast is; `all-decided`: the effect on every path is."""
+    margin_pp: float | None = None
+    """A difference that is shown to be smaller than this counts as decided too."""
+    order: tuple[str, ...]
+    """The scenes in the order in which they are flown, drawn before the first trial."""
+    order_seed: int
+    """Of the draw, with the hash of the library."""
+    look: int
+    """Scenes from one look at the results to the next."""
+    trials: int
+    """That a scene takes: distinct arms."""
+
+
+class Question(Result):
+    """What the audit asked."""
+
+    system: str
+    options: dict[str, str]
+    baseline: str
+    repair: str
+    fault: str
+    """The fault in words, as given on the command line."""
+    faults: tuple[Fault, ...] = ()
+    """The same spelled out, channel by channel, at every consumer that it names; empty in records
+    that do not say."""
+    library: str
+    library_hash: str
+    n_scenes: int
+    seeds: tuple[int, ...]
+    primary: str = ""
+    """Path of the primary contrast, which leads the headline; empty for the default."""
+    generalise: Generalise = "scenes"
+    """What the intervals and tests speak of: new scenes, or newly trained models too."""
+    trained: bool = False
+    """Whether the variants hold trained models."""
+    ends: dict[str, str] = Field(default_factory=dict)
+    """What the system calls its ends, where it is not the status itself."""
+    metrics: dict[MetricName, Metric] = VEHICLE
+    """What its trials measure. Records that do not say speak of a vehicle."""
+    metric: str = ""
+    """The metric to tell beside success; empty for none."""
+    thresholds: tuple[float, ...] = ()
+    """Of that metric: at which success is told anew."""
+    stop: StopRule | None = None
+    """Of a sequential audit, of which `n_scenes` is the most that it takes."""
+    rule: RuleName = "exact"
+    """By which it is decided, then and ever after; records that do not say were by the first. A
+    sequential audit is decided by bets, whatever the rule."""
+
+    @property
+    def family(self) -> str:
+        """How p-values were adjusted, as part of a sentence."""
+        return "after Holm" if self.stop is None else "within the family"
+
+    @property
+    def ruled(self) -> str:
+        """The rule in words, with the time it is of; empty for a sequential audit."""
+        return "" if self.stop else RULES[self.rule].words
+
+
+class EarlierLook(Result):
+    """What was asked when an audit was concluded before; a record cannot allow for that."""
+
+    scenes: int | None
+    """`None` of a sequential audit, which allows for its number."""
+    primary: str
+    generalise: str = "scenes"
+    rule: RuleName = "exact"

@@ -1,0 +1,244 @@
+"""The headline, and three plain answers: what follows, how sure it is, what stays open.
+
+Whoever reads nothing else reads these, so what qualifies a decision is said here too.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from faultpath.decisions import phrases
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.phrases import adjusted, margin, only_alone
+from faultpath.decisions.wording import capital, counted, series, where
+
+MOST_WORDS = 20
+"""Of a headline, with the names of modules and variants as one word each."""
+_OPEN = "no difference is detected"
+
+
+def headline(record: DecisionRecord) -> str:
+    """Return at most twenty words that rest on decided things, led by the primary contrast."""
+    main = next((each for each in record.effects if each.path == record.question.primary), None)
+    if main is None:
+        return f"{phrases.no_pair(record.question.primary)}."
+    if record.few:
+        return (
+            f"Too few scenes to decide: {record.scenes} compared, and this question needs at least "
+            f"{record.scenes_needed}."
+        )
+    tested = [each for each in record.effects if each.acted]
+    if not main.acted:
+        if all(each.path == CORRECT for each in tested):
+            return "The fault never acted: nothing was tested."
+        return f"{capital(where(main.path))}, the fault never acted: nothing was tested there."
+    ends = {rate for each in tested for rate in (each.baseline_percent, each.repair_percent)}
+    if ends <= {0.0, 100.0} and not any(any((*e.wins, *e.losses)) for e in tested):
+        every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
+        return f"No difference could show: in every scene both arms {' or '.join(every)}."
+    turned = reversed_at(record)
+    said = ""
+    for said in _turned(record, main, turned) if turned else _compared(record, main, tested):
+        if len(said.split()) <= MOST_WORDS:
+            break
+    return said
+
+
+def reversed_at(record: DecisionRecord) -> list[Effect]:
+    """Return the isolated effects that sharing reverses, where advice may rest on both."""
+    of = {each.path: each for each in record.effects if each.leads}
+    return [
+        of[each.isolated]
+        for each in record.changes
+        if each.turn == "reversal" and each.isolated in of and each.shared in of
+    ]
+
+
+def _turned(record: DecisionRecord, main: Effect, turned: Sequence[Effect]) -> Iterator[str]:
+    advice = "Do not choose by the isolated fault"
+    if main.path == SHARED or main in turned:
+        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+        yield f"{advice}: {one} is ahead {places(turned)}, {other} with the fault shared."
+    else:
+        yield f"{_said(record, [[main]])} {advice}: sharing reverses the ranking."
+    yield f"{advice}: sharing reverses the ranking."
+
+
+def _compared(record: DecisionRecord, main: Effect, tested: Sequence[Effect]) -> Iterator[str]:
+    """Yield the primary contrast with what is like it; then the shared one, so that no gain in
+    isolation stands without what came of it; then whatever else is decided."""
+    groups: dict[str, list[Effect]] = {}
+    ordered = sorted(tested, key=lambda each: (each is not main, each.path != SHARED))
+    for each in ordered:
+        state = _state(record, each)
+        if each.leads or each.path == SHARED or state == _state(record, main):
+            groups.setdefault(state, []).append(each)
+    told, shared = list(groups.values()), [[e] for e in ordered[1:] if e.path == SHARED]
+    if len(told) == 1 and len(told[0]) == len(record.effects) > 1:
+        yield _said(record, told, both=True, everywhere=True)
+    ahead = [[e for e in group if e.path != SHARED] for group in told[1:] if group[0].leads]
+    for clauses in (told, [[main], *shared, *filter(None, ahead)]):
+        yield _said(record, clauses, both=True)
+        yield _said(record, clauses)
+    yield _said(record, [[main], *shared])
+    yield _said(record, [[main]])
+
+
+def _said(
+    record: DecisionRecord,
+    groups: Sequence[Sequence[Effect]],
+    both: bool = False,
+    everywhere: bool = False,
+) -> str:
+    """Return a sentence with a clause for each group of like effects; `both` names both arms."""
+    asked, clauses = record.question, list[str]()
+    for group in groups:
+        said, place = _state(record, group[0]), places(group)
+        if everywhere:
+            place = "on every path" if group[0].leads else "on any path"
+        if both and not clauses and group[0].leads:
+            said += f" of {record.winner(-group[0].sign)}"
+        elif both and not clauses and said == _OPEN:
+            said = f"no difference between {asked.baseline} and {asked.repair} is detected"
+        clauses.append(f"{said} {place}")
+    sentence = f"{'; '.join(clauses)}."
+    return sentence if groups[0][0].leads else capital(sentence)
+
+
+def _state(record: DecisionRecord, each: Effect) -> str:
+    """Return what is decided of a path, as a clause without its place."""
+    if each.leads:
+        return f"{record.winner(each.sign)} is ahead"
+    if each.extreme:
+        return f"both nearly always {'fail' if each.extreme == 'floor' else 'succeed'}"
+    if each.uneven or each.unsettled:
+        return "trials that failed leave it open"
+    if record.is_small(each):
+        return f"the difference is below {margin(record)}"
+    return _OPEN
+
+
+def places(effects: Sequence[Effect]) -> str:
+    """Return where effects are, the first one's kind first, modules faulted alone together."""
+    alone = [each.path for each in effects if each.path not in (CORRECT, SHARED)]
+    joined = where(" or the ".join(alone))
+    named = (joined if each.path in alone else where(each.path) for each in effects)
+    return series(list(dict.fromkeys(named)))
+
+
+def in_short(record: DecisionRecord, effect: Effect | None) -> str:
+    """Say in a few words what is decided of one path."""
+    if effect is None:
+        return "no pair of trials to compare"
+    if not effect.acted:
+        return "the fault never acted: not tested"
+    if effect.sign:
+        at = f", but at the {effect.extreme}" if effect.extreme else ""
+        at = at or (", but trials failed unevenly" if effect.uneven else "")
+        return f"{record.winner(effect.sign)} succeeds more often{at}"
+    if effect.unsettled:
+        return "open: trials that failed could decide it"
+    if record.few:
+        return "too few scenes to decide"
+    p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
+    if record.is_small(effect):
+        return f"differ by less than {margin(record)}{p}"
+    return f"no difference detected{p}"
+
+
+def not_standing(record: DecisionRecord) -> Iterator[str]:
+    """Say of each interval that leaves out 0 where nothing is detected why it does not count."""
+    for each in filter(only_alone, record.effects):
+        yield (
+            f"{capital(where(each.path))}, the interval by itself leaves out 0, but "
+            f"{adjusted(record, each)} ({record.hypotheses} contrasts): no difference is detected."
+        )
+
+
+def answers(record: DecisionRecord) -> dict[str, str]:
+    """Return `What follows`, `How sure` and `Not decided`, each with a sentence or a few.
+
+    With too few scenes nothing follows, and only the other two are there.
+    """
+    sure = [*phrases.reach(record), *phrases.hardly_acted(record)]
+    if record.few:
+        few = (
+            f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
+            f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
+        )
+        return {"Not decided": few, "How sure": " ".join(sure)}
+    if record.earlier:
+        sure.append(phrases.looks(record))
+    elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
+        sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
+    return {
+        "What follows": " ".join(_follows(record)),
+        "How sure": " ".join(sure),
+        "Not decided": " ".join(_left_open(record)),
+    }
+
+
+def _follows(record: DecisionRecord) -> Iterator[str]:
+    tested = [each for each in record.effects if each.acted]
+    leading = [each for each in tested if each.leads]
+    if not leading:
+        if any(each.sign and each.uneven for each in tested):
+            yield "No choice can rest on what is decided: one arm's trials failed more often."
+        elif any(each.sign for each in tested):
+            yield "What is decided lies at the floor or ceiling, where no choice can rest on it."
+        else:
+            yield "Nothing that was tested gives a reason to prefer either."
+    turned = reversed_at(record)
+    if turned:
+        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+        yield (
+            f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
+            f"where the modules share it, {other} succeeds more often."
+        )
+        leading = [each for each in leading if each.path == CORRECT]
+    for sign in (1, -1):
+        if at := [each for each in leading if each.sign == sign]:
+            yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
+    alone = any(each.path not in (CORRECT, SHARED) for each in leading)
+    unseen = [each for each in tested if each.path == SHARED and _is_open(each)]
+    if unseen and alone:
+        less = f", and it is smaller than {margin(record)}" if record.is_small(unseen[0]) else ""
+        yield f"When the fault is shared, no difference is seen{less}."
+    if modules := [each.isolated for each in record.changes if each.turn == "interaction"]:
+        yield (
+            f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
+            "the difference between the two arms changes."
+        )
+    if {each.sign for each in tested if each.leads} == {1, -1}:
+        if not turned:
+            yield "Which is better depends on which fault occurs, and how often."
+        for each in record.break_even:
+            if each.path == record.question.primary and each.words:
+                yield f"By the share of trials with the fault, {where(each.path)}: {each.words}."
+
+
+def _is_open(each: Effect) -> bool:
+    return not (each.sign or each.extreme or each.unsettled)
+
+
+def _left_open(record: DecisionRecord) -> Iterator[str]:
+    if idle := [where(each.path) for each in record.effects if not each.acted]:
+        yield f"The fault never acted {series(idle)}: nothing was tested there."
+    if unsettled := [where(each.path) for each in record.effects if each.unsettled]:
+        yield f"Who is ahead {series(unsettled)} depends on trials that failed."
+    missed: list[str] = []
+    for each in record.effects:
+        least, aside = each.minimum_detectable_pp, ""
+        if not each.acted or each.sign or each.unsettled or record.is_small(each):
+            continue
+        if each.extreme:
+            aside = f" (both nearly always {'fail' if each.extreme == 'floor' else 'succeed'})"
+        elif least is not None:
+            aside = f" (a true one of {math.ceil(least)} pp would be found in 8 of 10 audits)"
+        missed.append(where(each.path) + aside)
+    if missed:
+        yield f"No difference is detected {series(missed)}."
+    yield from not_standing(record)
+    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
+        at = " or the ".join(same)
+        yield f"No change is detected from the fault at the {at} alone to the shared fault."
+    yield "Another size or sign of the fault, another library and another wiring were not tried."

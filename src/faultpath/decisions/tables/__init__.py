@@ -1,0 +1,5 @@
+"""Tables of text, and how terminal, Markdown, LaTeX and HTML show them."""
+
+from faultpath.decisions.tables.model import MISSING, Entry, Line, Table, line
+
+__all__ = ["MISSING", "Entry", "Line", "Table", "line"]

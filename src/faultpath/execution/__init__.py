@@ -1,6 +1,0 @@
-"""Where the arms of a study run, and how a run survives whatever happens to it."""
-
-# pyright: reportUnusedImport=false
-from faultpath.execution.provenance import Stopwatch, amend, run_provenance
-from faultpath.execution.runner import Failure, RunResult, run_study
-from faultpath.trials.attempt import WrongOutcomes

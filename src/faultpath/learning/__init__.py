@@ -1,0 +1,39 @@
+"""Repairs as objects: uncertainty training, withholding and reconstruction of any torch module.
+
+A fit gets its inputs through the taps of the system's interface, and what perturbs them are the
+faults of an audit. Nothing here loads torch before a module is fitted.
+"""
+
+from faultpath.learning.model_card import Schedule
+from faultpath.learning.fitting import Fit, evaluate, fit, load, mean_squared_error
+from faultpath.learning.flying import Learned, withheld
+from faultpath.learning.matched import Comparison, matched
+from faultpath.learning.record import FitRecord
+from faultpath.learning.repair import (
+    Repair,
+    errors,
+    reconstruction,
+    uncertainty_training,
+    withholding,
+)
+from faultpath.learning.windows import Windows
+
+__all__ = [
+    "Comparison",
+    "Fit",
+    "FitRecord",
+    "Learned",
+    "Repair",
+    "Schedule",
+    "Windows",
+    "errors",
+    "evaluate",
+    "fit",
+    "load",
+    "matched",
+    "mean_squared_error",
+    "reconstruction",
+    "uncertainty_training",
+    "withheld",
+    "withholding",
+]

@@ -1,0 +1,289 @@
+"""Fit a torch module of the user's to windows that come through the taps.
+
+Laws. First weights and the order of minibatches depend on module and seed, never on the repair; an
+error of size zero changes no bit; the process keeps the random numbers of torch that it had.
+"""
+
+from __future__ import annotations
+
+import copy
+import platform
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.errors import UserError
+from faultpath.faults import AnyFault
+from faultpath.learning.model_card import Schedule, fill, parameter_count, save, weights_sha256
+from faultpath.learning.loop import Task, minibatches, run
+from faultpath.learning.record import Architecture, FitRecord, Machine
+from faultpath.learning.repair import Repair, kept, understood
+from faultpath.learning.windows import VALIDATION, Windows, delivered, named
+from faultpath.trials.store import make_folder
+from faultpath.core.streams import key
+from faultpath.loop.taps import TapCount, added
+from faultpath.core.version import __version__
+
+if TYPE_CHECKING:
+    from torch import LongTensor, Tensor, nn
+
+LossFunction = Callable[[Any, Any], "Tensor"]
+"""Mean loss of a minibatch, a scalar, from the module's output and the targets."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted module, and the record of the fit."""
+
+    module: nn.Module
+    """In evaluation mode."""
+    record: FitRecord
+    path: Path | None = None
+    """Its weights, with the record beside them, where a folder was given."""
+
+
+def mean_squared_error(output: Tensor, target: Tensor) -> Tensor:
+    """Return the mean squared error; `UserError` where shapes differ, which torch would stretch."""
+    from torch.nn import functional
+
+    if output.shape != target.shape:
+        raise UserError(
+            f"mean_squared_error: the module returns the shape {list(output.shape)} and the target "
+            f"has {list(target.shape)}: mend one of the two"
+        )
+    return functional.mse_loss(output, target)
+
+
+def fit(
+    module: nn.Module | Callable[[], nn.Module],
+    data: Windows,
+    loss: LossFunction = mean_squared_error,
+    *,
+    repair: Repair | Iterable[Repair] = (),
+    seed: int = 0,
+    schedule: Schedule | None = None,
+    validation: float = 0.1,
+    name: str | None = None,
+    folder: Path | str | None = None,
+) -> Fit:
+    """Fit a module, as a baseline or with a repair, and return it with its record.
+
+    The module's `forward` takes one mapping, as a module of the loop does: what the tap delivers
+    of the channel `gain` at the place `model` is `inputs["gain", "model"]`, `[n, T, ...]`, or
+    `[n, ...]` where windows have no steps.
+
+    Args:
+        module: What is fitted; it is copied, and its weights are the initial ones. Or a function
+            that makes it, called with torch's random numbers at the seed.
+        data: Windows and targets.
+        loss: Of the module's output and the targets, which are tensors as `Windows` names them.
+        repair: One repair or several; none makes a baseline.
+        seed: Of initial weights, minibatch order, torch's random numbers and errors.
+        schedule: Default: `Schedule()`.
+        validation: Share of the episodes that are kept for validation.
+        name: Of the files; default the module's class and the repair's kind.
+        folder: Gets `<name>-<seed>.safetensors` and its record `.json`, each whole or absent.
+
+    Raises:
+        UserError: Something does not fit together, or the loss left the finite numbers.
+    """
+    import torch
+
+    if seed < 0:
+        raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
+    repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
+    repairs = tuple(each.against(data.interface, data.dt_s, data.consumers) for each in repairs)
+    with torch.random.fork_rng():
+        # The module's own code draws from torch's global state (initialisation, dropout): it is the
+        # fit's own in here, and the caller's again behind.
+        drawn = key("repairs/torch", "fit", seed) % 2**63
+        torch.manual_seed(drawn)
+        net = copy.deepcopy(module) if isinstance(module, torch.nn.Module) else module()
+        if not isinstance(net, torch.nn.Module):
+            raise UserError(
+                f"fit: {_name_of(module)} returned a {_name_of(net)}, which is no torch module"
+            )
+        if not parameter_count(net):
+            raise UserError(f"fit: {_name_of(net)} has no parameters to fit")
+        torch.manual_seed(drawn)  # also where the module was not made here
+        kinds = (each.kind.replace("_", "-") for each in repairs)
+        task = _WindowTask(net, data, loss, repairs, seed, schedule or Schedule(), validation)
+        task.name = name or "+".join((type(net).__name__.lower(), *kinds))
+        if not task.count:
+            raise UserError("fit: no window is left for training: give more, or validation=0")
+        initial = weights_sha256(net)
+        first_loss = task.mean_loss(net, task.training[minibatches(task, 0)[0].numpy()], ())
+        history = run(task, net)
+    record = FitRecord(
+        name=task.name,
+        seed=seed,
+        repairs=repairs,
+        reads=tuple(f"{port.channel} -> {consumer}" for port, consumer in data.ports.items()),
+        architecture=_architecture(net),
+        parameters=parameter_count(net),
+        data=data.digested(task.host_targets, task.training),
+        loss=_name_of(loss),
+        schedule=task.schedule,
+        initial_sha256=initial,
+        first_loss=first_loss,
+        order_sha256=tuple(task.order),
+        training_loss=history.training_loss,
+        validation=tuple(metrics for metrics in history.validation if metrics),
+        taps=task.taps,
+        weights_sha256=weights_sha256(net),
+        machine=Machine(
+            torch=torch.__version__,
+            faultpath=__version__,
+            python=".".join(platform.python_version_tuple()[:2]),
+            device=task.device.type,
+            threads=torch.get_num_threads(),
+        ),
+        duration_s=round(history.duration_s, 3),
+    )
+    if folder is None:
+        return Fit(net.eval(), record)
+    make_folder(Path(folder))
+    return Fit(net.eval(), record, save(net, record, Path(folder)))
+
+
+def evaluate(
+    fitted: Fit,
+    data: Windows,
+    loss: LossFunction = mean_squared_error,
+    faults: Iterable[AnyFault | str] = (),
+) -> float:
+    """Return the mean loss of a fitted module over all windows, under faults as an audit has them.
+
+    What it was fitted without stays withheld. Raises `UserError` as `fit`.
+    """
+    repairs = fitted.record.repairs
+    found = understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+    task = _WindowTask(
+        fitted.module, data, loss, repairs, fitted.record.seed, Schedule(), validation=0.0
+    )
+    return task.mean_loss(fitted.module, np.arange(len(data)), found)
+
+
+def load(module: nn.Module, path: Path | str) -> Fit:
+    """Return a fit from its files, filled in; `UserError` where they do not fit."""
+    record = fill(module, Path(path), FitRecord)
+    return Fit(module.eval(), record, Path(path))
+
+
+class _WindowTask(Task):
+    """Windows as samples, with a delivery through the taps for each minibatch."""
+
+    def __init__(
+        self,
+        net: nn.Module,
+        data: Windows,
+        loss: LossFunction,
+        repairs: tuple[Repair, ...],
+        seed: int,
+        schedule: Schedule,
+        validation: float,
+    ) -> None:
+        import torch
+
+        def tensor(array: np.ndarray) -> Tensor:
+            return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
+
+        self.seed, self.schedule = seed, schedule
+        parameter = next(net.parameters(), None)
+        self.device = torch.device("cpu") if parameter is None else parameter.device
+        self.host_targets = data.learned(repairs)
+        self.training, self._held_out = data.split(validation)
+        self.order: list[str] = []
+        """Digest of the order of the windows in each epoch."""
+        self.taps: tuple[TapCount, ...] = ()
+        self._data, self._loss, self._epoch = data, loss, 0
+        self._faults: list[Any] = [fault for each in repairs for fault in each.faults]
+        self._kept = kept(repairs)
+        read = {port.channel for port in data.ports}
+        self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
+        self._targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
+
+    @property
+    @override
+    def count(self) -> int:
+        return len(self.training)
+
+    @property
+    @override
+    def order_key(self) -> str:
+        return "repairs"
+
+    @override
+    def begin_epoch(self, epoch: int) -> None:
+        self._epoch = epoch
+        order = np.concatenate([part.numpy() for part in minibatches(self, epoch)])
+        self.order.append(self._data.names_sha256(self.training[order])[:16])
+
+    @override
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        value, counts = self._of(net, self.training[index.numpy()], self._faults, self._epoch)
+        self.taps = added((*self.taps, *counts))
+        return value
+
+    @override
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
+        if not len(self._held_out):
+            return {}
+        faults = {"correct": self._kept, "perturbed": self._faults}
+        return {name: self.mean_loss(net, self._held_out, each) for name, each in faults.items()}
+
+    def mean_loss(self, net: nn.Module, index: np.ndarray, faults: Iterable[Any]) -> float:
+        """Return the mean loss of some windows, without gradients and in evaluation mode."""
+        import torch
+
+        faults, total, size = tuple(faults), 0.0, self.schedule.batch_size
+        net.eval()
+        with torch.no_grad():
+            for part in np.split(index, range(size, len(index), size)):
+                total += self._of(net, part, faults, VALIDATION)[0].item() * len(part)
+        return total / len(index)
+
+    def _of(
+        self, net: nn.Module, part: np.ndarray, faults: Iterable[Any], epoch: int
+    ) -> tuple[Tensor, tuple[TapCount, ...]]:
+        import torch
+
+        rows = torch.from_numpy(part).to(self.device)
+        readings = {name: value[rows] for name, value in self._readings.items()}
+        inputs, counts = delivered(self._data, faults, readings, part, self.seed, epoch)
+        targets: Any = {name: value[rows] for name, value in self._targets.items()}
+        if not isinstance(self.host_targets, Mapping):
+            targets = targets["target"]
+        loss = self._loss(net(inputs), targets)
+        if not isinstance(loss, torch.Tensor) or loss.ndim:
+            what = f"of shape {list(loss.shape)}" if hasattr(loss, "shape") else _name_of(loss)
+            raise UserError(f"fit: the loss must be a tensor of one number, not {what}")
+        return loss, counts
+
+
+def _architecture(net: nn.Module) -> Architecture:
+    lines = [str(net)]
+    for place, part in net.named_modules():
+        plain = {
+            name: value
+            for name, value in sorted(vars(part).items())
+            if isinstance(value, bool | int | float | str | tuple) and name != "training"
+        }
+        lines.append(f"{place or type(net).__name__}: {plain}")
+    return Architecture(
+        name=type(net).__name__,
+        structure="\n".join(lines),
+        tensors={
+            name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
+            for name, value in net.state_dict().items()
+        },
+    )
+
+
+def _name_of(thing: Any) -> str:
+    named = thing if hasattr(thing, "__qualname__") else type(thing)
+    return named.__qualname__.replace("<locals>.", "")

@@ -1,0 +1,140 @@
+"""Repaired modules in a loop: what a fit had at its taps is what they have in flight."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from typing_extensions import override
+
+from faultpath.core.arrays import Array, HostArray, is_array, namespace, place, to_numpy
+from faultpath.core.errors import UserError
+from faultpath.faults import ALL, Erase, Fault
+from faultpath.interface import Interface
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.learning.repair import Repair
+
+if TYPE_CHECKING:
+    from torch import nn
+
+
+class Learned(Module):
+    """A fitted torch module in the loop: one output of the last steps of what its ports got.
+
+    At each step `forward` gets what it got in the fit, `inputs["gain", "model"]` of `[1, T, ...]`,
+    float32, the present last; before there are T steps the first fills in. Scenes go one by one,
+    because in a batch torch rounds a scene otherwise in other company.
+
+    Args:
+        name: Under which the interface lists its places.
+        net: What was fitted; it returns `[n, ...]`.
+        writes: The source that its output is.
+        reads: Ports of this step.
+        reads_past: Ports of the step before.
+        steps: T; `None` where the fit's windows had no steps.
+        first: What the source held before the first step, for others that read its past.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        net: nn.Module,
+        writes: str,
+        reads: Iterable[Port],
+        reads_past: Iterable[Port] = (),
+        steps: int | None = None,
+        first: float | None = None,
+    ) -> None:
+        self.name, self.writes = name, (writes,)
+        self.reads, self.reads_past = frozenset(reads), frozenset(reads_past)
+        self._net, self._steps, self._first = net, steps, first
+
+    @override
+    def before(self, batch: Batch) -> Outputs:
+        if self._first is None:
+            return {}
+        return {self.writes[0]: np.full(len(batch.scenes), self._first)}
+
+    @override
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        import torch
+
+        now = {port: to_numpy(inputs[port]).astype(np.float32) for port in inputs}
+        length = self._steps or 1
+        past = (*(memory or (now,) * (length - 1)), now)
+        kept = past[1 - length :] if length > 1 else ()
+        seen = {port: torch.from_numpy(_laid(past, port, self._steps)) for port in now}
+        scenes = range(len(next(iter(now.values()))))
+        with torch.no_grad():
+            rows = [self._net({p: v[i : i + 1] for p, v in seen.items()})[0] for i in scenes]
+        return {self.writes[0]: np.stack([row.numpy() for row in rows]).astype(float)}, kept
+
+
+def _laid(past: Sequence[Mapping[Port, HostArray]], port: Port, steps: int | None) -> HostArray:
+    if steps is None:
+        return past[-1][port].copy()
+    return np.stack([step[port] for step in past], axis=1)
+
+
+def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
+    """Return a module that gets a withheld channel's neutral value without reading the channel.
+
+    It has no tap there, so that no fault on the channel reaches it: this is the variant to audit.
+    `interface` gives the erasure default where the repair names no value. Raises `UserError` where
+    the repair withholds nothing that the module reads.
+    """
+    values: dict[Port, HostArray] = {}
+    for fault in repair.faults:
+        if not isinstance(fault, Fault) or not isinstance(fault.intervention, Erase):
+            raise UserError(f"withheld: {repair.words} is no withholding")
+        channel, value = interface.channel(fault.channel), fault.intervention.default
+        shape = interface.source(channel.sources[0]).shape
+        neutral = np.broadcast_to(channel.erasure_default if value is None else value, shape)
+        for port in module.ports:
+            names = {ALL, module.name, f"{module.name}.{port.place}"}
+            if port.channel == fault.channel and names & set(fault.consumers):
+                values[port] = neutral
+    if not values:
+        raise UserError(
+            f"withheld: module '{module.name}' reads nothing of what {repair.words} names"
+        )
+    return _Withheld(module, values)
+
+
+class _Withheld(Module):
+    """A module with fewer ports than the one in it."""
+
+    def __init__(self, inner: Module, values: Mapping[Port, HostArray]) -> None:
+        self.name, self.writes, self.truths = inner.name, inner.writes, inner.truths
+        self.reads, self.reads_past = inner.reads - set(values), inner.reads_past - set(values)
+        self._inner, self._values = inner, values
+
+    @override
+    def begin(self, batch: Batch) -> Memory:
+        return len(batch.scenes), self._inner.begin(batch)
+
+    @override
+    def before(self, batch: Batch) -> Outputs:
+        return self._inner.before(batch)
+
+    @override
+    def noise_hashes(self, batch: Batch) -> Sequence[str] | None:
+        return self._inner.noise_hashes(batch)
+
+    @override
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        scenes, past = memory
+        given = {port: inputs[port] for port in inputs}
+        truths = {name: inputs.truth(name) for name in self.truths}
+        beside = next((value for value in given.values() if is_array(value)), np.zeros(1))
+        rows = {p: np.broadcast_to(v, (scenes, *v.shape)) for p, v in self._values.items()}
+        given |= {port: _beside(np.array(row, dtype=float), beside) for port, row in rows.items()}
+        filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running)
+        outputs, past = self._inner.step(filled, past)
+        return outputs, (scenes, past)
+
+
+def _beside(host: HostArray, array: Array) -> Array:
+    floating = namespace(array).isdtype(array.dtype, "real floating")
+    return place(host, array, array.dtype if floating else None)

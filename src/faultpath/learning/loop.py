@@ -1,0 +1,229 @@
+"""The fitting loop: epochs of minibatches, resumable to the bit.
+
+Laws. The order of minibatches depends on the task's `order_key` and its seed only. A fit that was
+killed and run again with its journal ends with the same weights as one that was not.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import opened
+from faultpath.learning.model_card import Schedule, safetensors, tensors
+from faultpath.trials.store.atomic import write_file
+from faultpath.core.streams import generator
+
+if TYPE_CHECKING:
+    from torch import LongTensor, Tensor, nn
+    from torch.optim import Optimizer
+
+FORMAT = "faultpath-fit/1"
+_ENTRY = "fit"  # one entry only: the order of several in the file is not fixed
+
+
+class Diverged(UserError):
+    """A fit left the finite numbers; a journal keeps the state after its last good epoch."""
+
+
+@dataclass(frozen=True)
+class Moment:
+    """How far a fit is."""
+
+    epoch: int
+    """Epoch at work, counted from 0."""
+    fraction: float
+    """Part of all minibatches that is done."""
+    loss: float
+    """Loss of the last minibatch."""
+
+
+@dataclass(frozen=True)
+class History:
+    """What epochs gave so far; one entry an epoch."""
+
+    training_loss: tuple[float, ...] = ()
+    validation: tuple[dict[str, float], ...] = ()
+    duration_s: float = 0.0
+
+
+class Task(ABC):
+    """What is fitted: samples and their loss.
+
+    For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. A fit that was
+    cut short goes on at a later epoch in a new process, so `begin_epoch` and `loss` may depend on
+    the seed, the epoch and the index, and on nothing that earlier epochs left in the task.
+    """
+
+    name: str
+    """Name of the model, for example `wm-a+dcc`; with the seed it names the files."""
+    seed: int
+    schedule: Schedule
+
+    @property
+    @abstractmethod
+    def count(self) -> int:
+        """Number of training samples."""
+
+    @property
+    @abstractmethod
+    def order_key(self) -> str:
+        """Stream of the minibatch order; a baseline and its repair share it."""
+
+    @abstractmethod
+    def begin_epoch(self, epoch: int) -> None:
+        """Prepare an epoch, counted from 0: for example, draw the errors of all samples."""
+
+    @abstractmethod
+    def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
+        """Return the mean loss, a scalar, of the training samples `index` `[b]`."""
+
+    @abstractmethod
+    def validate(self, net: nn.Module) -> Mapping[str, float]:
+        """Return metrics on the validation samples, the main one first.
+
+        Called after each epoch, without gradients and in evaluation mode.
+        """
+
+
+@dataclass(frozen=True)
+class Journal:
+    """Where an unfinished fit stands: one file, written whole after every epoch.
+
+    It holds everything that the next epoch depends on. Draws are addressed by the epoch, so that
+    there is no random state to keep.
+    """
+
+    path: Path
+    recipe: Mapping[str, Any]
+    """What decides the fit, as JSON values: a journal of another one is not used."""
+
+    def write(self, net: nn.Module, optimiser: Optimizer, history: History) -> None:
+        """Write weights, moments and step counts of the optimiser, and the history."""
+        state = {f"model.{name}": value for name, value in tensors(net).items()}
+        for number, moments in optimiser.state_dict()["state"].items():
+            state |= {f"optimiser.{number}.{key}": value for key, value in moments.items()}
+        header = {"format": FORMAT, "recipe": self.recipe} | vars(history)
+        write_file(self.path, safetensors().save(state, {_ENTRY: json.dumps(header)}))
+
+    def read(self, net: nn.Module, optimiser: Optimizer) -> History | None:
+        """Fill the net and the optimiser from the file and return the history.
+
+        Returns None, and leaves both alone, when the file is damaged or of another recipe.
+        """
+        from safetensors import SafetensorError, safe_open
+
+        try:
+            opened(self.path).close()
+            with safe_open(self.path, framework="pt") as file:
+                header = json.loads((file.metadata() or {}).get(_ENTRY, "{}"))
+                state = {key: file.get_tensor(key).clone() for key in file.keys()}  # noqa: SIM118 - a file is no mapping: it has keys, and no iterator
+        except (SafetensorError, OSError, json.JSONDecodeError):
+            return None
+        if header.get("format") != FORMAT or header.get("recipe") != self.recipe:
+            return None
+        weights: dict[str, Tensor] = {}
+        moments: dict[int, dict[str, Tensor]] = {}
+        for key, value in state.items():
+            part, _, name = key.partition(".")
+            if part == "model":
+                weights[name] = value
+            else:
+                number, _, name = name.partition(".")
+                moments.setdefault(int(number), {})[name] = value
+        net.load_state_dict(weights)
+        optimiser.load_state_dict(optimiser.state_dict() | {"state": moments})
+        return History(
+            tuple(header["training_loss"]), tuple(header["validation"]), header["duration_s"]
+        )
+
+
+def run(
+    task: Task,
+    net: nn.Module,
+    journal: Journal | None = None,
+    progress: Callable[[Moment], None] | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> History:
+    """Fit all epochs, or those after the last one that the journal holds.
+
+    `progress` is called after each minibatch, `notice` with a sentence where a journal is not used.
+    Raises `Diverged` for a loss, weights or metrics that are not finite.
+    """
+    import torch
+    from torch import nn
+
+    schedule, history = task.schedule, History()
+    optimiser = _optimiser(task, net)
+    if journal is not None and journal.path.exists():
+        found = journal.read(net, optimiser)
+        if found is None and notice is not None:
+            notice(f"{journal.path} is damaged or of another fit: starting from the first epoch.")
+        history = found or history
+    while (epoch := len(history.training_loss)) < schedule.epochs:
+        started, total = time.monotonic(), 0.0
+        task.begin_epoch(epoch)
+        net.train()
+        batches = minibatches(task, epoch)
+        for number, index in enumerate(batches):
+            optimiser.zero_grad(set_to_none=True)
+            loss = task.loss(net, index)
+            value = loss.item()
+            if not math.isfinite(value):
+                raise _diverged(task, epoch, "loss", journal)
+            loss.backward()
+            if schedule.clip_norm is not None:
+                nn.utils.clip_grad_norm_(net.parameters(), schedule.clip_norm)
+            optimiser.step()
+            total += value * len(index)
+            if progress is not None:
+                done = epoch + (number + 1) / len(batches)
+                progress(Moment(epoch, done / schedule.epochs, value))
+        net.eval()
+        with torch.no_grad():
+            metrics = {key: float(value) for key, value in task.validate(net).items()}
+        finite = all(map(math.isfinite, metrics.values()))
+        if not finite or not all(v.isfinite().all() for v in net.parameters()):
+            raise _diverged(task, epoch, "weights or validation", journal)
+        history = History(
+            (*history.training_loss, total / task.count),
+            (*history.validation, metrics),
+            history.duration_s + time.monotonic() - started,
+        )
+        if journal is not None:
+            journal.write(net, optimiser, history)
+    return history
+
+
+def minibatches(task: Task, epoch: int) -> tuple[LongTensor, ...]:
+    """Cut a permutation of the samples; its address names the order, the seed and the epoch."""
+    import torch
+
+    draws = generator(task.order_key, "minibatches", task.seed, epoch)
+    order: Any = torch.from_numpy(draws.permutation(task.count))
+    return order.split(task.schedule.batch_size)
+
+
+def _optimiser(task: Task, net: nn.Module) -> Optimizer:
+    from torch.optim import Adam, AdamW
+
+    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
+    schedule = task.schedule
+    if schedule.optimiser == "adam":
+        return Adam(fitted, lr=schedule.learning_rate)
+    return AdamW(fitted, lr=schedule.learning_rate, weight_decay=schedule.weight_decay)
+
+
+def _diverged(task: Task, epoch: int, what: str, journal: Journal | None) -> Diverged:
+    kept = f"; the state after epoch {epoch} is kept in {journal.path}" if journal and epoch else ""
+    return Diverged(
+        f"the {what} of {task.name}-{task.seed} left the finite numbers in epoch {epoch + 1} of "
+        f"{task.schedule.epochs}: lower the learning rate or clip the gradient{kept}."
+    )

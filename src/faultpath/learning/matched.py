@@ -1,0 +1,135 @@
+"""Whether two fits differ in the repair alone: every other difference, in a sentence."""
+
+from math import isclose
+from pathlib import Path
+from typing import TypeAlias
+
+from faultpath.core.frozen import Frozen
+from faultpath.learning.model_card import read_card
+from faultpath.learning.fitting import Fit
+from faultpath.learning.record import FitRecord
+from faultpath.core.text import listed
+
+_SAME_LOSS = 1e-4
+"""Relative difference of a first loss that machines may cause and another computation does not."""
+
+Recorded: TypeAlias = Fit | FitRecord | Path | str
+"""A fit, its record, or the path of its weights."""
+
+
+class Comparison(Frozen):
+    """What tells a baseline and its repair apart."""
+
+    baseline: str
+    """Its repair in words, `none` for a plain one."""
+    repair: str
+    same_repair: bool
+    differences: tuple[str, ...]
+    """Beside the repair, a sentence each."""
+
+    @property
+    def matched(self) -> bool:
+        """Whether the repair is the only difference."""
+        return not (self.differences or self.same_repair)
+
+    def __str__(self) -> str:
+        if self.differences:
+            return "\n".join(("not matched:", *(f"  - {each}" for each in self.differences)))
+        if self.same_repair:
+            return f"the same fit twice: even the repair ({self.repair}) is the same"
+        against = "" if self.baseline == "none" else f" against {self.baseline}"
+        return f"matched in all but the repair ({self.repair}{against})"
+
+
+def matched(baseline: Recorded, repair: Recorded) -> Comparison:
+    """Compare two fits by their records: fits, records, or paths of weights files.
+
+    `UserError` for a record that is missing or damaged.
+    """
+    one, other = _record(baseline), _record(repair)
+    found: list[str] = []
+
+    def compare(what: str, mine: object, theirs: object) -> None:
+        if mine != theirs:
+            found.append(f"{what} {mine} in the baseline and {theirs} in the repair.")
+
+    def compare_fields(what: str, mine: Frozen, theirs: Frozen) -> None:
+        after = theirs.model_dump()
+        for name, value in mine.model_dump().items():
+            compare(f"{what}: {name.replace('_', ' ')}", value, after[name])
+
+    compare("Inputs:", listed(one.reads), listed(other.reads))
+    _compare_architecture(one, other, found)
+    _compare_data(one, other, found)
+    compare("Loss:", one.loss, other.loss)
+    compare_fields("Budget", one.schedule, other.schedule)
+    seeds = f"seeds {one.seed} and {other.seed}."
+    same_tensors = one.architecture.tensors == other.architecture.tensors
+    if same_tensors and one.initial_sha256 != other.initial_sha256:
+        found.append(f"Initialisation: the weights before the first step differ; {seeds}")
+    if one.data.training_sha256 == other.data.training_sha256:
+        epochs = enumerate(zip(one.order_sha256, other.order_sha256, strict=False), start=1)
+        first = next((epoch for epoch, (a, b) in epochs if a != b), None)
+        if first is not None:
+            found.append(f"Minibatch order: different from epoch {first} on; {seeds}")
+    compare_fields("Machine", one.machine, other.machine)
+    if not found and not isclose(one.first_loss, other.first_loss, rel_tol=_SAME_LOSS):
+        found.append(
+            "Computation: before any step the same weights have the loss "
+            f"{one.first_loss:.6g} in the baseline and {other.first_loss:.6g} in the repair on "
+            "the same correct inputs, so the code of module or loss differs."
+        )
+    return Comparison(
+        baseline=one.repair,
+        repair=other.repair,
+        same_repair=one.repairs == other.repairs,
+        differences=tuple(found),
+    )
+
+
+def _record(fit: Recorded) -> FitRecord:
+    if isinstance(fit, FitRecord):
+        return fit
+    return fit.record if isinstance(fit, Fit) else read_card(Path(fit), FitRecord)
+
+
+def _compare_architecture(one: FitRecord, other: FitRecord, found: list[str]) -> None:
+    mine, theirs = one.architecture, other.architecture
+    if mine.tensors != theirs.tensors:
+        names = {**mine.tensors, **theirs.tensors}
+        name = next(n for n in names if mine.tensors.get(n) != theirs.tensors.get(n))
+        before, after = (each.tensors.get(name, "missing") for each in (mine, theirs))
+        shown = f"'{name}' is {before}", after
+    elif mine.structure != theirs.structure:
+        lines = zip(mine.structure.splitlines(), theirs.structure.splitlines(), strict=False)
+        shown = next(((a.strip(), b.strip()) for a, b in lines if a != b), (mine.name, theirs.name))
+    else:
+        return
+    found.append(f"Architecture: {shown[0]} in the baseline and {shown[1]} in the repair.")
+
+
+def _compare_data(one: FitRecord, other: FitRecord, found: list[str]) -> None:
+    """With other windows readings, split and order follow, and are no differences of their own."""
+    mine, theirs = one.data, other.data
+    if mine.ids_sha256 != theirs.ids_sha256:
+        found.append(
+            f"Data: other windows, {mine.windows} in the baseline and {theirs.windows} in the "
+            "repair."
+        )
+        return
+    for what, before, after in (
+        ("readings", mine.readings_sha256, theirs.readings_sha256),
+        ("targets", mine.targets_sha256, theirs.targets_sha256),
+    ):
+        names = sorted(n for n in {*before, *after} if before.get(n) != after.get(n))
+        if names:
+            found.append(f"Data: the {what} of {listed(names)} differ.")
+    if mine.dt_s != theirs.dt_s:
+        found.append(
+            f"Data: steps of {mine.dt_s:g} s in the baseline and {theirs.dt_s:g} s in the repair."
+        )
+    if mine.training_sha256 != theirs.training_sha256:
+        found.append(
+            f"Split: other windows are trained on, {mine.training} in the baseline and "
+            f"{theirs.training} in the repair."
+        )

@@ -1,0 +1,152 @@
+"""A fitted module in files: its weights, and beside them the card that says where they come from.
+
+A card is read without torch. Weights are safetensors: reading them runs no code.
+"""
+
+from __future__ import annotations
+
+import json
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from pydantic import Field
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, model_of
+from faultpath.core.frozen import Frozen
+from faultpath.trials.store.atomic import write_file, write_text
+from faultpath.core.text import extra
+
+if TYPE_CHECKING:
+    from torch import Tensor, nn
+
+
+class Schedule(Frozen, allow_inf_nan=False):
+    """How long and by which steps a module is fitted; the learning rate is constant."""
+
+    epochs: int = Field(default=10, ge=1, le=90_000)
+    batch_size: int = Field(default=64, ge=1)
+    """Samples in a minibatch; the last one of an epoch takes what is left."""
+    learning_rate: float = Field(default=1e-3, gt=0)
+    optimiser: Literal["adam", "adamw"] = "adamw"
+    weight_decay: float = Field(default=0.01, ge=0)
+    """Decoupled weight decay of AdamW; Adam has none."""
+    clip_norm: float | None = Field(default=None, gt=0)
+    """Largest norm of the gradient of a minibatch; `None` leaves gradients as they are."""
+
+
+class Card(Frozen):
+    """Where the weights of one fit come from: `<name>-<seed>.json` beside its weights.
+
+    Only `weights_sha256` identifies the weights: durations and versions differ between fits that
+    gave the same ones.
+    """
+
+    name: str
+    seed: int
+    parameters: int
+    """Numbers that were fitted."""
+    schedule: Schedule
+    initial_sha256: str
+    """Of the weights before the first step."""
+    first_loss: float
+    """Of the first minibatch before the first step: it stands for the code."""
+    training_loss: tuple[float, ...]
+    """Mean over the samples of each epoch."""
+    validation: tuple[dict[str, float], ...]
+    """Metrics after each epoch."""
+    weights_sha256: str
+    duration_s: float
+
+    @property
+    def stem(self) -> str:
+        """Name of the files without their ending."""
+        return f"{self.name}-{self.seed}"
+
+
+CardKind = TypeVar("CardKind", bound=Card)
+
+
+def read_card(path: Path, kind: type[CardKind]) -> CardKind:
+    """Read the card beside a weights file; `UserError` when it is missing or damaged."""
+    place = path.with_suffix(".json")
+    try:
+        return model_of(contents(place), kind)
+    except (OSError, Misread) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is no card of a fit"
+        raise UserError(
+            f"cannot read {place} ({reason}): copy it again or fit the model again"
+        ) from error
+
+
+def save(net: nn.Module, card: Card, folder: Path) -> Path:
+    """Write weights and, last, their card; each file is whole or absent. Return the weights' path.
+
+    The bytes of the weights file depend on the weights alone.
+    """
+    path = folder / f"{card.stem}.safetensors"
+    write_file(path, encoded(net))
+    text = json.dumps(card.model_dump(mode="json"), indent=2, allow_nan=False)
+    write_text(path.with_suffix(".json"), f"{text}\n")
+    return path
+
+
+def fill(net: nn.Module, path: Path, kind: type[CardKind]) -> CardKind:
+    """Fill a module with the weights of a fit and return their card.
+
+    Raises `UserError` when a file is missing, differs from its card, or is of another architecture.
+    """
+    card = read_card(path, kind)
+    try:
+        content = contents(path)
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({error.strerror}): fit the model again") from error
+    if sha256(content).hexdigest() != card.weights_sha256:
+        raise UserError(
+            f"the weights in {path} are not those of its card: copy both files again or fit the "
+            "model again"
+        )
+    codec = safetensors()
+    from safetensors import SafetensorError
+
+    try:
+        net.load_state_dict(codec.load(content))
+    except (RuntimeError, SafetensorError) as error:
+        raise UserError(
+            f"the weights in {path} are of another architecture than {type(net).__name__}: give "
+            "the module that was fitted, or fit the model again"
+        ) from error
+    return card
+
+
+def tensors(net: nn.Module) -> dict[str, Tensor]:
+    """Return parameters and buffers by name, each with memory of its own."""
+    return {name: value.detach().cpu().clone() for name, value in net.state_dict().items()}
+
+
+def encoded(net: nn.Module) -> bytes:
+    """Return the weights as a file."""
+    return safetensors().save(tensors(net))
+
+
+def weights_sha256(net: nn.Module) -> str:
+    """Return the digest of the file that the weights would make."""
+    return sha256(encoded(net)).hexdigest()
+
+
+def parameter_count(net: nn.Module) -> int:
+    """Return how many numbers are fitted."""
+    return sum(each.numel() for each in net.parameters() if each.requires_grad)
+
+
+def safetensors() -> Any:
+    """Return the module that writes weights; `UserError` where it is not installed."""
+    try:
+        import safetensors.torch
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"fits are kept as safetensors, which is not installed: {extra('torch')}"
+        ) from error
+    return safetensors.torch

@@ -1,0 +1,192 @@
+"""What a repair does to the inputs of a module: uncertainty, withholding, reconstruction."""
+
+from collections.abc import Collection, Iterable, Mapping
+from math import sqrt
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from faultpath.core.arrays import Constant
+from faultpath.core.errors import UserError
+from faultpath.faults import ALL, AnyFault, Bias, Coupled, Erase, Fault, Noise, parse_fault
+from faultpath.core.frozen import Frozen
+from faultpath.interface import Interface
+from faultpath.core.text import listed
+
+Persistence: TypeAlias = Literal["window", "step"] | float
+"""How long a drawn error lasts: one draw a window, one a step, or a time constant in seconds."""
+
+
+class Repair(Frozen):
+    """What a fit does that its baseline does not (paper, "Propose Repairs, Then Audit").
+
+    Made by `uncertainty_training`, `withholding` and `reconstruction`.
+    """
+
+    kind: Literal["uncertainty_training", "withholding", "reconstruction"]
+    faults: tuple[AnyFault | str, ...] = ()
+    """What the taps do to every window's readings; text as an audit's `--fault` takes it."""
+    channel: str | None = None
+    """What a reconstruction estimates."""
+
+    @property
+    def words(self) -> str:
+        """The repair in a few words."""
+        said = "; ".join(map(_said, self.faults))
+        if self.kind == "reconstruction":
+            return f"reconstruction of {self.channel}"
+        if self.kind == "withholding":
+            return f"withholding: {said}"
+        return f"uncertainty training: {said}"
+
+    def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
+        """Return the repair as it acts on the consumers that are `present`, all spelled out.
+
+        Raises `UserError` where it does not fit, or acts on none of them.
+        """
+        if self.channel is not None:
+            interface.channel(self.channel)
+        found: list[AnyFault] = []
+        for fault in understood(self.faults, interface, dt_s):
+            if self.kind == "withholding":
+                _check_shaped(fault, interface)
+            faults = fault.resolved(interface, present)
+            if not faults:
+                raise UserError(
+                    f"{self.kind}: '{fault.describe()}' acts on none of {listed(present)}, which "
+                    "are fitted; name one of these, or another reader"
+                )
+            found += faults
+        return self.model_copy(update={"faults": tuple(found)})
+
+
+def understood(
+    faults: Iterable[AnyFault | str], interface: Interface, dt_s: float
+) -> tuple[AnyFault, ...]:
+    """Return faults with text parsed as `--fault` is; `UserError` for one that does not fit."""
+    return tuple(
+        parse_fault(each, interface, {}, dt_s) if isinstance(each, str) else each for each in faults
+    )
+
+
+def kept(repairs: Iterable[Repair]) -> tuple[AnyFault | str, ...]:
+    """Return what stays at the taps after a fit: what is withheld."""
+    return tuple(f for each in repairs if each.kind == "withholding" for f in each.faults)
+
+
+def uncertainty_training(*q_eps: AnyFault | str) -> Repair:
+    """Return the repair that draws errors anew for each window and epoch of a fit.
+
+    Samples and targets stay as they are (paper, Eq. 1). `q_eps` are the faults of an audit, as
+    objects or as text: `"mass:uniform_scale=0.2"` is the paper's. What they draw once a scene is
+    drawn once a window; a window's first step is step 0, so onset, drift and intermittence go by
+    the steps of the window. `errors` makes the usual Gaussian ones.
+    """
+    if not q_eps:
+        raise UserError("uncertainty_training: name at least one error, or leave the repair out")
+    return Repair(kind="uncertainty_training", faults=q_eps)
+
+
+def errors(
+    magnitude: Mapping[str, float],
+    persistence: Persistence = "window",
+    dependence: float | Mapping[str, float] = 0.0,
+    relative: bool = True,
+) -> Coupled:
+    """Return Gaussian errors of several channels, for a fit or for an audit.
+
+    Args:
+        magnitude: Channel to the standard deviation of its error, as a fraction of the reading or,
+            unless `relative`, in its unit.
+        persistence: `"window"` for one draw a window (in an audit: a scene), `"step"` for one a
+            step, or the time constant in seconds of an Ornstein-Uhlenbeck process.
+        dependence: Correlation between the errors of any two channels, from 0 to 1. Or channel to
+            its loading from -1 to 1: the correlation of two is the product of theirs.
+
+    Raises `UserError` for a number out of its range and a loading of another channel.
+    """
+    if isinstance(dependence, Mapping):
+        loadings = dependence
+    elif 0 <= dependence <= 1:
+        loadings = dict.fromkeys(magnitude, sqrt(dependence))
+    else:
+        raise UserError(f"errors: a dependence of {dependence} is not from 0 to 1")
+    if set(loadings) != set(magnitude):
+        raise UserError(
+            f"errors: dependence has loadings of {listed(loadings)}, and magnitude is of "
+            f"{listed(magnitude)}: name the same channels"
+        )
+    faults: list[Fault] = []
+    for channel, std in magnitude.items():
+        loading = loadings[channel]
+        if not (std >= 0 and -1 <= loading <= 1):
+            raise UserError(
+                f"errors: channel '{channel}' has magnitude {std} and loading {loading}: the first "
+                "must not be negative, the second is from -1 to 1"
+            )
+        faults.append(
+            Fault(channel=channel, intervention=_law(std, persistence, relative), loading=loading)
+        )
+    if not faults:
+        raise UserError("errors: magnitude names no channel")
+    return Coupled(name=f"q_eps of {listed(magnitude)}", faults=tuple(faults))
+
+
+def withholding(
+    channel: str, consumers: str | Iterable[str] = ALL, value: Constant | None = None
+) -> Repair:
+    """Return the repair in which consumers never get a channel but its neutral value.
+
+    The taps put it in place of the reading in every window of a fit; in flight `withheld` does, in
+    a module that no longer reads the channel.
+
+    Args:
+        channel: What is withheld.
+        consumers: Modules or `module.place`; all by default.
+        value: In the reading's unit and shape; default the channel's erasure default.
+    """
+    names = (consumers,) if isinstance(consumers, str) else tuple(consumers)
+    fault = Fault(channel=channel, intervention=Erase(default=value), consumers=names)
+    return Repair(kind="withholding", faults=(fault,))
+
+
+def reconstruction(channel: str) -> Repair:
+    """Return the repair whose fit learns to estimate a channel from what its module reads.
+
+    The target of each window is the channel's correct reading; what the module reads may be
+    perturbed by a further repair. The downstream modules stay as they are.
+    """
+    return Repair(kind="reconstruction", channel=channel)
+
+
+def _said(fault: AnyFault | str) -> str:
+    if isinstance(fault, str):
+        return fault
+    if isinstance(fault, Coupled) or fault.loading == 1.0:
+        return fault.describe()
+    return f"{fault.describe()}, with a loading of {fault.loading:g} on {fault.drawn_from}"
+
+
+def _law(std: float, persistence: Persistence, relative: bool) -> Bias | Noise:
+    if persistence == "step":
+        return Noise(std=std, relative=relative)
+    if persistence == "window":
+        return Bias(std=std, relative=relative)
+    if isinstance(persistence, str) or not persistence > 0:
+        raise UserError(
+            f"errors: a persistence of {persistence!r} is none: give 'window', 'step' or seconds"
+        )
+    return Bias(std=std, relative=relative, time_constant_s=persistence)
+
+
+def _check_shaped(fault: AnyFault, interface: Interface) -> None:
+    """Refuse a value that would be laid along a reading: in flight nothing says its shape."""
+    if not isinstance(fault, Fault) or not isinstance(fault.intervention, Erase):
+        return
+    shape = interface.source(interface.channel(fault.channel).sources[0]).shape
+    value = fault.intervention.default
+    if value is not None and np.shape(value) != shape:
+        raise UserError(
+            f"withholding '{fault.channel}': its reading has the shape {list(shape)}, and the "
+            f"value {list(np.shape(value))}: give one number for each"
+        )

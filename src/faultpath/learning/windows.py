@@ -1,0 +1,266 @@
+"""What a module is fitted to: windows of readings by channel, through the taps of its interface."""
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import blake2b, sha256
+from typing import Any
+
+import numpy as np
+
+from faultpath.core.arrays import Array, HostArray, namespace
+from faultpath.core.errors import UserError
+from faultpath.faults import AnyFault
+from faultpath.interface import Interface, Provenance, module_of
+from faultpath.loop import Port
+from faultpath.learning.record import Data
+from faultpath.learning.repair import Repair
+from faultpath.loop.taps import Reading, TapCount, Taps
+from faultpath.core.text import listed, unknown
+
+_EPOCHS = 100_000
+"""Seeds of the faults' random numbers lie this far apart from one seed of a fit to the next."""
+VALIDATION = _EPOCHS - 1
+"""The epoch whose errors validation gets."""
+
+Targets = HostArray | Mapping[str, HostArray]
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Windows, or whole episodes, of one length: what a module reads in them, and its targets.
+
+    Args:
+        interface: Of the system that the module belongs to; its taps deliver.
+        reader: The module, or the consumers `module.place` of one or several, that is fitted.
+        readings: By channel, what the source holds: `[N, T, ...]` step by step in order, or
+            `[N, ...]` for what is constant in a window. Without steps all are `[N, ...]`.
+        targets: Handed to the loss, `[N, ...]` or such by name; a reconstruction needs none.
+        dt_s: Length of a step, s.
+        ids: Name of each window, which addresses its random numbers.
+        episodes: Name of the episode that each window is cut from: an episode is on one side of
+            the split. Default: every window is one.
+
+    Raises:
+        UserError: Something does not fit together.
+    """
+
+    interface: Interface
+    reader: str | Sequence[str]
+    readings: Mapping[str, HostArray]
+    targets: Targets | None
+    dt_s: float
+    ids: Sequence[str] = ()
+    episodes: Sequence[str] = ()
+
+    def __post_init__(self) -> None:
+        if not self.readings:
+            raise UserError("windows: there are no readings; give them by channel")
+        found = {name: np.asarray(value) for name, value in self.readings.items()}
+        object.__setattr__(self, "readings", found)
+        n = len(next(iter(found.values())))
+        ids = tuple(self.ids) or tuple(f"window/{i:06d}" for i in range(n))
+        object.__setattr__(self, "ids", ids)
+        object.__setattr__(self, "episodes", tuple(self.episodes) or ids)
+        _check_rows(self, n)
+        _check_steps(self)
+        missing = {port.channel for port in self.ports} - set(found)
+        if missing:
+            raise UserError(
+                f"windows: {listed(self.consumers)} read {listed(missing)}, of which there are no "
+                "readings: add them, or name fewer places as reader"
+            )
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    @cached_property
+    def consumers(self) -> tuple[str, ...]:
+        """The reader spelled out, `module.place`."""
+        names = (self.reader,) if isinstance(self.reader, str) else tuple(self.reader)
+        known = dict.fromkeys(c for channel in self.interface.channels for c in channel.consumers)
+        for name in names:
+            if not any(name in (consumer, module_of(consumer)) for consumer in known):
+                places = {*known, *map(module_of, known)}
+                raise UserError(f"windows: {unknown('reader', name, places)}")
+        return tuple(c for c in known if c in names or module_of(c) in names)
+
+    @cached_property
+    def ports(self) -> Mapping[Port, str]:
+        """Where the reader reads, with the consumer's full name."""
+        found: dict[Port, str] = {}
+        for channel in self.interface.channels:
+            for consumer in channel.consumers:
+                if consumer not in self.consumers:
+                    continue
+                port = Port(channel.name, consumer.partition(".")[2])
+                if port in found:
+                    raise UserError(
+                        f"windows: {found[port]} and {consumer} read '{port.channel}' at places of "
+                        "one name: fit them apart"
+                    )
+                found[port] = consumer
+        return found
+
+    def shape(self, channel: str) -> tuple[int, ...]:
+        """Return the shape of one reading of a channel."""
+        return self.interface.source(self.interface.channel(channel).sources[0]).shape
+
+    @cached_property
+    def steps(self) -> int | None:
+        """Steps of a window; `None` where nothing has any."""
+        for name, value in self.readings.items():
+            if value.ndim == len(self.shape(name)) + 2:
+                return int(value.shape[1])
+        return None
+
+    def split(self, validation: float) -> tuple[HostArray, HostArray]:
+        """Return the places of the windows for training and of those for validation, in order.
+
+        The name of an episode decides alone, whatever else there is.
+        """
+        share = {name: _unit(name) for name in dict.fromkeys(self.episodes)}
+        held_out = np.array([share[name] < validation for name in self.episodes])
+        return np.flatnonzero(~held_out), np.flatnonzero(held_out)
+
+    def learned(self, repairs: Iterable[Repair]) -> Targets:
+        """Return what the loss gets; for a reconstruction the correct readings of its channel."""
+        made = [each.channel for each in repairs if each.channel is not None]
+        if not made and self.targets is None:
+            raise UserError("fit: the windows have no targets; only a reconstruction needs none")
+        if len(made) > 1:
+            raise UserError(f"fit: a module reconstructs one channel, not {listed(made)}")
+        for consumer in (c for port, c in self.ports.items() if port.channel in made):
+            raise UserError(
+                f"fit: {consumer} reads '{made[0]}', which it is to reconstruct: leave that place "
+                "out of reader"
+            )
+        if made and made[0] not in self.readings:
+            raise UserError(f"fit: there are no readings of '{made[0]}' to learn from: add them")
+        return (
+            self.readings[made[0]] if made else (self.targets if self.targets is not None else {})
+        )
+
+    def digested(self, targets: Targets, training: HostArray) -> Data:
+        """Return digests of what is fitted to, with these windows on the training side."""
+        return Data(
+            readings_sha256={
+                name: sha256_of(self.readings[name]) for name in sorted(self.readings)
+            },
+            targets_sha256={name: sha256_of(value) for name, value in named(targets).items()},
+            ids_sha256=self.names_sha256(np.arange(len(self))),
+            windows=len(self),
+            steps=self.steps,
+            dt_s=self.dt_s,
+            training=len(training),
+            training_sha256=self.names_sha256(training),
+        )
+
+    def names_sha256(self, index: HostArray) -> str:
+        """Return a digest of the names of some windows, in this order."""
+        return sha256("\n".join(self.ids[int(i)] for i in index).encode()).hexdigest()
+
+
+def delivered(
+    windows: Windows,
+    faults: Iterable[AnyFault],
+    readings: Mapping[str, Array],
+    index: Sequence[int] | HostArray,
+    seed: int,
+    epoch: int,
+) -> tuple[dict[Port, Array], tuple[TapCount, ...]]:
+    """Return what each port gets of some windows in an epoch, and what the taps did.
+
+    A window is a scene of the taps and draws by its name, the seed and the epoch: neither its
+    minibatch nor its place there matters. `readings` hold the rows `index` of the windows'.
+    Arrays are `[n, T, ...]`, or `[n, ...]` where windows have no steps. Raises `NotDelivered`
+    where a fault missed a consumer that it names.
+    """
+    steps, interface = windows.steps, windows.interface
+    taps = window_taps(
+        interface,
+        faults,
+        tuple(windows.ids[i] for i in index),
+        windows.dt_s,
+        seed,
+        epoch,
+        windows.consumers,
+    )
+    ports = windows.ports
+    got: dict[Port, list[Array]] = {port: [] for port in ports}
+    for step in range(steps or 1):
+        for port, consumer in ports.items():
+            value = readings[port.channel]
+            if value.ndim == len(windows.shape(port.channel)) + 2:
+                value = value[:, step]
+            reading = Reading(value, taps.bindings[port.channel], step)
+            got[port].append(taps.deliver(port.channel, consumer, reading, step))
+    taps.verify(last_step=(steps or 1) - 1)
+    stacked = {
+        port: values[0] if steps is None else namespace(values[0]).stack(values, axis=1)
+        for port, values in got.items()
+    }
+    return stacked, taps.receipts().counts()
+
+
+def window_taps(
+    interface: Interface,
+    faults: Iterable[AnyFault],
+    ids: tuple[str, ...],
+    dt_s: float,
+    seed: int,
+    epoch: int,
+    consumers: Collection[str],
+) -> Taps:
+    """Return taps for which windows are scenes, with draws of their own in each epoch of a fit."""
+    return Taps(
+        interface,
+        faults,
+        scenes=ids,
+        dt_s=dt_s,
+        seed=_EPOCHS * seed + epoch,
+        consumers=consumers,
+        privileged={s.name for s in interface.sources if s.provenance is Provenance.PRIVILEGED},
+    )
+
+
+def sha256_of(array: HostArray) -> str:
+    """Return a digest of an array's type, shape and bits."""
+    head = f"{array.dtype.str}{array.shape}".encode()
+    return sha256(head + np.ascontiguousarray(array).tobytes()).hexdigest()
+
+
+def named(targets: Targets | None) -> dict[str, HostArray]:
+    """Return targets by name, `target` where there is but one."""
+    if isinstance(targets, Mapping):
+        return {name: np.asarray(value) for name, value in targets.items()}
+    return {} if targets is None else {"target": np.asarray(targets)}
+
+
+def _check_rows(windows: Windows, n: int) -> None:
+    parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in windows.readings.items()}
+    parts |= {f"targets '{name}'": value for name, value in named(windows.targets).items()}
+    parts |= {"ids": windows.ids, "episodes": windows.episodes}
+    for what, value in parts.items():
+        if len(value) != n:
+            raise UserError(f"windows: {what} has {len(value)} rows for {n} windows: mend it")
+    if len(set(windows.ids)) < n:
+        raise UserError("windows: two have the same id, and would get the same errors: rename one")
+
+
+def _check_steps(windows: Windows) -> None:
+    steps = windows.steps
+    for name, value in windows.readings.items():
+        shape = windows.shape(name)
+        fits = (shape, shape if steps is None else (steps, *shape))
+        if value.shape[1:] not in fits:
+            wanted = " or ".join(str([len(windows), *each]) for each in dict.fromkeys(fits))
+            raise UserError(
+                f"windows: readings of '{name}' have the shape {list(value.shape)}, and the "
+                f"interface says {wanted}: mend one of the two"
+            )
+
+
+def _unit(name: str) -> float:
+    digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
+    return int.from_bytes(digest, "little") / 2**64

@@ -1,0 +1,41 @@
+"""Where a source's reading becomes what a consumer gets."""
+
+from faultpath.loop.taps.errors import (
+    IllegalRead,
+    MalformedReading,
+    NotDelivered,
+    NotFinite,
+    StruckElsewhere,
+    TapError,
+    UndeclaredReader,
+    WrittenTo,
+)
+from faultpath.loop.taps.observer import Observer
+from faultpath.loop.taps.reading import Query, Reading
+from faultpath.loop.taps.receipts import (
+    Receipts,
+    TapCount,
+    added,
+    check_delivered,
+)
+from faultpath.loop.taps.taps import ModuleTaps, Taps
+
+__all__ = [
+    "IllegalRead",
+    "MalformedReading",
+    "ModuleTaps",
+    "NotDelivered",
+    "NotFinite",
+    "Observer",
+    "Query",
+    "Reading",
+    "Receipts",
+    "StruckElsewhere",
+    "TapCount",
+    "TapError",
+    "Taps",
+    "UndeclaredReader",
+    "WrittenTo",
+    "added",
+    "check_delivered",
+]

@@ -1,0 +1,287 @@
+"""Taps: the only place where a source's reading becomes what a consumer gets."""
+
+from collections.abc import Callable, Collection, Iterable, Mapping
+from dataclasses import dataclass
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.core.arrays import Array, differs, read_only
+from faultpath.core.errors import UserError
+from faultpath.faults import Coupled, Draws, Fault
+from faultpath.interface import Interface, modules
+from faultpath.loop.taps.checks import check_draws, check_finite, check_first, check_same, check_shape
+from faultpath.loop.taps.errors import (
+    IllegalRead,
+    MalformedReading,
+    TapError,
+    UndeclaredReader,
+    WrittenTo,
+)
+from faultpath.loop.taps.guard import Guard
+from faultpath.loop.taps.observer import Observer
+from faultpath.loop.taps.reading import Query, Reading
+from faultpath.loop.taps.receipts import Receipts, check_delivered
+from faultpath.loop.taps.strike import Strike
+from faultpath.loop.taps.tally import Running, Tally
+from faultpath.loop.taps.tap import Tap, wire
+from faultpath.core.text import listed, unknown
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleTaps:
+    """All that a module under test sees of the taps: its own deliveries."""
+
+    module: str
+    deliver: Callable[[str, str, Reading, int], Array]
+    """`deliver(channel, place, reading, step)` for the consumer `module.place`."""
+
+
+class Taps:
+    """The taps of one variant over one block of scenes, with the faults of one arm.
+
+    Args:
+        interface: What the system declares.
+        faults: Faults in the order in which they act where they meet at a tap.
+        scenes: Scene ids, one a row of every reading.
+        dt_s: Length of a control step, s.
+        seed: Seed of the faults' random numbers.
+        bindings: Channel to the source that feeds it here; the rest keep their first source.
+        consumers: Consumers that this variant has; `None`: all that are declared.
+        privileged: Privileged sources that this arm may read.
+        guard: Give every consumer a copy of its own and let `verify` tell who wrote into it. NumPy
+            readings cannot be written to in any case.
+        observer: Sees what is delivered.
+
+    Raises:
+        UserError: A name is unknown, a fault does not fit, or it strikes nobody in this variant.
+    """
+
+    def __init__(
+        self,
+        interface: Interface,
+        faults: Iterable[Fault | Coupled] = (),
+        *,
+        scenes: tuple[str, ...],
+        dt_s: float,
+        seed: int = 0,
+        bindings: Mapping[str, str] | None = None,
+        consumers: Collection[str] | None = None,
+        privileged: Collection[str] = (),
+        guard: bool = False,
+        observer: Observer | None = None,
+    ) -> None:
+        self._interface = interface
+        self._observer = observer
+        self._scenes = tuple(scenes)
+        self._running = Running(None)
+        self._struck, self._altered = Tally(), Tally()
+        self._open: Array = None
+        self._closed: Array = None
+        self._taps = wire(interface, bindings or {}, consumers, privileged, len(scenes))
+        for tap in self._taps.values() if guard else ():
+            tap.guard = Guard()
+        first = {channel.name: channel.sources[0] for channel in interface.channels}
+        self._bindings = MappingProxyType(first | dict(bindings or {}))
+        self._strike(tuple(faults), dt_s, seed)
+
+    def _strike(self, faults: tuple[Fault | Coupled, ...], dt_s: float, seed: int) -> None:
+        present = {consumer for _, consumer in self._taps}
+        draws: dict[tuple[str, float, str | None], Draws] = {}
+        resolved = [declared.resolved(self._interface) for declared in faults]
+        check_draws([fault for parts in resolved for fault in parts])
+        for declared, everywhere in zip(faults, resolved, strict=True):
+            if not declared.resolved(self._interface, present):
+                names = {consumer for fault in everywhere for consumer in fault.consumers}
+                raise UserError(
+                    f"fault '{declared.describe()}' strikes nobody in this variant, which has no "
+                    f"{listed(names)}; leave the fault out or name other consumers"
+                )
+            for fault in everywhere:
+                made = fault.draws(self._scenes, seed)
+                drawn = draws.setdefault(
+                    (made.cause, made.loading, made.own and made.own.cause), made
+                )
+                for consumer in fault.consumers:
+                    if tap := self._taps.get((fault.channel, consumer)):
+                        tap.add(Strike(fault, drawn, dt_s))
+
+    @property
+    def bindings(self) -> Mapping[str, str]:
+        """The source that feeds each channel here."""
+        return self._bindings
+
+    def deliver(self, channel: str, consumer: str, reading: Reading, step: int) -> Array:
+        """Return what `consumer` gets of `channel` at control step `step`.
+
+        Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array comes
+        as a view that cannot be written to. A second delivery in one step returns what the first
+        did, with a fault or without. A query comes as a function of its request; see `Query`.
+
+        Raises:
+            UndeclaredReader: This variant has no such consumer of the channel.
+            IllegalRead: The reading is not of the bound source, is privileged, or of the future.
+            MalformedReading: It is no reading or not as declared, differs from that of the step's
+                first delivery, or `step` is before the last one.
+            NotFinite: The first reading at this tap is not finite.
+        """
+        tap = self._taps.get((channel, consumer))
+        if tap is None:
+            raise self._undeclared(channel, consumer)
+        try:
+            value = reading.value
+            if reading.source != tap.source or not tap.legal or reading.step > step:
+                raise self._illegal(tap, reading, step)
+        except AttributeError:
+            raise self._no_reading(tap, reading) from None
+        if step != tap.last_step:
+            if step < tap.last_step:
+                raise MalformedReading(
+                    f"tap {tap}: step {step} comes after step {tap.last_step}; a new run needs "
+                    "new taps"
+                )
+            if not (tap.deliveries or isinstance(value, Query)):
+                check_first(tap, value, self._scenes)
+            tap.last_step = step
+            tap.deliveries += 1
+            tap.given = value
+            tap.cached = self._handed(tap, value, step)
+        elif value is not tap.given:
+            check_same(tap, value, step)
+        if self._observer is not None:
+            self._observer.delivered(tap, reading, step, tap.cached)
+        return tap.cached
+
+    def _handed(self, tap: Tap, value: Any, step: int) -> Any:
+        if isinstance(value, Query):
+            tap.asked = 0
+            return partial(self._answer, tap, value, step)
+        if tap.strikes:
+            value = self._struck_value(tap, value, step)
+        if isinstance(value, np.ndarray):
+            if value is not self._open:  # consumers of one array share the view of it
+                self._open, self._closed = value, read_only(value)
+            return self._closed
+        return value if tap.guard is None else tap.guard.hand_out(value)
+
+    def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
+        if step != tap.last_step:
+            raise MalformedReading(
+                f"tap {tap}: the query of step {step} was asked in step {tap.last_step}; ask what "
+                "was delivered in this step"
+            )
+        answer = read_only(query.answer(request))
+        ask, first = tap.asked, not tap.asks
+        tap.asked, tap.asks = ask + 1, tap.asks + 1
+        got = answer
+        if first or tap.strikes or tap.guard:
+            given = value = query.value(answer)
+            if first:
+                check_first(tap, value, self._scenes)
+            if tap.strikes:
+                value = self._struck_value(tap, value, step, ask)
+            if tap.guard is not None:
+                value = tap.guard.hand_out(value)
+            if value is not given:
+                got = query.changed(answer, value)
+        if self._observer is not None:
+            self._observer.answered(tap, query, step, request, answer, got)
+        return got
+
+    def _struck_value(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
+        check_shape(tap, reading)
+        value, struck = reading, False
+        for strike in tap.strikes:
+            value, in_force = strike.act(value, step, ask)
+            in_force = self._running.among(in_force, reading)
+            strike.in_force.note(step, in_force)
+            struck = in_force if struck is False else struck | in_force
+        if len(tap.strikes) > 1:
+            tap.struck.note(step, struck)
+        self._struck.note(step, struck)
+        if self._observer is not None:
+            self._observer.struck(step, struck)
+        if value is not reading and struck is not False:
+            altered = self._running.among(differs(value, reading), reading)
+            tap.altered.note(step, altered)
+            self._altered.note(step, altered)
+        return value
+
+    def set_active(self, mask: Array | None) -> None:
+        """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
+        self._running = Running(mask)
+
+    def for_module(self, module: str) -> ModuleTaps:
+        """Return the view that `module` gets; raises `TapError` for an unknown module."""
+        if module not in modules(self._interface):
+            raise TapError(unknown("module", module, modules(self._interface)))
+
+        def deliver(channel: str, place: str, reading: Reading, step: int) -> Array:
+            return self.deliver(channel, f"{module}.{place}", reading, step)
+
+        return ModuleTaps(module, deliver)
+
+    def receipts(self) -> Receipts:
+        """Return what was delivered so far; this waits for the device that holds the counts."""
+        n = len(self._scenes)
+        return Receipts(
+            scenes=self._scenes,
+            taps=tuple(tap.receipt(n) for tap in self._taps.values()),
+            steps_struck=self._struck.counts(n),
+            steps_altered=self._altered.counts(n),
+        )
+
+    def verify(self, last_step: NDArray[np.int64] | int) -> None:
+        """Check that each fault reached the consumers that it names, and nobody else.
+
+        `last_step`: the last control step at which each scene ran, `[B]` or one for all. Raises as
+        `check_delivered`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
+        guarded consumer that wrote.
+        """
+        for tap in self._taps.values():
+            check_finite(tap, self._scenes)
+            if tap.guard is not None and tap.guard.written():
+                raise WrittenTo(
+                    f"tap {tap}: the consumer wrote into the reading, which others may read too; "
+                    "copy it before writing"
+                )
+        struck = frozenset(name for name, tap in self._taps.items() if tap.strikes)
+        last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
+        check_delivered(self.receipts(), struck, last)
+
+    def _undeclared(self, channel: str, consumer: str) -> UndeclaredReader:
+        declared = self._interface.channel(channel).consumers
+        if consumer in declared:
+            return UndeclaredReader(
+                f"tap {channel} -> {consumer}: this variant has no such consumer; name it in the "
+                "variant's consumers"
+            )
+        return UndeclaredReader(
+            f"tap {channel} -> {consumer}: the channel does not declare this consumer; add it to "
+            f"the interface, declared: {listed(declared)}"
+        )
+
+    def _no_reading(self, tap: Tap, given: object) -> MalformedReading:
+        return MalformedReading(
+            f"tap {tap}: deliver() was given a {type(given).__name__}; wrap it: "
+            f"Reading(value, '{tap.source}', step)"
+        )
+
+    def _illegal(self, tap: Tap, reading: Reading, step: int) -> IllegalRead:
+        if reading.source != tap.source:
+            return IllegalRead(
+                f"tap {tap}: the reading is of source '{reading.source}', but the channel is "
+                f"bound to '{tap.source}'; deliver that one, or bind the channel in the variant"
+            )
+        if not tap.legal:
+            return IllegalRead(
+                f"tap {tap}: source '{tap.source}' is privileged and this arm does not permit it; "
+                "read another one, or name it in the variant's privileged sources"
+            )
+        return IllegalRead(
+            f"tap {tap}: the reading is of step {reading.step}, which is after step {step}; "
+            "deliver what is known by then"
+        )

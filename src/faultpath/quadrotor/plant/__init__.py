@@ -1,6 +1,0 @@
-"""The plant: what the world does with a command, whatever any model believes."""
-
-from faultpath.quadrotor.plant.protocol import Plant, PlantState
-from faultpath.quadrotor.plant.torch_plant import TorchPlant
-
-__all__ = ["Plant", "PlantState", "TorchPlant"]

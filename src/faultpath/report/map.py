@@ -1,0 +1,153 @@
+"""A map as tables, pictures, terminal and page; all numbers are the record's."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from markupsafe import Markup
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from faultpath.decisions.map.asked import MapQuestion
+from faultpath.decisions.map.lattice import SHARED
+from faultpath.decisions.map.model import Flip, MapPoint, MapRecord
+from faultpath.decisions.map.words import cut
+from faultpath.decisions import RunProvenance, wording
+from faultpath.report.frame import render
+from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.statistics.contrast import MIN_SCENES
+from faultpath.trials.store import make_folder, write_text
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.decisions.tables.html import html
+from faultpath.decisions.tables.markdown import block
+from faultpath.decisions.tables.terminal import drawn
+
+
+def tables(record: MapRecord) -> tuple[Table, ...]:
+    """Return how large an error changes the verdict on each path, and what was seen there.
+
+    Too few scenes to decide anything have no verdict that could change.
+    """
+    flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
+    return *flips, _paths(record)
+
+
+def _paths(record: MapRecord) -> Table:
+    asked = record.question
+    of = {point.errors: point for point in record.points}
+    sizes = sorted({x or y for x, y in of if x == y or not x or not y})
+    places: tuple[Callable[[float], tuple[float, float]], ...] = (
+        lambda size: (size, 0.0),
+        lambda size: (0.0, size),
+        lambda size: (size, size),
+    )
+    return Table(
+        name="paths",
+        title=f"{asked.repair} minus {asked.baseline}, success, pp",
+        corner="Error",
+        columns=(*(f"{name} alone" for name in asked.against), "shared"),
+        lines=tuple(
+            line(_said(asked, size), *(_difference(of.get(place(size))) for place in places))
+            for size in sizes
+        ),
+        notes=(
+            f"{wording.counted(record.scenes, 'scene')} of {asked.library}, "
+            f"{wording.seeds(asked.seeds)}. Bold: decided. Intervals hold at all "
+            f"{len(record.points)} pairs of errors at once.",
+        ),
+    )
+
+
+def _difference(point: MapPoint | None) -> Entry:
+    if point is None:
+        return Entry(text=MISSING)
+    ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
+    text = f"{wording.signed(point.difference)} {ends}"
+    return Entry(text=text, detected=point.sign != 0)
+
+
+def _flips(record: MapRecord) -> Table:
+    return Table(
+        name="flips",
+        title="Smallest error that turns the verdict",
+        corner="Path",
+        columns=("Error", "Ahead without error, up to", "Estimate turns at", "Ahead beyond, from"),
+        lines=tuple(_flip(record, flip) for flip in record.flips),
+        notes=(
+            "Ahead is who is decided to be, at all sizes up to that one, or from that one on. The "
+            "turn lies between the two, which are its interval. A dash: no size on the map is "
+            "decided, or the estimate does not turn; where correct inputs decide nothing there is "
+            "no verdict to turn. All of it holds at once, with the intervals of the map.",
+        ),
+    )
+
+
+def _flip(record: MapRecord, flip: Flip) -> Line:
+    asked = record.question
+    ahead = {1: asked.repair, -1: asked.baseline}
+    kept, turned = MISSING, MISSING
+    if flip.start and flip.until is not None:
+        kept = f"{ahead[flip.start]}, {_said(asked, cut(flip.until, out=False))}"
+    if flip.turned and flip.first is not None and flip.last is not None:
+        turned = f"{ahead[flip.turned]}, {_said(asked, cut(flip.first, out=True))}"
+        if abs(flip.last) < asked.up_to:
+            turned += f" to {_said(asked, cut(flip.last, out=False))}"
+    path = SHARED if flip.path == SHARED else f"{flip.path} alone"
+    direction = "above 0" if flip.direction > 0 else "below 0"
+    return line(path, direction, kept, _said(asked, flip.estimate), turned)
+
+
+def _said(asked: MapQuestion, size: float | None) -> str:
+    return MISSING if size is None else asked.said(size)
+
+
+def shown(record: MapRecord) -> RenderableType:
+    """Return the record for a terminal."""
+    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
+    parts += map(Text, record.sentences)
+    parts += [Text(f"Found in the run: {each}", style="bold red") for each in record.findings]
+    for table in tables(record):
+        parts += [Text(""), drawn(table, one_line=True), *map(Text, table.notes)]
+    return Group(*parts)
+
+
+def page(record: MapRecord, provenance: RunProvenance) -> str:
+    """Return the map as one page that opens without a network."""
+    *turns, paths = tables(record)
+    return render(
+        "map.html.j2",
+        ("tokens.css", "svg.css", "page.css"),
+        (),
+        record=record,
+        asked=record.question,
+        provenance=provenance,
+        sentences=record.sentences,
+        headline=record.headline,
+        map=Markup(map_picture(record).render()),
+        curve=Markup(correlation_picture(record).render()),
+        flips=Markup(html(turns[0])) if turns else "",
+        flips_notes=turns[0].notes if turns else (),
+        paths=Markup(html(paths)),
+        paths_notes=paths.notes,
+        w=wording,
+    )
+
+
+def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+    """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
+    make_folder(folder)
+    made = dict(_files(record, provenance))
+    for name, text in made.items():
+        write_text(folder / name, text, folder)
+    return [folder / name for name in made]
+
+
+def _files(record: MapRecord, provenance: RunProvenance) -> Iterator[tuple[str, str]]:
+    yield "report.html", page(record, provenance)
+    yield "map.svg", map_picture(record).render(standalone=True) + "\n"
+    yield "correlation.svg", correlation_picture(record).render(standalone=True) + "\n"
+    yield "table.md", table_markdown(record)
+
+
+def table_markdown(record: MapRecord) -> str:
+    """Return all tables as Markdown."""
+    return "\n\n".join(map(block, tables(record))) + "\n"

@@ -1,0 +1,187 @@
+"""The reversal map, and the expected difference over the correlation of both errors."""
+
+from collections.abc import Iterator
+from itertools import pairwise, product
+
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.words import at_point
+from faultpath.decisions import wording
+from faultpath.report.svg import (
+    Axis,
+    Svg,
+    covering,
+    draw_levels,
+    draw_tick,
+    number,
+    shortened,
+    tick_label,
+)
+
+_SIDE = 340.0
+"""Of the square."""
+_LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
+_SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
+"""From which difference on, pp, an area has which opacity."""
+_EQUAL = "0: both succeed equally often"
+
+
+def map_picture(record: MapRecord) -> Svg:
+    """Return the map: who is decided to be ahead where, the estimate's zero, paths and points."""
+    asked, side = record.question, _SIDE
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, _title(record), record.headline)
+    x = Axis(-asked.up_to, asked.up_to, _LEFT, _LEFT + side)
+    y = Axis(-asked.up_to, asked.up_to, _TOP + side, _TOP)
+    hatch = svg.hatch("baseline", "range baseline", 6)
+    _key(svg, record, hatch)
+    _areas(svg, record, x, y, hatch)
+    svg.path(_square(x, y), "inner")
+    _paths(svg, record, x, y)
+    svg.path(" ".join(_zero(record, x, y)), "range")
+    for point in record.points:
+        at = x(point.errors[0]), y(point.errors[1])
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(asked, point))
+    _scales(svg, record, x, y)
+    return svg
+
+
+def _title(record: MapRecord) -> str:
+    asked = record.question
+    return f"Reversal map of {asked.system}: {asked.repair} against {asked.baseline}"
+
+
+def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
+    """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
+    surface = record.surface
+    edges = [
+        surface.sizes[0],
+        *((a + b) / 2 for a, b in pairwise(surface.sizes)),
+        surface.sizes[-1],
+    ]
+    drawn: dict[tuple[int, str], list[str]] = {}
+    for row, column in product(range(len(surface.sizes)), repeat=2):
+        sign = surface.sign[row][column]
+        size = abs(surface.difference[row][column])
+        if sign:
+            left, right = (number(x(edges[column + i])) for i in (0, 1))
+            low, high = (number(y(edges[row + i])) for i in (0, 1))
+            shade = next(shade for least, shade in _SHADES if size >= least)
+            piece = f"M{left} {low}H{right}V{high}H{left}Z"
+            drawn.setdefault((sign, shade), []).append(piece)
+    for (sign, shade), pieces in sorted(drawn.items()):
+        side = "repair-only" if sign > 0 else "baseline-only"
+        svg.path("".join(pieces), side, fill_opacity=shade, shape_rendering="crispEdges")
+    marked = [piece for (sign, _), pieces in drawn.items() for piece in pieces if sign < 0]
+    if marked:
+        svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
+
+
+def _paths(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
+    """Draw the isolated axes and the shared diagonal, each with its name."""
+    first, second = record.question.against
+    svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
+    svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
+    svg.line((x.start, y.start), (x.end, y.end), "back")
+    tips = ((first, x.end, y(0.0) - 3), (second, x(0.0), y.end - 20))
+    for name, across, up in tips:
+        anchor, left = ("middle", across) if name == second else ("start", across + 6)
+        svg.text(left, up, shortened(name, _RIGHT - 8, 12), "bold", anchor, tip=name)
+        svg.text(left, up + 14, "alone", "bold", anchor)
+    svg.text(x.end + 6, y.end + 4, "shared", "bold")
+
+
+def _square(x: Axis, y: Axis) -> str:
+    return (
+        f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z"
+    )
+
+
+def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
+    sizes, heights = record.surface.sizes, record.surface.difference
+    for row, column in product(range(len(sizes) - 1), repeat=2):
+        around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+        crossings: list[tuple[float, float]] = []
+        for (r1, c1), (r2, c2) in pairwise([*around, around[0]]):
+            a, b = heights[r1][c1], heights[r2][c2]
+            if (a > 0) != (b > 0):
+                share = a / (a - b)
+                across = sizes[c1] + share * (sizes[c2] - sizes[c1])
+                upward = sizes[r1] + share * (sizes[r2] - sizes[r1])
+                crossings.append((x(across), y(upward)))
+        for (x1, y1), (x2, y2) in zip(crossings[::2], crossings[1::2], strict=True):
+            yield f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}"
+
+
+def _scales(svg: Svg, record: MapRecord, x: Axis, y: Axis) -> None:
+    asked = record.question
+    unit = "%" if asked.relative else asked.unit
+    factor = 100.0 if asked.relative else 1.0
+    for share in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        tick = share * asked.up_to
+        draw_tick(svg, x, y, tick, tick_label(round(factor * tick, 9)))
+        svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
+        svg.text(x.start - 8, y(tick) + 4, tick_label(round(factor * tick, 9)), "small soft", "end")
+    middle = (x.start + x.end) / 2
+    across = f"error at the {asked.against[0]}, {unit}".removesuffix(", 1")
+    svg.text(middle, y.start + 36, shortened(across, svg.width, 11), "small soft", "middle")
+    upward = f"error at the {asked.against[1]}, {unit}".removesuffix(", 1")
+    svg.text(0, y.end - 38, shortened(upward, svg.width, 11), "small soft")
+
+
+def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
+    """Draw what is compared, the scale of what is decided, and what is not."""
+    asked, cell = record.question, 46.0
+    end = 6 * cell
+    title = f"Success of {asked.repair} minus that of {asked.baseline}, pp"
+    svg.text(0, 13, shortened(title, svg.width, 13), "head", tip=title)
+    for name, left, anchor in ((asked.baseline, 0.0, "start"), (asked.repair, end, "end")):
+        said = f"{name} ahead"
+        svg.text(left, 32, shortened(said, end / 2 - 6, 12), anchor=anchor, tip=said)
+    shades = [shade for _, shade in _SHADES]
+    for column, shade in enumerate((*shades, *reversed(shades))):
+        side = "baseline-only" if column < len(shades) else "repair-only"
+        piece = f"M{number(column * cell)} 38h{number(cell)}v12h-{number(cell)}Z"
+        svg.path(piece, side, fill_opacity=shade)
+        if column < len(shades):
+            svg.path(piece, "", fill=hatch, fill_opacity="0.5")
+    bounds = [least for least, _ in _SHADES]
+    for column, value in enumerate((*(-each for each in bounds), *reversed(bounds[:-1])), 1):
+        label = f"{value:+.0f}".replace("-", "−") if value else "0"
+        svg.text(column * cell, 63, label, "small soft", "middle")
+    svg.path("M0 74h22v11h-22Z", "inner")
+    svg.text(28, 84, "not decided")
+    svg.line((112, 80), (134, 80), "range")
+    svg.text(140, 84, f"estimate {_EQUAL}")
+    svg.circle((11, 100), 2.6, "dot")
+    svg.text(28, 104, "flown, decided")
+    svg.circle((134, 100), 2.6, "dot open")
+    svg.text(146, 104, "flown, not decided")
+
+
+def correlation_picture(record: MapRecord) -> Svg:
+    """Return the expected difference over the correlation, in an arm's colour where decided."""
+    joint, asked = record.joint, record.question
+    told = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
+    width = _LEFT + _SIDE + _RIGHT
+    svg = Svg(width, 286, f"Expected difference over the correlation, {asked.system}", told)
+    x = Axis(-1.0, 1.0, 40, width - 10)
+    vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
+    y = vertical.at(238, 44)
+    title = f"Expected success of {asked.repair} minus that of {asked.baseline}, pp"
+    svg.text(0, 13, shortened(title, width, 13), "head", tip=title)
+    svg.text(0, 28, _EQUAL, "small soft")
+    draw_levels(svg, x, y, 5, zero="zero")
+    for tick in (-1.0, -0.5, 0.0, 0.5, 1.0):
+        draw_tick(svg, x, y, tick, tick_label(tick))
+    svg.text(x(0.0), 274, "correlation of the two errors", "small soft", "middle")
+    upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
+    lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
+    svg.polygon([*upper, *reversed(lower)], "fan")
+    sides = {1: "curve repair", -1: "curve baseline", 0: "curve"}
+    for one, two in pairwise(joint.curve):
+        side = sides[one.sign if one.sign == two.sign else 0]
+        svg.line((x(one.correlation), y(one.value)), (x(two.correlation), y(two.value)), side)
+    for low, high in joint.undecided:
+        svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
+    for at in joint.estimates:
+        svg.circle((x(at), y(0)), 5, "star", tip=f"estimate: no difference at {at:.2f}")
+    return svg

@@ -1,0 +1,75 @@
+"""The tables of a plan: sources in order, and the audits that are proposed."""
+
+from faultpath.decisions.plan.order import placed
+from faultpath.decisions.plan.plan import Plan
+from faultpath.decisions.plan.sources import Candidate
+from faultpath.decisions.tables import MISSING, Line, Table, line
+
+
+def by_rank(plan: Plan) -> Table:
+    """Return the uncertain sources in order, with who reads them and how far they may err."""
+    columns = ("read by", "expected error")
+    notes = ["Order: number of consumers, then the larger probe response; equal ones share a rank."]
+    if not all(placed(each, plan.candidates) for each in plan.candidates):
+        notes.append("?: no response is known, so among as many consumers the place is open.")
+    return Table(
+        title="Uncertain sources by rank",
+        corner="source",
+        columns=columns,
+        words=columns,
+        lines=tuple(_source(plan, each) for each in plan.candidates),
+        notes=tuple(notes),
+    )
+
+
+def _source(plan: Plan, each: Candidate) -> Line:
+    mark = "=" if sum(other.rank == each.rank for other in plan.candidates) > 1 else ""
+    mark += "" if placed(each, plan.candidates) else "?"
+    fault = each.fault or "none known"
+    return line(f"{each.rank}{mark} {each.name}", "\n".join(each.consumers), fault)
+
+
+def by_response(plan: Plan) -> Table:
+    """Return how far commands move under the expected error of each source, path by path."""
+    variants = (plan.study.baseline, plan.study.repair)
+    lines: list[Line] = []
+    for each in plan.candidates:
+        paths = dict.fromkeys(path for found in each.responses.values() for path in found)
+        lines += [line(each.name)] if paths else []
+        for path in paths:
+            found = (each.responses.get(variant, {}).get(path) for variant in variants)
+            lines.append(line(path, *(MISSING if r is None else f"{r:.3g}" for r in found)))
+    return Table(
+        title="Probe responses",
+        corner="struck",
+        columns=variants,
+        lines=tuple(lines),
+        notes=(
+            "Median change of the commands under the expected error, as a fraction of their root "
+            f"mean square, over {plan.probed} scenes. The largest of a source counts.",
+        ),
+    )
+
+
+def by_audit(plan: Plan) -> Table:
+    """Return the proposed audits with their arms, which fly with both variants."""
+    columns = ("why", "arms", "trials")
+    return Table(
+        title=f"Proposed: {plan.study.repair} against {plan.study.baseline}",
+        corner="fault",
+        columns=columns,
+        words=columns[:2],
+        lines=tuple(
+            line(
+                each.fault,
+                each.why,
+                "\n".join(
+                    arm.path if arm.role == arm.path else f"{arm.path}, {arm.role}"
+                    for arm in each.arms
+                ),
+                str(trials),
+            )
+            for each, trials in zip(plan.study.audits, plan.trials, strict=True)
+        ),
+        notes=("Arms that an audit shares with the first one fly once.",),
+    )

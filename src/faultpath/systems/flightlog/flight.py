@@ -1,0 +1,224 @@
+"""A recorded flight on a grid of control intervals."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation, Slerp
+
+from faultpath.core.errors import UserError
+from faultpath.systems.flightlog.reading import SPEED_UNITS, ColumnMap, Floats, Series, read_series
+
+GRAVITY_MPS2 = 9.80665
+INTERVAL_S = 0.05  # paper, Section IV-A
+_GAP = 10.0
+"""A pause longer than so many usual ones, and than two intervals, ends a stretch of the flight."""
+
+
+@dataclass(frozen=True)
+class Flight:
+    """Stretches of flight without a gap, cut into control intervals.
+
+    World and body have a z axis that points up.
+    """
+
+    stretch: Floats
+    """Number of the stretch of each interval, `[N]`."""
+    time_s: Floats
+    """Beginning of each interval, `[N]`, s."""
+    rotation: Rotation
+    """Body to world in the middle of each interval, `[N]`."""
+    acceleration_mps2: Floats
+    """Mean over each interval, `[N, 3]`, world frame."""
+    velocity_mps: Floats
+    """Mean over each interval, `[N, 3]`, world frame."""
+    thrust_n: Floats
+    """Commanded collective thrust, mean over each interval, `[N]`, after the motors' lag."""
+    mass_kg: float
+    drag_kgps: tuple[float, float, float] | None
+    newton_per_unit: float
+    gaps: int
+
+
+@np.errstate(all="ignore")  # what comes of it is judged
+def read_flight(path: Path, columns: ColumnMap) -> Flight:
+    """Return the flight in a log.
+
+    Raises `UserError` as `read_series`, for a quaternion of another order or length, thrust that
+    does not carry the weight, and a log without a stretch to use.
+    """
+    if columns.mass_kg is None:
+        raise UserError("the mass of the vehicle is not given: add mass_kg to the map, or --mass")
+    series = read_series(path, columns)
+    edges, gaps = _edges(path, series)
+    attitude = _attitude(path, columns, series)
+    parts = [_stretch(columns, series, attitude, number, grid) for number, grid in enumerate(edges)]
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    flight = Flight(
+        stretch=joined["stretch"],
+        time_s=joined["time"],
+        rotation=Rotation.from_quat(joined["quaternion"]),
+        acceleration_mps2=joined["acceleration"],
+        velocity_mps=joined["velocity"],
+        thrust_n=joined["thrust"],
+        mass_kg=columns.mass_kg,
+        drag_kgps=columns.drag_kgps,
+        newton_per_unit=1.0,
+        gaps=gaps,
+    )
+    return _scaled(path, columns, flight)
+
+
+def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
+    """Return the ends of the control intervals of each stretch, and how many pauses there are."""
+    columns = list(series.values())
+    pauses: list[tuple[float, float]] = []
+    for each in columns:
+        steps = np.diff(each.time_s)
+        long = steps > max(_GAP * float(np.median(steps)), 2 * INTERVAL_S)
+        pauses += zip(each.time_s[:-1][long], each.time_s[1:][long], strict=True)
+    merged: list[tuple[float, float]] = []
+    for before, after in sorted(pauses):
+        if merged and before < merged[-1][1]:
+            merged[-1] = merged[-1][0], max(merged[-1][1], after)
+        else:
+            merged.append((before, after))
+    starts = [max(float(each.time_s[0]) for each in columns), *(after for _, after in merged)]
+    stops = [*(before for before, _ in merged), min(float(each.time_s[-1]) for each in columns)]
+    grids = [
+        start + INTERVAL_S * np.arange(int((stop - start) / INTERVAL_S) + 1, dtype=np.float64)
+        for start, stop in zip(starts, stops, strict=True)
+        if stop - start >= 2.0
+    ]
+    if not grids:
+        raise UserError(
+            f"{path}: no two seconds of flight in which all columns have readings: look for gaps, "
+            "and whether the columns are of one flight"
+        )
+    return grids, len(merged)
+
+
+def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> Slerp:
+    found = [series[name] for name in columns.attitude.columns]
+    time_s = found[0].time_s
+    quaternion = np.stack([np.interp(time_s, each.time_s, each.values) for each in found], axis=1)
+    lengths = np.linalg.norm(quaternion, axis=1)
+    if abs(float(np.median(lengths)) - 1) > 0.02:
+        raise UserError(
+            f"{path}: the attitude has the length {np.median(lengths):.3g}, and a unit quaternion "
+            "has 1: correct its columns"
+        )
+    if (odd := np.flatnonzero(abs(lengths - 1) > 0.5)).size:
+        raise UserError(
+            f"{path}: the attitude has the length {lengths[odd[0]]:.3g} at its reading {odd[0]}, "
+            "and a unit quaternion has 1: leave such cells empty"
+        )
+    if columns.attitude.order == "wxyz":
+        quaternion = quaternion[:, [1, 2, 3, 0]]
+    if columns.frame == "NED":  # half turns about x on both sides: z up in world and body
+        x, y, z, w = quaternion.T
+        quaternion = np.stack([x, -y, -z, w], axis=1)
+    return Slerp(time_s, Rotation.from_quat(quaternion))
+
+
+def _stretch(
+    columns: ColumnMap, series: Mapping[str, Series], attitude: Slerp, number: int, edges: Floats
+) -> dict[str, Floats]:
+    up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
+    scale = SPEED_UNITS[columns.velocity.unit] * up
+    velocity = scale * np.stack(
+        [
+            np.interp(edges, series[name].time_s, series[name].values)
+            for name in columns.velocity.columns
+        ],
+        axis=1,
+    )
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    return {
+        "stretch": np.full(len(middle), float(number)),
+        "time": edges[:-1],
+        "quaternion": attitude(middle).as_quat(),
+        "acceleration": np.diff(velocity, axis=0) / INTERVAL_S,
+        "velocity": 0.5 * (velocity[1:] + velocity[:-1]),
+        "thrust": _thrust(series[columns.thrust.column], edges, columns.motor_time_constant_s),
+    }
+
+
+def _thrust(command: Series, edges: Floats, lag_s: float) -> Floats:
+    # A command holds until the next one: its integral is known at every time.
+    done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
+    last = np.clip(np.searchsorted(command.time_s, edges, side="right") - 1, 0, None)
+    integral = done[last] + (edges - command.time_s[last]) * command.values[last]
+    mean = np.diff(integral) / INTERVAL_S
+    if lag_s == 0:
+        return mean
+    keep = np.exp(-INTERVAL_S / lag_s)
+    share = lag_s / INTERVAL_S * (1 - keep)
+    held, lagged = mean[0], np.empty_like(mean)
+    for index, asked in enumerate(mean):
+        lagged[index] = asked + (held - asked) * share
+        held = asked + (held - asked) * keep
+    return lagged
+
+
+def _scaled(path: Path, columns: ColumnMap, flight: Flight) -> Flight:
+    axis = flight.rotation.apply([0.0, 0.0, 1.0])
+    needed = flight.acceleration_mps2 + np.array([0.0, 0.0, GRAVITY_MPS2])
+    wanted = flight.mass_kg * (needed * axis).sum(1)
+    factor = columns.thrust.newton_per_unit
+    if factor == "fit":
+        power = float((flight.thrust_n**2).sum())
+        factor = float((flight.thrust_n * wanted).sum()) / power if power else 0.0
+    thrust = factor * flight.thrust_n
+    carried = float(np.median(thrust)) / (flight.mass_kg * GRAVITY_MPS2)
+    if not 0.5 <= carried <= 2.0:
+        raise UserError(
+            f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
+            "newton_per_unit of the thrust (a factor, or fit)"
+        )
+    flight = replace(flight, thrust_n=thrust, newton_per_unit=factor)
+    _check_order(path, columns, flight)
+    return flight
+
+
+def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:
+    """Refuse an attitude that would explain the motion far better in the other order."""
+    x, y, z, w = flight.rotation.as_quat().T
+    flip = np.array([1.0, -1.0, -1.0, 1.0]) if columns.frame == "NED" else np.ones(4)
+    raw = np.stack([x, y, z, w], axis=1) * flip
+    other = raw[:, [3, 0, 1, 2]] if columns.attitude.order == "wxyz" else raw[:, [1, 2, 3, 0]]
+    swapped = replace(flight, rotation=Rotation.from_quat(other * flip))
+    here, there = (
+        float(np.median(np.linalg.norm(nominal(f) - f.acceleration_mps2, axis=1)))
+        for f in (flight, swapped)
+    )
+    if there < 0.5 * here:
+        order = "xyzw" if columns.attitude.order == "wxyz" else "wxyz"
+        raise UserError(
+            f"{path}: thrust and weight explain the motion to {here:.3g} m/s^2 with the "
+            f"quaternion's order {columns.attitude.order}, and to {there:.3g} m/s^2 with {order}: "
+            "correct the order of the attitude"
+        )
+
+
+def nominal(flight: Flight, error: float = 0.0) -> Floats:
+    """Return the acceleration a_0 that thrust, gravity and drag explain, `[N, 3]`, m/s^2.
+
+    With the mass supplied `error` too high and the thrust as much too low (paper, Section IV-B).
+    """
+    mass_kg = flight.mass_kg * (1 + error)
+    axis = flight.rotation.apply([0.0, 0.0, 1.0])
+    force = axis * (flight.thrust_n * (1 - error))[:, None]
+    if flight.drag_kgps is not None:
+        force = force - through_air(flight, flight.velocity_mps)
+    return force / mass_kg - np.array([0.0, 0.0, GRAVITY_MPS2])
+
+
+def through_air(flight: Flight, velocity_mps: Floats, inverse: bool = False) -> Floats:
+    """Return the drag's map of a velocity to a force, or its inverse, `[N, 3]`, world frame."""
+    if flight.drag_kgps is None:
+        return velocity_mps
+    drag = np.asarray(flight.drag_kgps)
+    body = flight.rotation.inv().apply(velocity_mps)
+    return flight.rotation.apply(body / drag if inverse else body * drag)

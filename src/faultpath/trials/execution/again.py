@@ -1,0 +1,185 @@
+"""Run a little twice, to find results that do not repeat or that depend on their block.
+
+A few scenes of a unit drawn at random run again without the others, and one scene of another by
+itself, with guarded readings.
+"""
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from faultpath.trials.execution.schedule import Task, Unit
+from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.plain import Misread, model_of
+from faultpath.core.frozen import Frozen
+from faultpath.trials.provenance import FlownAgain
+from faultpath.trials.store.folder import RunFolder
+from faultpath.loop.taps import WrittenTo
+from faultpath.trials.attempt import Died, Done, Reply, Wrong
+from faultpath.trials.outcome import Outcome
+
+Outcomes = Mapping[tuple[str, str], Outcome]
+"""By arm key and scene."""
+
+SAMPLE = 4
+"""Scenes of a unit that run again."""
+_NUMBERS = ("time_s", "struck_steps", "altered_steps")
+_HASHES = ("initial_hash", "disturbance_hash", "planner_noise_hash")
+
+
+def difference(first: Sequence[Outcome], reply: Reply) -> str:
+    """Say how a second run of the same scenes differs; empty where it is the same to the bit."""
+    if isinstance(reply, Died):
+        return f"could not be run again ({reply.how}), which differs"
+    if not isinstance(reply, Done):
+        return f"failed the second time ({reply.error}), which differs"
+    pairs = _unlike(first, reply.outcomes)
+    if not pairs:
+        return ""
+    scene = pairs[0][0].scene
+    ends = sum(one.status is not two.status for one, two in pairs)
+    parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
+    numbers = (_NUMBERS[0], *dict.fromkeys(n for a, _ in pairs for n in a.metrics), *_NUMBERS[1:])
+    gaps = {name: max(_gap(a, b, name) for a, b in pairs) for name in (*numbers, *_HASHES)}
+    parts += [f"{name} by up to {gaps[name]:.3g}" for name in numbers if gaps[name]]
+    parts += [f"{name} too" for name in _HASHES if gaps[name]]
+    return f"differs in {len(pairs)} of {len(first)}, {scene!r} for one ({', '.join(parts)})"
+
+
+def _unlike(first: Sequence[Outcome], second: Sequence[Outcome]) -> list[tuple[Outcome, Outcome]]:
+    return [(one, two) for one, two in zip(first, second, strict=True) if not _same(one, two)]
+
+
+def _gap(one: Outcome, two: Outcome, name: str) -> float:
+    a, b = (o.metrics[name] if name in o.metrics else getattr(o, name, None) for o in (one, two))
+    if a == b:
+        return 0.0
+    if isinstance(a, int | float) and isinstance(b, int | float):
+        return abs(a - b)
+    return float("inf")  # one of them has none, or they are hashes
+
+
+def _same(one: Outcome, two: Outcome) -> bool:
+    if one.status is not two.status or one.metrics != two.metrics:
+        return False
+    if any(_gap(one, two, name) for name in (*_NUMBERS, *_HASHES)):
+        return False
+    if one.trace is None or two.trace is None:
+        return one.trace is two.trace
+    return np.array_equal(one.trace, two.trace)
+
+
+class _Kept(Frozen):
+    """What `rechecks.json` holds."""
+
+    format: Literal[4] = 4
+    flown: tuple[FlownAgain, ...] = ()
+
+
+class Rechecks:
+    """What runs again of a run, and what that found; kept in the run's folder."""
+
+    def __init__(self, units: Iterable[Unit], folder: RunFolder) -> None:
+        self._units, self._folder = tuple(units), folder
+        self._kept = {_name(each): each for each in _read(folder.rechecks).flown}
+
+    def tasks(self, outcomes: Outcomes) -> tuple[Task, ...]:
+        """Return what is to run again of a run that is done; empty when nothing is left.
+
+        It follows from the units' keys: the same run draws the same, whoever continues it.
+        """
+        sound = [
+            unit
+            for unit in self._units
+            if not any(outcomes[unit.arm.key(), scene].failed for scene in unit.scenes)
+        ]
+        if not sound:
+            return ()
+        # Not the first arm of a block, where there are others: nothing ran before it from which
+        # anything could have been kept. It has so many scenes that some are left out.
+        first = {unit.block: unit.key for unit in reversed(self._units)}
+        follow = [unit for unit in sound if unit.key != first[unit.block]]
+        unit = min(follow or sound, key=lambda each: (len(each.scenes) <= SAMPLE, _lot(each.key)))
+        scenes = unit.scenes
+        if len(scenes) > SAMPLE:
+            by_lot = sorted(scenes[1:], key=lambda scene: _lot(unit.key, scene))[:SAMPLE]
+            scenes = tuple(scene for scene in scenes if scene in by_lot)
+        others = [each for each in sound if each is not unit] or [unit]
+        other = min(others, key=lambda each: (len(each.scenes) == 1, _lot("guard", each.key)))
+        alone = min(other.scenes[1:] or other.scenes, key=lambda each: _lot(other.key, each))
+        wanted = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
+        return tuple(t for t in wanted if (t.unit.key, t.recheck, t.scenes) not in self._kept)
+
+    def settle(self, task: Task, reply: Reply, outcomes: Outcomes) -> None:
+        """Compare what came of a second run with the first; keep what that showed."""
+        assert task.recheck is not None
+        arm = task.unit.arm
+        wrote = ""
+        if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
+            wrote = str(reply.error)
+        first = [outcomes[arm.key(), scene] for scene in task.scenes]
+        other = task.scenes
+        if isinstance(reply, Done):
+            other = tuple(one.scene for one, _ in _unlike(first, reply.outcomes))
+        shown = FlownAgain(
+            why=task.recheck,
+            unit=task.unit.key,
+            variant=arm.variant,
+            faults=" and ".join(fault.describe() for fault in arm.faults) or "correct inputs",
+            seed=arm.seed,
+            scenes=task.scenes,
+            unit_scenes=len(task.unit.scenes),
+            wrote=wrote,
+            differs="" if wrote else difference(first, reply),
+            other=() if wrote else other,
+        )
+        self._kept[_name(shown)] = shown
+        kept = _Kept(flown=tuple(self._kept[name] for name in sorted(self._kept)))
+        self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
+
+    def flown(self) -> tuple[FlownAgain, ...]:
+        """Return what ran again of the units of this run."""
+        keys = {unit.key for unit in self._units}
+        return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
+
+    def findings(self) -> Iterator[str]:
+        """Yield what second runs of this run's units found; nothing where all were the same."""
+        for shown in self.flown():
+            where = f"'{shown.variant}' under {shown.faults}, seed {shown.seed}"
+            if shown.wrote:
+                yield (
+                    f"A consumer writes into its reading, seen with {where}: {shown.wrote}. "
+                    "Without a fault that changes what others read, and with one it does not."
+                )
+            elif shown.differs:
+                count = len(shown.scenes)
+                how = (
+                    "alone, with a copy of every reading for each consumer"
+                    if shown.why == "guarded"
+                    else f"without the others of its {shown.unit_scenes}"
+                )
+                yield (
+                    f"Results do not repeat: {count} scene{'s' * (count != 1)} of {where}, run "
+                    f"again {how}, {shown.differs}. Effects may be chance: look for random numbers "
+                    "that are not of faultpath.core.streams, for threads, for what scenes of one call "
+                    "of run() share or one call leaves for the next, and for what is written into "
+                    "an array after it was delivered."
+                )
+
+
+def _name(shown: FlownAgain) -> tuple[str, str, tuple[str, ...]]:
+    return shown.unit, shown.why, shown.scenes
+
+
+def _lot(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _read(path: Path) -> _Kept:
+    try:
+        return model_of(contents(path, LARGEST_TEXT), _Kept)
+    except (OSError, Misread):
+        return _Kept()

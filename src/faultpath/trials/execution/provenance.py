@@ -1,0 +1,143 @@
+"""Where a run's numbers come from: code, packages, machine and command."""
+
+import platform
+import subprocess
+import time
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from faultpath.trials.code import Code
+from faultpath.trials.execution.runner import RunResult
+from faultpath.trials.provenance import RunProvenance
+from faultpath.trials.store import write_text
+from faultpath.trials.store.sealed import seal
+from faultpath.trials.store.shared import processor
+from faultpath.core.version import __version__
+from faultpath.trials.work import Executor
+
+PROVENANCE = "provenance.json"
+_PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
+
+
+class Stopwatch:
+    """When an invocation started, on the calendar and on a clock that is never set."""
+
+    def __init__(self) -> None:
+        self.started = datetime.now(UTC)
+        self._from = time.monotonic()
+
+    def seconds(self) -> float:
+        """Return the seconds since the start."""
+        return time.monotonic() - self._from
+
+
+def run_provenance(
+    folder: Path,
+    names: Iterable[str],
+    result: RunResult,
+    stopwatch: Stopwatch,
+    command: Sequence[str],
+    executor: Executor,
+    backend: str = "",
+) -> RunProvenance:
+    """Describe the run that has just finished on `executor`, and write that into its folder.
+
+    `names` are the files there that its pages are made from; their digests stand beside it.
+    """
+    commit, dirty = checkout(Path(__file__).parents[1])
+    system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
+    imported = {
+        name.replace("_", "-"): found
+        for code in result.code
+        for name, found in code.state.packages.items()
+    }
+    provenance = RunProvenance(
+        faultpath_version=__version__,
+        commit=commit,
+        dirty=dirty,
+        command=tuple(command),
+        python=platform.python_version(),
+        packages=packages() | imported,
+        platform=platform.platform(),
+        processor=processor(),
+        backend=backend,
+        workers=executor.count,
+        executor=executor.name,
+        started=stopwatch.started.isoformat(timespec="seconds"),
+        finished=datetime.now(UTC).isoformat(timespec="seconds"),
+        wall_s=round(stopwatch.seconds(), 3),
+        blocks_computed=result.blocks_computed,
+        blocks_kept=result.blocks_kept,
+        system_fingerprint=result.system_fingerprint,
+        system_commit=system_commit,
+        system_dirty=system_dirty,
+        sources={name: found for code in result.code for name, found in code.state.files.items()},
+        data={name: found for code in result.code for name, found in code.state.data.items()},
+        library_hash=result.library_hash,
+        outcomes_sha256=result.outcomes_sha256,
+        flown_again=result.flown_again,
+    )
+    return amend(folder, provenance, names)
+
+
+def amend(folder: Path, provenance: RunProvenance, names: Iterable[str]) -> RunProvenance:
+    """Write the provenance of a run with the digests of more files as they are in its folder."""
+    files = {**provenance.files, **seal(folder, names)}
+    sealed = provenance.model_copy(update={"files": files})
+    write_text(folder / PROVENANCE, sealed.model_dump_json(indent=2) + "\n", folder)
+    return sealed
+
+
+def checkout(package: Path) -> tuple[str | None, bool | None]:
+    """Return the commit of the checkout that `package` is tracked in, and whether it was changed.
+
+    `(None, None)` without one. A package installed into an environment that happens to lie inside
+    some other repository is not tracked there, and that repository's commit would say nothing.
+    """
+    return _state(package / "__init__.py", [package])
+
+
+def repository(code: Code) -> tuple[str | None, bool | None]:
+    """Return the commit of the repository that tracks a system, and whether what ran differs.
+
+    `(None, None)` where its file is in none, or not tracked there.
+    """
+    if code.main is None:
+        return None, None
+    return _state(code.main, (*code.sources.values(), *code.data.values()))
+
+
+def _state(main: Path, files: Iterable[Path]) -> tuple[str | None, bool | None]:
+    if _git(main.parent, "ls-files", "--error-unmatch", "--", main.name) is None:
+        return None, None
+    top = Path(_git(main.parent, "rev-parse", "--show-toplevel") or main.parent)
+    inside = [str(path) for path in files if path.resolve().is_relative_to(top)]
+    changes = _git(top, "status", "--porcelain", "--untracked-files=all", "--", *inside)
+    return _git(top, "rev-parse", "HEAD"), None if changes is None else bool(changes)
+
+
+def packages() -> dict[str, str]:
+    """Return the versions of the packages that numbers depend on, of those installed."""
+    found: dict[str, str] = {}
+    for name in _PACKAGES:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def _git(folder: Path, *arguments: str) -> str | None:
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(folder), *arguments],
+            capture_output=True,
+            text=True,
+            timeout=10,
+            check=True,
+        )
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip()

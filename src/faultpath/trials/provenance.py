@@ -1,0 +1,78 @@
+"""Where a result comes from."""
+
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, StringConstraints
+
+from faultpath.core.results import Shown
+
+FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
+
+Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+
+
+class FlownAgain(Shown):
+    """Scenes of a finished unit that were flown a second time, and what that showed."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    why: Literal["sample", "guarded", "alone", "repeat"]
+    """A few scenes of the unit by themselves, one with guarded readings, that one without the
+    guard, or the whole unit. The last two are flown only where the first two show something."""
+    unit: str
+    """Key of the unit, which its shard is named after."""
+    variant: str
+    faults: str
+    """In words."""
+    seed: int
+    scenes: tuple[str, ...]
+    unit_scenes: int
+    """How many scenes the unit has in all."""
+    differs: str = ""
+    """How the outcomes differ from those of the run; empty where they are the same to the bit."""
+    other: tuple[str, ...] = ()
+    """The scenes that came out otherwise."""
+    wrote: str = ""
+    """The consumer that wrote into its reading, where the guard saw one."""
+
+
+class RunProvenance(Shown):
+    """The conditions under which a run was made; written as `provenance.json`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    faultpath_version: str
+    commit: str | None
+    dirty: bool | None
+    command: tuple[str, ...]
+    python: str
+    packages: dict[str, str]
+    platform: str
+    processor: str
+    backend: str = ""
+    """What computed the trials, where a system says so."""
+    workers: int
+    executor: str = ""
+    """On what they were, where that is not this machine; platform and processor are this one's."""
+    started: str
+    finished: str
+    wall_s: float
+    """Of the last invocation; shards kept from earlier ones are not counted."""
+    blocks_computed: int
+    blocks_kept: int
+    system_fingerprint: str
+    """Hash of the sources, data files and packages that flew, and of what the system says."""
+    system_commit: str | None = None
+    """Of the repository in which the system's file is tracked."""
+    system_dirty: bool | None = None
+    """Whether a file that flew differs from that commit."""
+    sources: dict[str, str] = Field(default_factory=dict[str, str])
+    """SHA-256 of each source file that flew, by module."""
+    data: dict[str, str] = Field(default_factory=dict[str, str])
+    """SHA-256 of each data file that the system names."""
+    library_hash: str
+    outcomes_sha256: str
+    flown_again: tuple[FlownAgain, ...] = ()
+    """What was flown a second time, to see whether results repeat."""
+    files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])
+    """The files beside this one that a report is made from, so that a change of one is seen."""

@@ -1,0 +1,9 @@
+"""What a run leaves behind: a folder of shards, and the tables assembled from them."""
+
+# pyright: reportUnusedImport=false
+from faultpath.trials.store.atomic import check_writable, make_folder, write_text
+from faultpath.trials.store.evidence import read_evidence, write_evidence
+from faultpath.trials.store.folder import RunFolder
+from faultpath.trials.store.manifest import FORMAT, Manifest
+from faultpath.trials.store.parquet import read_table
+from faultpath.trials.store.tables import Shard, TrialAddress, read_outcomes, read_traces, traces_of

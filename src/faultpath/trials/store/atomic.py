@@ -1,0 +1,109 @@
+"""Files that are either whole or absent, whenever the process is killed.
+
+A file takes the place of another file and of nothing else: a device, a pipe, a socket or a folder
+of that name is left as it is. Symbolic links are followed, as by any program that opens a file, so
+that the link stays and what it points to is replaced.
+"""
+
+import errno
+import os
+import stat
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import unlike_file
+
+_PREFIX = ".partial-"
+
+
+def write(path: Path, data: bytes, inside: Path | None = None) -> None:
+    """Write a file so that a reader, or a machine that loses power, sees all of it or none.
+
+    `inside` is the folder that the file belongs to, where faultpath itself names it: a link there
+    that leads out of the folder is refused, since the folder may come from somebody else.
+
+    Raises `OSError` where the file cannot be written, also where its place holds no file.
+    """
+    place = _place(path, inside)
+    descriptor, name = tempfile.mkstemp(prefix=_PREFIX, dir=place.parent)
+    try:
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.umask(mask := os.umask(0o022))
+        os.chmod(name, 0o666 & ~mask)  # mkstemp hides the file from other users
+        os.replace(name, place)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise
+    folder = os.open(place.parent, os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+def write_file(path: Path, data: bytes, inside: Path | None = None) -> None:
+    """Write a file as `write` does; `UserError` when it cannot be written."""
+    try:
+        write(path, data, inside)
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def write_text(path: Path, text: str, inside: Path | None = None) -> None:
+    """Write a text file as `write_file` does."""
+    write_file(path, text.encode(), inside)
+
+
+def check_writable(path: Path) -> None:
+    """Raise `UserError` where no file can be written, before the work that is to go into it."""
+    try:
+        place = _place(path, None)
+        if not place.parent.is_dir():
+            raise OSError(errno.ENOENT, "there is no such folder")
+        if not os.access(place.parent, os.W_OK | os.X_OK):
+            raise OSError(errno.EACCES, "permission denied")
+    except OSError as error:
+        raise _unwritable(path, error) from error
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, and those above it, where there is none; `UserError` where that fails."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(
+            f"cannot make the folder {path} ({error.strerror}): choose another path"
+        ) from error
+
+
+def sweep(folder: Path) -> None:
+    """Remove what killed writers left in a folder. Call it with the folder locked."""
+    for leftover in folder.glob(_PREFIX + "*"):
+        leftover.unlink(missing_ok=True)
+
+
+def _unwritable(path: Path, error: OSError) -> UserError:
+    return UserError(
+        f"cannot write {path} ({error.strerror}): choose a place that you may write to"
+    )
+
+
+def _place(path: Path, inside: Path | None) -> Path:
+    try:
+        mode = os.stat(path).st_mode
+    except FileNotFoundError:  # or a link to where nothing is yet
+        mode = stat.S_IFREG
+    except ValueError as error:
+        raise OSError(errno.EINVAL, "the path has a null character in it") from error
+    if kind := unlike_file(mode):
+        raise OSError(errno.EEXIST, f"it is {kind}, not a file")
+    place = Path(os.path.realpath(path))
+    if inside is not None and path.is_symlink() and not place.is_relative_to(inside.resolve()):
+        raise OSError(errno.ELOOP, f"it is a link out of {inside}")
+    return place

@@ -1,0 +1,165 @@
+"""A run on disk."""
+
+import hashlib
+import shutil
+from collections.abc import Generator, Iterable, Sequence
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime
+from pathlib import Path
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.trials.store import atomic
+from faultpath.trials.store.lock import Say, locked
+from faultpath.trials.store.manifest import Manifest, check_same, read_manifest
+from faultpath.trials.store.parquet import Unreadable
+from faultpath.trials.store.tables import (
+    Shard,
+    decode_shard,
+    encode_outcomes,
+    encode_shard,
+    encode_traces,
+)
+from faultpath.trials.deliveries import Deliveries
+from faultpath.trials.table import OutcomeTable
+
+OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
+"""What is assembled at the end of a run."""
+
+
+class RunFolder:
+    """The folder of one run.
+
+    `manifest.json` says which study it is, `shards/` holds one Parquet file a finished block,
+    `failures/` the tracebacks of trials that failed, and `outcomes.parquet` and `traces.parquet`
+    are assembled at the end, with what the taps did in `deliveries.json`. Everything is written
+    atomically.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.shards = path / "shards"
+        self.failures = path / "failures"
+        self.manifest = path / "manifest.json"
+        self.outcomes = path / OUTCOMES
+        self.traces = path / TRACES
+        self.deliveries = path / DELIVERIES
+        self.rechecks = path / "rechecks.json"
+
+    @contextmanager
+    def open(
+        self, manifest: Manifest, notice: Say, shared: bool = False
+    ) -> Generator[None, None, None]:
+        """Create or continue the run, alone in the folder until the end of the `with` block.
+
+        `shared` lets studies with other arms use the folder one after the other. `UserError` when
+        the folder cannot be written, or holds something else.
+        """
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise self._unwritable(error) from error
+        with locked(self.path, notice):
+            found = read_manifest(self.manifest)
+            if found is not None:
+                check_same(self.path, found, manifest, shared)
+            try:
+                for folder in (self.shards, self.failures):
+                    folder.mkdir(exist_ok=True)
+                for folder in (self.path, self.shards, self.failures):
+                    atomic.sweep(folder)
+                if found != manifest:
+                    atomic.write(self.manifest, manifest.encode(), self.path)
+            except OSError as error:
+                raise self._unwritable(error) from error
+            yield
+
+    def save_shard(self, key: str, shard: Shard) -> None:
+        """Store a finished block. The name carries a digest of the bytes, checked on reading."""
+        data = encode_shard(key, shard)
+        path = self.shards / f"{key}-{_digest(data)}.parquet"
+        self._write(path, data)
+        for other in self.files_of(key):
+            if other != path:  # the block as it was before its failed trials were tried again
+                other.unlink(missing_ok=True)
+
+    def holds_shard(self, key: str) -> bool:
+        """Return whether a finished block is stored."""
+        return bool(self.files_of(key))
+
+    def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
+        """Return when the first and the last of some stored blocks were written, UTC."""
+        times = [path.stat().st_mtime for key in keys for path in self.files_of(key)]
+        return datetime.fromtimestamp(min(times), UTC), datetime.fromtimestamp(max(times), UTC)
+
+    def load_shard(self, key: str, scenes: Sequence[str], notice: Say) -> Shard | None:
+        """Return a finished block, or `None` without a whole one; a damaged one is removed."""
+        found: list[Shard] = []
+        for path in self.files_of(key):
+            try:
+                data = contents(path)
+            except OSError as error:
+                raise UserError(f"{path} cannot be read ({error.strerror}): remove it.") from error
+            try:
+                if path.stem != f"{key}-{_digest(data)}":
+                    raise Unreadable("its contents are not those that were written")
+                shard = decode_shard(data, key)
+                if [outcome.scene for outcome in shard.outcomes] != list(scenes):
+                    raise Unreadable("it holds other scenes")
+            except Unreadable as error:
+                notice(f"{path} is damaged ({error}); removing it and running its trials again")
+                path.unlink()
+            else:
+                found.append(shard)
+        # A process killed between writing and tidying leaves two; the later one failed less often.
+        return min(found, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
+
+    def take_over(self, other: "RunFolder", keys: Iterable[str]) -> None:
+        """Copy the blocks that another run has and this one has not, with the times of theirs."""
+        try:
+            for key in keys:
+                for shard in () if self.files_of(key) else other.files_of(key):
+                    with suppress(FileNotFoundError):  # deleted since it was listed
+                        shutil.copy2(shard, self.shards / shard.name)
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def save_failure(self, key: str, text: str) -> None:
+        """Store what is known about the failed trials of a block; without any, forget the last."""
+        path = self.failures / f"{key}.txt"
+        if text:
+            self._write(path, text.encode(errors="backslashreplace"))
+        else:
+            path.unlink(missing_ok=True)
+
+    def save_rechecks(self, text: str) -> None:
+        """Write what flying some trials again has found."""
+        self._write(self.rechecks, text.encode())
+
+    def save_tables(self, table: OutcomeTable, deliveries: Deliveries) -> str:
+        """Write what was assembled and return the SHA-256 of the outcomes."""
+        data = encode_outcomes(table)
+        self._write(self.deliveries, f"{deliveries.model_dump_json(indent=1)}\n".encode())
+        self._write(self.traces, encode_traces(table))
+        self._write(self.outcomes, data)
+        return hashlib.sha256(data).hexdigest()
+
+    def files_of(self, key: str) -> list[Path]:
+        """Return the files of a finished block."""
+        return sorted(self.shards.glob(f"{key}-*.parquet"))
+
+    def _write(self, path: Path, data: bytes) -> None:
+        try:
+            atomic.write(path, data, self.path)
+        except OSError as error:
+            raise self._unwritable(error) from error
+
+    def _unwritable(self, error: OSError) -> UserError:
+        return UserError(
+            f"cannot write to {self.path} ({error.strerror}): choose a folder that you may write "
+            "to and that has room"
+        )
+
+
+def _digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:32]

@@ -1,0 +1,98 @@
+"""Named signals of single trials as Parquet: one row for each component of a signal."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from faultpath.trials.store.parquet import (
+    INTEGER,
+    NUMBERS,
+    TEXT,
+    Row,
+    Unreadable,
+    decode,
+    encode,
+)
+from faultpath.trials.store.tables import TrialAddress
+
+SIGNALS = "signals.parquet"
+"""The file in a run folder."""
+
+IN_FORCE = "fault in force"
+"""The signal that is 1 while a fault was in force at some tap."""
+
+TOGETHER = "both together"
+"""The signal that is the sum of the two others of its topic, the errors of two modules."""
+
+_SCHEMA = {
+    **dict.fromkeys(("variant", "path"), TEXT),
+    "seed": INTEGER,
+    **dict.fromkeys(("scene", "signal", "topic", "unit"), TEXT),
+    "component": INTEGER,
+    "values": NUMBERS,
+    "part": TEXT,
+}
+
+
+@dataclass(frozen=True)
+class Signal:
+    """What one name stood for over a trial."""
+
+    name: str
+    topic: str
+    """Signals of one topic are drawn together."""
+    unit: str
+    values: NDArray[np.float32]
+    """`[T, P]`: a row a control step from the first on, not a number where nothing was read."""
+    parts: tuple[str, ...] = ()
+    """What the components are called, where somebody named them."""
+
+
+Signals: TypeAlias = Mapping[TrialAddress, tuple[Signal, ...]]
+
+
+def encode_signals(signals: Signals) -> bytes:
+    """Return the signals as a Parquet file."""
+    return encode(_SCHEMA, _rows(signals))
+
+
+def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
+    """Return the signals of a Parquet file; `Unreadable` when it holds none."""
+    rows, _ = decode(data, _SCHEMA)
+    found: dict[TrialAddress, list[Signal]] = {}
+    for key, group in groupby(rows, key=_key):
+        parts = tuple(group)
+        columns = [part["values"] for part in parts]
+        if len({len(column) for column in columns}) != 1:
+            raise Unreadable("the components of a signal differ in length")
+        address, name, topic, unit = key
+        if any(np.isinf(column).any() for column in columns):
+            raise Unreadable(f"the signal '{name}' is infinite")
+        named = tuple(str(part["part"]) for part in parts if part["part"])
+        signal = Signal(name, topic, unit, np.stack(columns, axis=1), named)
+        found.setdefault(address, []).append(signal)
+    return {address: tuple(signals) for address, signals in found.items()}
+
+
+def _key(row: Row) -> tuple[TrialAddress, str, str, str]:
+    address = TrialAddress(row["variant"], row["path"], row["seed"], row["scene"])
+    return address, row["signal"], row["topic"], row["unit"]
+
+
+def _rows(signals: Signals) -> Iterable[Row]:
+    for address, named in signals.items():
+        for each in named:
+            for component, values in enumerate(each.values.T):
+                yield {
+                    **address._asdict(),
+                    "signal": each.name,
+                    "topic": each.topic,
+                    "unit": each.unit,
+                    "component": component,
+                    "part": each.parts[component] if each.parts else "",
+                    "values": np.ascontiguousarray(values, np.float32),
+                }

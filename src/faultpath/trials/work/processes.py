@@ -1,0 +1,175 @@
+"""Worker processes on this machine, seen from the parent."""
+
+import multiprocessing.connection as connections
+import os
+import signal
+import socket
+import subprocess
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from multiprocessing.reduction import ForkingPickler
+from typing import Any
+
+from faultpath.core.errors import Notice, UserError
+from faultpath.trials.work.executor import (
+    ONE_THREAD,
+    Call,
+    End,
+    Executor,
+    Failed,
+    Here,
+    Lost,
+    OnMessage,
+    Returned,
+    ignore,
+)
+
+KEEP_MEMORY = {
+    "MALLOC_MMAP_THRESHOLD_": str(1 << 28),
+    "MALLOC_TRIM_THRESHOLD_": str(1 << 30),
+    "MALLOC_TOP_PAD_": str(1 << 26),
+}
+"""Large blocks stay with the process once freed: glibc would give them back to the system and fault
+them in again at the next tensor of that size."""
+
+_MOST = 4096
+"""Processes of one machine; more is a slip of the keyboard."""
+
+_BOOT = (
+    "import sys; from faultpath.trials.work.process import main; main(int(sys.argv[1]), int(sys.argv[2]))"
+)
+
+
+def local(workers: int) -> Executor:
+    """Return so many processes of this machine, or for 0 this process itself."""
+    if not 0 <= workers <= _MOST:
+        raise UserError(
+            f"the number of workers is {workers}: use 0 (this process) or more, at most {_MOST}"
+        )
+    return Processes(workers) if workers else Here()
+
+
+class Processes(Executor):
+    """Runs calls in processes of their own, started when they are needed."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._processes: dict[int, _Process] = {}
+        self._busy: dict[int, OnMessage] = {}
+
+    @property
+    def count(self) -> int:
+        """Number of processes, started or not."""
+        return self._count
+
+    def free(self) -> Sequence[int]:
+        """Return the workers without a call, started or not."""
+        return [worker for worker in range(self._count) if worker not in self._busy]
+
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
+        """Send the call, to a new process where there is none that lives."""
+        assert worker in self.free()
+        packed = ForkingPickler.dumps(call)
+        process = self._processes.get(worker)
+        if process is None or not process.alive:
+            self._end(worker)
+            process = self._processes[worker] = _Process()
+        process.send(packed)
+        self._busy[worker] = on_message
+
+    def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
+        """Wait for the processes; one that was lost is started anew with its next call."""
+        channels = {self._processes[worker].channel: worker for worker in self._busy}
+        for channel in connections.wait(list(channels), timeout_s):
+            worker = next(w for c, w in channels.items() if c is channel)
+            message = self._processes[worker].receive()
+            if not isinstance(message, (Returned, Failed, Lost)):
+                (on_message,) = message
+                if isinstance(on_message, Notice):
+                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
+                else:
+                    self._busy[worker](on_message)
+                continue
+            del self._busy[worker]
+            if isinstance(message, Lost):
+                self._end(worker)
+            yield worker, message
+
+    def cancel(self, worker: int) -> None:
+        """Kill the process."""
+        del self._busy[worker]
+        self._end(worker)
+
+    def _end(self, worker: int) -> None:
+        if process := self._processes.pop(worker, None):
+            process.stop()
+
+    def close(self) -> None:
+        """Kill the processes; what they have written to disk is whole."""
+        self._busy.clear()
+        for worker in tuple(self._processes):
+            self._end(worker)
+
+
+class _Process:
+    """One process.
+
+    It is started by command, not by `multiprocessing`: its environment limits numpy and torch to
+    one thread before either is imported, and the user's script is not imported again.
+    """
+
+    def __init__(self) -> None:
+        ours, theirs = socket.socketpair()
+        lifeline, self._lifeline = os.pipe()
+        path = os.pathsep.join(entry for entry in sys.path if entry)
+        # A blocked signal stays blocked in the child until it says how it takes it.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-c", _BOOT, str(theirs.fileno()), str(lifeline)],
+                pass_fds=(theirs.fileno(), lifeline),
+                env={**KEEP_MEMORY, **os.environ, **ONE_THREAD, "PYTHONPATH": path},
+                stdin=subprocess.DEVNULL,
+                stdout=sys.__stderr__,  # our standard output belongs to the command
+            )
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            theirs.close()
+            os.close(lifeline)
+        self.channel: connections.Connection[Any, Any] = connections.Connection(ours.detach())
+
+    @property
+    def alive(self) -> bool:
+        """Whether it has not ended."""
+        return self._process.poll() is None
+
+    def send(self, packed: memoryview) -> None:
+        """Send a call; a process that died already shows when we read."""
+        with suppress(OSError):
+            self.channel.send_bytes(packed)
+
+    def receive(self) -> tuple[Any] | End:
+        """Return what it tells, as a tuple of one, or the end of its call."""
+        try:
+            return self.channel.recv()
+        except (EOFError, OSError):
+            return Lost(self._obituary())
+
+    def stop(self) -> None:
+        """End it now; harmless when it has ended."""
+        self._process.kill()
+        self._process.wait()
+        self.channel.close()
+        os.close(self._lifeline)
+
+    def _obituary(self) -> str:
+        try:
+            code = self._process.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            return "the worker process fell silent"
+        if code >= 0:
+            return f"the worker process ended by itself with status {code}"
+        hint = ", often for want of memory" if code == -signal.SIGKILL else ""
+        return f"the worker process was ended by {signal.Signals(-code).name}{hint}"

@@ -1,0 +1,278 @@
+"""Workers on a Ray cluster, seen from the driver: actors of one CPU each."""
+
+import os
+import pickle
+import signal
+import socket
+import sys
+import threading
+import warnings
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.reduction import ForkingPickler
+from typing import Any
+
+from faultpath.core.errors import Notice, UserError
+from faultpath.core.text import extra
+from faultpath.core.version import __version__
+from faultpath.trials.work.executor import ONE_THREAD, Call, End, Executor, Lost, OnMessage, ignore
+from faultpath.trials.work.processes import KEEP_MEMORY
+
+_QUIET = {"logging_level": "ERROR", "log_to_driver": False}
+_STORE_BYTES = 256 * 2**20
+"""Of shared memory for a cluster of our own: what comes back is small, and fetched at once."""
+_FALSE_STARTS = 4
+"""So many workers in a row may end before they have begun."""
+_REPORTS = "RAY_USAGE_STATS_ENABLED"
+_TICK_S = 0.5
+_REACH_S = 10.0
+
+_ENVIRONMENT = {
+    **KEEP_MEMORY,
+    **ONE_THREAD,
+    # A worker asks Ray for a CPU only, and sees the GPUs that a process of the node would see.
+    "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0",
+}
+
+
+@dataclass
+class _Worker:
+    actor: Any
+    starting: Any
+    """The reference of its first answer; `None` once that came."""
+    place: str = "a node that it did not reach"
+    stream: Any = None
+    """What its call tells and returns; `None` without a call."""
+    on_message: OnMessage = ignore
+
+    @property
+    def awaited(self) -> Any:
+        """What is to come of it next; `None` where it is free."""
+        return self.stream if self.starting is None else self.starting
+
+
+class RayWorkers(Executor):
+    """Runs calls on a Ray cluster.
+
+    `address` is `HOST:PORT` of its head, or empty for what Ray itself would take: `RAY_ADDRESS`,
+    a cluster on this machine, else one of its own that ends with this. `count` is the number of
+    workers; `None` for one for each CPU of the cluster.
+
+    A number stands for an actor, which is free once it runs somewhere. One that is lost, with its
+    node or alone, is asked for anew: Ray places it wherever there is a CPU, and until then the
+    others work. Raises `UserError` where the cluster cannot be used.
+    """
+
+    retries = 1
+
+    def __init__(self, address: str = "", count: int | None = None) -> None:
+        if count is not None and count < 1:
+            raise UserError(
+                f"the number of workers is {count}: on Ray use 1 or more, or leave it out for one "
+                "a CPU"
+            )
+        try:
+            import ray
+        except ModuleNotFoundError as error:
+            raise UserError(
+                f"--executor ray needs the package {error.name!r}, not installed here: "
+                f"{extra('ray')}"
+            ) from None
+        self._ray: Any = ray
+        self._ours = _connect(self._ray, address, count)
+        from faultpath.trials.work.on_node import OnNode  # it imports ray
+
+        self._count = count or max(1, int(self._ray.cluster_resources().get("CPU", 0)))
+        self._nodes: set[str] = set()
+        self._false_starts = 0
+        options = {"num_cpus": 1, "runtime_env": {"env_vars": _ENVIRONMENT}}
+        self._kind = self._ray.remote(OnNode).options(**options)
+        self._workers = {number: self._started() for number in range(self._count)}
+
+    @property
+    def count(self) -> int:
+        """Number of workers, whether they run yet or not."""
+        return self._count
+
+    @property
+    def name(self) -> str:
+        """Say on what calls ran."""
+        nodes = len(self._nodes)
+        return f"Ray {self._ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
+
+    def free(self) -> Sequence[int]:
+        """Return the workers that run and have no call; wait for one where none has a call."""
+        while True:
+            free = [number for number, each in self._workers.items() if each.awaited is None]
+            if free or any(each.stream is not None for each in self._workers.values()):
+                return free
+            for number in self._heard(_TICK_S):
+                self._welcome(number)
+
+    def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
+        """Send the call to an actor that runs; its stream holds one item until it is taken."""
+        chosen = self._workers[worker]
+        assert chosen.awaited is None
+        serve = chosen.actor.serve.options(_generator_backpressure_num_objects=1)
+        chosen.stream = serve.remote(bytes(ForkingPickler.dumps(call)))
+        chosen.on_message = on_message
+
+    def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
+        """Wait for the actors; one that was lost is asked for anew."""
+        for number in self._heard(timeout_s):
+            worker = self._workers[number]
+            if worker.starting is not None:
+                self._welcome(number)
+                continue
+            message = self._message(worker)
+            if isinstance(message, tuple):
+                (on_message,) = message
+                if isinstance(on_message, Notice):
+                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
+                else:
+                    worker.on_message(on_message)
+                continue
+            worker.stream = None
+            if isinstance(message, Lost):
+                self._replace(number)
+            yield number, message
+
+    def cancel(self, worker: int) -> None:
+        """Kill the actor."""
+        self._replace(worker)
+
+    def close(self) -> None:
+        """Kill the actors, and leave the cluster; one of our own ends."""
+        for worker in self._workers.values():
+            self._ray.kill(worker.actor)
+        self._workers.clear()
+        if self._ours:
+            with _as_before():
+                self._ray.shutdown()
+        self._ours = False
+
+    def _started(self) -> _Worker:
+        own = (os.path.realpath(sys.prefix), os.path.realpath(sys.base_prefix))
+        path = [each for each in sys.path if each and not os.path.realpath(each).startswith(own)]
+        actor = self._kind.remote(os.getcwd(), path)
+        return _Worker(actor, actor.ready.remote())
+
+    def _replace(self, number: int) -> None:
+        self._ray.kill(self._workers[number].actor)  # it may only be out of reach
+        self._workers[number] = self._started()
+
+    def _heard(self, timeout_s: float) -> list[int]:
+        awaited = {
+            id(each.awaited): (number, each.awaited)
+            for number, each in self._workers.items()
+            if each.awaited is not None
+        }
+        refs = [ref for _, ref in awaited.values()]
+        if not refs:
+            return []
+        if self._ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
+            ready, _ = self._ray.wait(refs, num_returns=len(refs), timeout=0)
+            return [awaited[id(ref)][0] for ref in ready]
+        return []
+
+    def _welcome(self, number: int) -> None:
+        """Take in the first answer of an actor, or ask for another where it has not come up."""
+        worker = self._workers[number]
+        try:
+            worker.place, node, version = self._ray.get(worker.starting)
+        except self._ray.exceptions.RayError as error:
+            self._false_starts += 1
+            if self._false_starts > _FALSE_STARTS:
+                raise UserError(
+                    f"workers do not start on the Ray cluster ({_last_line(error)}): every node "
+                    "needs the same Python, and faultpath with its extra ray"
+                ) from error
+            self._replace(number)
+            return
+        if version != __version__:
+            raise UserError(
+                f"{worker.place} has faultpath {version} and this process {__version__}: install "
+                "the same version on every node"
+            )
+        worker.starting, self._false_starts = None, 0
+        self._nodes.add(node)
+
+    def _message(self, worker: _Worker) -> tuple[Any] | End:
+        try:
+            # Of our own worker, through Ray, which itself runs what its cluster sends: no file.
+            message: tuple[Any] | End = pickle.loads(self._ray.get(next(worker.stream)))
+        except self._ray.exceptions.RayTaskError:
+            raise
+        except (self._ray.exceptions.RayError, StopIteration) as error:
+            return Lost(f"the worker on {worker.place} was lost ({_last_line(error)})")
+        return message
+
+
+def _connect(ray: Any, address: str, count: int | None) -> bool:
+    """Connect this process; return whether it was not before.
+
+    Without an address, and where nothing runs here, a cluster of this machine alone starts, and
+    ends with this process.
+    """
+    asked = address or os.environ.get("RAY_ADDRESS", "")
+    if ray.is_initialized():
+        now = ray.get_runtime_context().gcs_address
+        if address not in ("", "auto", now):
+            raise UserError(
+                f"this process is connected to the Ray cluster at {now}: name that one, or leave "
+                "the address out"
+            )
+        return False
+    if asked not in ("", "auto"):
+        _reach(asked)
+    with _as_before():
+        try:
+            ray.init(address=asked or "auto", **_QUIET)
+        except (RuntimeError, ConnectionError) as error:  # other versions of Ray, or none there
+            if asked or isinstance(error, RuntimeError):
+                where = asked or "on this machine"
+                raise UserError(
+                    f"cannot use the Ray cluster {where}: {' '.join(str(error).split())[:300]}"
+                ) from error
+            store = {"object_store_memory": _STORE_BYTES, "include_dashboard": False}
+            try:
+                ray.init(address="local", num_cpus=count, **store, **_QUIET)
+            except Exception as late:  # of no narrower kind, when it does not come up in time
+                raise UserError(f"Ray does not start on this machine: {_last_line(late)}") from late
+    return True
+
+
+def _reach(address: str) -> None:
+    """Raise `UserError` for an address at which nothing answers; Ray itself waits for minutes."""
+    host, _, port = address.rpartition(":")
+    try:
+        if "/" in address:
+            raise OSError("it is no HOST:PORT")
+        socket.create_connection((host.strip("[]"), int(port)), _REACH_S).close()
+    except (OSError, OverflowError, ValueError) as error:
+        raise UserError(
+            f"no Ray cluster answers at {address!r} ({error}): give HOST:PORT of its head, as in "
+            "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command with "
+            "`ray job submit` from a machine that does not belong to it"
+        ) from error
+
+
+@contextmanager
+def _as_before() -> Generator[None]:
+    """Keep the handler of SIGTERM; a cluster of our own reports nothing to Ray's makers."""
+    main = threading.current_thread() is threading.main_thread()
+    handler, asked = signal.getsignal(signal.SIGTERM), os.environ.get(_REPORTS)
+    os.environ[_REPORTS] = asked or "0"
+    try:
+        yield
+    finally:
+        if main:
+            signal.signal(signal.SIGTERM, handler)
+        if asked is None:
+            del os.environ[_REPORTS]
+
+
+def _last_line(error: BaseException) -> str:
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    return (lines[-1] if lines else type(error).__name__)[:300].rstrip(".")

@@ -1,0 +1,161 @@
+"""Which arms a question needs, and which of them are one and the same."""
+
+import pytest
+from audit_toys import INTERFACE, Paper, planned
+
+from faultpath.core.errors import UserError
+from faultpath.interface import interface_yaml, read_interface
+from faultpath.decisions.planning import Audit
+from faultpath.trials import Status, Variant
+
+
+def _paths(audit: Audit) -> list[str]:
+    return [path.name for path in audit.paths]
+
+
+def _struck(audit: Audit, variant: str, path: str) -> set[tuple[str, str]]:
+    (row,) = (r for r in audit.study.rows if (r.variant, r.path) == (variant, path))
+    return {(fault.channel, c) for fault in row.arm.faults for c in fault.consumers}
+
+
+def test_two_modules_make_four_paths_and_each_strikes_what_it_names():
+    audit = planned("plain", "observed", "mass:scale=2")
+    assert _paths(audit) == ["correct", "observer", "planner", "shared"]
+    planner = {("mass", "planner.cost"), ("mass", "planner.limit")}
+    observer = {("mass", "observer.model")}
+    for path, repair, baseline in (
+        ("correct", set(), set()),
+        ("observer", observer, set()),
+        ("planner", planner, planner),
+        ("shared", observer | planner, planner),
+    ):
+        assert _struck(audit, "observed", path) == repair
+        assert _struck(audit, "plain", path) == baseline
+        (said,) = (p for p in audit.paths if p.name == path)
+        assert set(said.consumers) == {consumer for _, consumer in repair}
+        assert set(said.baseline_consumers) == {consumer for _, consumer in baseline}
+
+
+def test_every_cell_has_a_row_and_arms_that_are_the_same_run_once():
+    audit = planned("plain", "observed", "mass:scale=2", seeds=(0, 7))
+    rows = {(row.variant, row.path, row.seed): row.arm for row in audit.study.rows}
+    assert len(rows) == len(audit.study.rows) == 2 * 4 * 2
+    for seed in (0, 7):
+        # Without an observer there is nobody to strike: its trials under correct inputs stand in.
+        assert rows["plain", "observer", seed] == rows["plain", "correct", seed]
+        assert rows["plain", "planner", seed] == rows["plain", "shared", seed]
+        assert all(rows[key].seed == seed for key in rows if key[2] == seed)
+    keys = {arm.key() for arm in rows.values()}
+    assert len(audit.study.arms()) == len(keys) == 2 * (2 + 4)
+
+
+def test_a_fault_of_one_module_is_not_shared():
+    audit = planned("deaf", "plain", "mass:scale=2")
+    assert _paths(audit) == ["correct", "planner"]
+    assert _struck(audit, "plain", "planner") == {
+        ("mass", "planner.cost"),
+        ("mass", "planner.limit"),
+    }
+    assert _struck(audit, "deaf", "planner") == set()
+
+
+@pytest.mark.parametrize(
+    ("text", "paths", "struck"),
+    [
+        ("mass:scale=2@observer", ["correct", "observer"], {"observer.model"}),
+        ("mass:scale=2@planner.limit", ["correct", "planner"], {"planner.limit"}),
+        (
+            "mass:scale=2@planner.cost+observer",
+            ["correct", "observer", "planner", "shared"],
+            {"observer.model", "planner.cost"},
+        ),
+    ],
+)
+def test_named_consumers_restrict_every_path(text, paths, struck):
+    audit = planned("plain", "observed", text)
+    assert _paths(audit) == paths
+    assert {consumer for _, consumer in _struck(audit, "observed", paths[-1])} == struck
+
+
+def test_a_coupled_fault_strikes_its_channels_together():
+    audit = planned("observed", "logged", "both=0.5")
+    assert _struck(audit, "logged", "logger") == {("mass", "logger.file"), ("heat", "logger.file")}
+    assert _struck(audit, "observed", "logger") == set()
+    assert _paths(audit) == ["correct", "logger", "observer", "planner", "shared"]
+
+
+def test_a_variant_is_struck_where_it_reads_and_nowhere_else():
+    audit = planned("limited", "plain", "mass:scale=2")
+    assert _struck(audit, "limited", "planner") == {("mass", "planner.limit")}
+
+
+def test_the_question_says_what_was_asked():
+    audit = planned("plain", "observed", "mass:scale=2,onset=3", scenes=2, seeds=(4,))
+    question = audit.question
+    assert (question.baseline, question.repair) == ("plain", "observed")
+    assert question.fault == "mass:scale=2,onset=3"
+    assert (question.library, question.library_hash) == ("five", "five-1")
+    assert (question.n_scenes, question.seeds) == (2, (4,))
+    assert audit.study.scenes == ("s0", "s1")
+    faults = [fault for row in audit.study.rows for fault in row.arm.faults]
+    assert faults
+    assert all(fault.onset_step == 3 for fault in faults)
+
+
+def test_without_a_number_of_scenes_the_whole_library_runs():
+    assert len(planned("plain", "observed", "mass:scale=2").study.scenes) == 5
+
+
+@pytest.mark.parametrize(
+    ("call", "says"),
+    [
+        (("plian", "observed", "mass:scale=2"), "'plian'.*'plain'.*deaf, limited, logged"),
+        (("plain", "x", "mass:scale=2"), "'x'.*known: deaf, limited, logged, observed, plain"),
+        (("plain", "plain", "mass:scale=2"), "both 'plain'.*two different"),
+        (("deaf", "limited", "mass:scale=2@observer"), "neither 'deaf' nor 'limited'"),
+        (("deaf", "plain", "heat:scale=2"), "heat.*neither 'deaf' nor 'plain'"),
+    ],
+)
+def test_questions_that_cannot_be_asked(call, says):
+    with pytest.raises(UserError, match=says):
+        planned(*call)
+
+
+@pytest.mark.parametrize("count", [0, -1, 6])
+def test_scenes_that_the_library_does_not_have(count):
+    with pytest.raises(UserError, match=f"{count} scenes of library 'five': choose 1 to 5"):
+        planned("plain", "observed", "mass:scale=2", scenes=count)
+
+
+def test_a_module_may_not_be_called_like_a_path(monkeypatch):
+    document = interface_yaml(INTERFACE).replace("observer.model", "shared.model")
+    monkeypatch.setattr(Paper, "interface", read_interface(document))
+    reads = frozenset({"planner.cost", "shared.model"})
+    monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))
+    with pytest.raises(UserError, match="calls a module 'shared'"):
+        planned("plain", "observed", "mass:scale=2")
+
+
+def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
+    assert planned("plain", "observed", "mass:scale=2").question.primary == "shared"
+    assert planned("deaf", "plain", "mass:scale=2").question.primary == "planner"
+    named = planned("plain", "observed", "mass:scale=2", primary="observer").question
+    assert (named.primary, named.generalise, named.trained) == ("observer", "scenes", False)
+    with pytest.raises(UserError, match=r"no path 'pilot'.*correct, observer, planner, shared"):
+        planned("plain", "observed", "mass:scale=2", primary="pilot")
+
+
+def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch):
+    asked = {"generalise": "models", "seeds": (0, 1)}
+    with pytest.raises(UserError, match="no trained models to generalise to"):
+        planned("plain", "observed", "mass:scale=2", **asked)
+    monkeypatch.setattr(Paper, "trained", True)
+    question = planned("plain", "observed", "mass:scale=2", **asked).question
+    assert (question.generalise, question.trained) == ("models", True)
+    with pytest.raises(UserError, match=r"one seed says nothing.*--seeds 0,1,2"):
+        planned("plain", "observed", "mass:scale=2", generalise="models")
+
+
+def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
+    monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
+    assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}

@@ -1,0 +1,77 @@
+"""The record says which taps were struck in flight, from receipts and not from the plan."""
+
+from pathlib import Path
+
+import pytest
+
+from faultpath.trials.execution import run_study
+from faultpath.decisions.planning import Audit, plan_audit
+from faultpath.decisions.question import AuditQuestion
+from faultpath.decisions import DecisionRecord, StruckTap
+from faultpath.trials.store import read_outcomes
+from faultpath.trials import Deliveries, SystemSpec, load_system
+
+TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
+STEPS = 100
+
+
+def asked(text: str) -> Audit:
+    spec = SystemSpec(name=TOY)
+    system = load_system(spec)
+    return plan_audit(
+        system,
+        spec,
+        AuditQuestion(baseline="calibrated", repair="blind", fault=text, scenes=4),
+        system.library("carts"),
+    )
+
+
+def struck(record: DecisionRecord) -> dict[str, tuple[tuple[StruckTap, ...], ...]]:
+    return {path.name: (path.struck, path.baseline_struck) for path in record.paths}
+
+
+def tap(consumer: str, struck_steps: int, altered_steps: int) -> StruckTap:
+    return StruckTap(
+        channel="gain",
+        consumer=consumer,
+        struck_steps=struck_steps,
+        altered_steps=altered_steps,
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "in_force", "altered"),
+    [
+        ("gain:scale=0.6", STEPS, STEPS),
+        ("gain:scale=0.6,onset=90", 10, 10),
+        ("gain:scale=1", STEPS, 0),
+    ],
+)
+def test_a_path_holds_the_taps_struck_in_either_variant(tmp_path, text, in_force, altered):
+    audit = asked(text)
+    result = run_study(audit.study, tmp_path, workers=0)
+    controller = tap("controller.inverse", 4 * in_force, 4 * altered)
+    observer = tap("observer.model", 4 * in_force, 4 * altered)
+    assert struck(audit.conclude(result.outcomes, result.deliveries)) == {
+        "correct": ((), ()),
+        "controller": ((controller,), (controller,)),
+        "observer": ((), (observer,)),
+        "shared": ((controller,), (controller, observer)),
+    }
+
+
+def test_a_fault_after_the_end_struck_nothing(tmp_path):
+    audit = asked("gain:scale=0.6,onset=100")
+    result = run_study(audit.study, tmp_path, workers=0)
+    record = audit.conclude(result.outcomes, result.deliveries)
+    assert set(struck(record).values()) == {((), ())}
+
+
+def test_a_stored_run_is_concluded_without_flying(tmp_path):
+    audit = asked("gain:scale=0.6")
+    result = run_study(audit.study, tmp_path, workers=0)
+    stored = audit.conclude(
+        read_outcomes(tmp_path / "outcomes.parquet"),
+        Deliveries.model_validate_json((tmp_path / "deliveries.json").read_bytes()),
+    )
+    assert stored == audit.conclude(result.outcomes, result.deliveries)

@@ -1,0 +1,284 @@
+"""The front door: an audit from Python, by name, by file and by object."""
+
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pyarrow as pa
+import pytest
+from rich.console import Console
+
+import faultpath
+from faultpath.api.display import Display
+from faultpath.report.tables import markdown_table
+from faultpath.report.terminal import decision
+
+ROOT = Path(__file__).resolve().parents[2]
+FILE = ROOT / "examples" / "toy.py"
+TOY = f"{FILE}:create"
+ASKED = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain:scale=0.6",
+    "library": "carts",
+    "scenes": 12,
+    "progress": False,
+}
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def toy():
+    """An object that the caller has made."""
+    return type(faultpath.load_system(TOY))()
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory) -> faultpath.Run:
+    return faultpath.audit(TOY, folder=tmp_path_factory.mktemp("door") / "run", workers=0, **ASKED)
+
+
+def _outcomes(run: faultpath.Run) -> list[tuple]:
+    columns = ("variant", "path", "seed", "scene", "status", "terminal_distance_m", "struck_steps")
+    return list(zip(*(run.table()[name].to_pylist() for name in columns), strict=True))
+
+
+def test_a_run_holds_what_was_decided_and_from_what(run):
+    assert "blind" in run.record.verdict.headline
+    assert run.record.question.n_scenes == 12
+    assert run.failed == 0
+    assert isinstance(run.table(), pa.Table)
+    assert run.table().num_rows == 12 * 2 * 4
+    assert run.record.verdict.headline in repr(run)
+    assert run.provenance.command[0].startswith(f"faultpath.audit(system={TOY!r}, baseline=")
+
+
+def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_path):
+    assert run.record.question.rule == "unconditional"
+    assert "since 2026-11-23" in markdown_table(run.record)
+    told = io.StringIO()
+    Console(file=told, width=200).print(decision(run.record, details=True))
+    assert "E+M" in told.getvalue()
+    assert "McNemar" in told.getvalue()
+    assert all(effect.mcnemar_p_value is not None for effect in run.record.effects)
+    with pytest.raises(faultpath.UserError, match="--rule unconditional"):
+        faultpath.audit(TOY, folder=run.folder, workers=0, rule="exact", **ASKED)
+    with pytest.raises(faultpath.UserError, match="'exact' or 'unconditional'"):
+        faultpath.audit(TOY, folder=tmp_path / "no", workers=0, rule="sign", **ASKED)
+    old = run.record.question.model_dump()
+    del old["rule"]
+    assert type(run.record.question).model_validate(old).rule == "exact"
+
+
+def test_trials_are_the_table_as_a_frame(run):
+    pandas = pytest.importorskip("pandas")
+    frame = run.trials()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame.columns) == run.table().column_names
+    success = frame.query("path == 'shared' and status == 'success'").groupby("variant").size()
+    cells = {c.variant: c.success for c in run.record.cells if c.path == "shared"}
+    assert {name: success.get(name, 0) for name in cells} == cells
+
+
+def test_without_pandas_a_sentence_names_the_table(run, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(faultpath.UserError, match=r"pip install '\.\[pandas\]', or .* table\(\)"):
+        run.trials()
+
+
+def test_a_folder_opens_again(run):
+    again = faultpath.open_run(str(run.folder))
+    assert again.record == run.record
+    assert again.table() == run.table()
+    with pytest.raises(faultpath.UserError, match=r"nowhere holds no provenance\.json"):
+        faultpath.open_run("nowhere")
+
+
+def test_a_notebook_shows_verdict_effects_and_table(run):
+    shown = run._repr_html_()
+    assert run.record.verdict.headline.partition(" ")[0] in shown
+    assert "<svg" in shown
+    assert "Won:lost" in shown
+    assert "<script" not in shown
+    assert ":root" not in shown  # its colours are not those of the notebook
+
+
+def test_name_file_path_and_object_fly_the_same(run, toy):
+    ways = {
+        "file": str(FILE),
+        "path": FILE,
+        "loaded": faultpath.load_system(FILE),
+        "object": toy,
+    }
+    for name, system in ways.items():
+        other = faultpath.audit(
+            system, folder=name, workers=0 if name != "object" else None, **ASKED
+        )
+        assert _outcomes(other) == _outcomes(run), name
+        assert other.record.effects == run.record.effects
+        named = other.record.question.system
+        assert named == ("Toy object" if name == "object" else TOY)
+
+
+def test_workers_build_what_is_named_or_was_loaded(run):
+    loaded = faultpath.load_system(TOY)
+    other = faultpath.audit(loaded, folder="two", workers=2, **ASKED)
+    assert other.provenance.workers == 2
+    assert _outcomes(other) == _outcomes(run)
+
+
+def test_an_object_that_was_changed_is_not_taken_for_what_was_loaded():
+    loaded = faultpath.load_system(TOY)
+    loaded.block_size = 3
+    with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
+        faultpath.audit(loaded, workers=2, **ASKED)
+
+
+def test_the_default_folder_is_found_again_by_the_same_call():
+    first = faultpath.audit(TOY, workers=0, **ASKED)
+    assert first.folder.parent == Path("runs")
+    again = faultpath.audit(TOY, workers=0, **ASKED)
+    assert again.folder == first.folder
+    assert again.provenance.blocks_computed == 0
+
+
+def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
+    first, second = (faultpath.audit(toy, **ASKED) for _ in range(2))
+    assert first.folder != second.folder
+    assert second.provenance.blocks_kept == 0
+    with pytest.raises(faultpath.UserError, match="holds a run, and whether it was of this same"):
+        faultpath.audit(toy, folder=first.folder, **ASKED)
+
+
+def test_an_object_says_that_it_runs_here(toy):
+    told = io.StringIO()
+    asked = ASKED | {"progress": Display(Console(file=told))}
+    run = faultpath.audit(toy, **asked)
+    assert "The system is an object, so it runs in this process" in told.getvalue()
+    assert "Running: 96 of 96 trials" in told.getvalue()
+    assert run.provenance.workers == 0
+
+
+@pytest.mark.parametrize(
+    ("system", "given", "says"),
+    [
+        (3, {}, "a system is a name, a file or a faultpath.System, not 3"),
+        ("octopus", {}, "there is no system 'octopus'"),
+        ("nowhere.py", {}, "there is no file 'nowhere.py'"),
+        (TOY, {"options": {"wind": "L3"}}, "'wind': it takes none"),
+        (TOY, {"options": {"wind": ["L3"]}}, "the option 'wind' is a list"),
+        (TOY, {"baseline": None}, "baseline: is empty, and must be text"),
+        (TOY, {"repair": "octopus"}, "unknown variant 'octopus'"),
+        (TOY, {"scenes": "12"}, "scenes: is '12', and must be a whole number"),
+        (TOY, {"seeds": "0,a"}, "'0,a' is not a list of whole numbers"),
+        (TOY, {"sceens": 3}, "did you mean 'scenes'"),
+        (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
+        (TOY, {"seeds": 2**63}, "is not a seed"),
+        (TOY, {"workers": -1}, "the number of workers is -1"),
+        (
+            None,
+            {"workers": 2},
+            "an object cannot be sent to worker processes: .* leave workers out",
+        ),
+        (None, {"options": {"wind": "L3"}}, "options build a system, and this one is built"),
+    ],
+)
+def test_what_cannot_be_asked_is_told_in_a_sentence(system, given, says, toy, tmp_path):
+    with pytest.raises(faultpath.UserError, match=says) as raised:
+        faultpath.audit(toy if system is None else system, **(ASKED | given))
+    assert "\n" not in str(raised.value)
+    assert list(tmp_path.iterdir()) == []
+
+
+NOTEBOOK = f"""
+import sys
+sys.path.append({str(FILE.parent)!r})
+import faultpath, toy
+
+class Mine(toy.Toy):
+    pass
+
+asked = {ASKED!r}
+asked["progress"] = True
+named = faultpath.audit({TOY!r}, workers=2, **asked)
+mine = faultpath.audit(Mine(), **asked)
+print(named.record.effects == mine.record.effects, mine.provenance.system_commit)
+"""
+
+
+def test_what_is_typed_in_flies_and_needs_no_guard(tmp_path):
+    """As in a notebook: the class is in no file, and `__main__` has no `if __name__` guard."""
+    done = subprocess.run(
+        [sys.executable, "-"], input=NOTEBOOK, capture_output=True, text=True, timeout=120
+    )
+    assert done.stdout == "True None\n", done.stderr
+    assert "Running: 96 of 96 trials" in done.stderr
+
+
+def test_the_command_line_leaves_the_same_record(run, tmp_path):
+    line = ["audit", TOY, "--baseline", "calibrated", "--repair", "blind", "--workers", "0"]
+    line += ["--fault", "gain:scale=0.6", "--library", "carts", "--scenes", "12", "--out", "cli"]
+    code = "from faultpath.cli.main import main; main()"
+    subprocess.run([sys.executable, "-c", code, *line], check=True, capture_output=True)
+    record = json.loads((tmp_path / "cli" / "record.json").read_text())
+    assert record == json.loads((run.folder / "record.json").read_text())
+
+
+SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory) -> faultpath.Run:
+    place = tmp_path_factory.mktemp("early") / "run"
+    return faultpath.audit(TOY, folder=place, workers=0, **SEQUENTIAL)
+
+
+def test_a_sequential_audit_stops_and_says_so(early):
+    record = early.record
+    assert record.stopped is not None
+    assert record.stopped.reached
+    assert record.stopped.scenes < 60
+    assert record.stopped.scenes % record.question.stop.look == 0
+    assert early.table().num_rows == record.stopped.scenes * 2 * 4
+    flown = set(early.table()["scene"].to_pylist())
+    assert flown == set(record.question.stop.order[: record.stopped.scenes])
+    assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
+    assert "ahead" in record.verdict.headline
+    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.verdict.sentences)
+
+
+def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
+    again = faultpath.audit(TOY, folder=early.folder, workers=0, **SEQUENTIAL)
+    assert again.record == early.record
+    assert again.provenance.blocks_computed == 0
+    other = faultpath.audit(TOY, folder=tmp_path / "two", workers=2, **SEQUENTIAL)
+    assert other.record == early.record
+    assert faultpath.open_run(early.folder).record == early.record
+
+
+def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
+    asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
+    record = faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **asked).record
+    assert (record.stopped.scenes, record.stopped.reached) == (6, False)
+    assert record.verdict.headline.startswith("Too few scenes to decide")
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"stop_when": None, "margin_pp": 5.0}, "give it with --stop-when"),
+        ({"margin_pp": 0.0}, "between 0 and 100"),
+        ({"margin_pp": "5"}, "margin_pp: .*must be a number"),
+        ({"stop_when": "soon"}, "'decided' or 'all-decided'"),
+        ({"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
+    ],
+)
+def test_a_rule_that_cannot_be_is_refused(changed, words, tmp_path):
+    with pytest.raises(faultpath.UserError, match=words):
+        faultpath.audit(TOY, folder=tmp_path / "run", workers=0, **{**SEQUENTIAL, **changed})

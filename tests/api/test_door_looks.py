@@ -1,0 +1,75 @@
+"""An audit that is extended by hand says what was concluded from its trials before."""
+
+from pathlib import Path
+
+import pytest
+
+import faultpath
+from faultpath.api import carrying_out
+from faultpath.decisions.summary import answers
+
+TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
+ASKED = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain:scale=0.6",
+    "library": "carts",
+    "workers": 0,
+    "progress": False,
+}
+FIVE_PERCENT = "at most 5 % would decide"
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def audited(**asked) -> faultpath.Run:
+    return faultpath.audit(TOY, **(ASKED | {"folder": "run"} | asked))
+
+
+def said(run: faultpath.Run) -> str:
+    return " ".join((*run.record.findings, *answers(run.record).values()))
+
+
+def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
+    first = audited(scenes=12)
+    assert audited(scenes=12).record == first.record
+    assert FIVE_PERCENT in said(first)
+    assert not first.record.earlier
+    more = audited(scenes=20)
+    assert [look.scenes for look in more.record.earlier] == [12]
+    assert "concluded before with 12 scenes" in said(more)
+    assert FIVE_PERCENT not in said(more)
+    with monkeypatch.context() as killed:
+        killed.setattr(carrying_out, "seal", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            audited(scenes=20)
+    assert audited(scenes=20).record == more.record
+    back = audited(scenes=12)
+    assert [look.scenes for look in back.record.earlier] == [20]
+
+
+def test_another_primary_contrast_is_a_look():
+    audited(scenes=12)
+    found = audited(scenes=12, primary="correct").record
+    assert [(look.scenes, look.primary) for look in found.earlier] == [(12, "shared")]
+
+
+def test_a_default_folder_knows_of_those_that_share_its_trials():
+    audited(scenes=12, folder=None)
+    assert [look.scenes for look in audited(scenes=20, folder=None).record.earlier] == [12]
+    assert not audited(scenes=20, folder=None, fault="gain:scale=0.7").record.earlier
+
+
+def test_what_could_announce_nothing_is_no_look():
+    audited(scenes=3)
+    assert not audited(scenes=12).record.earlier
+
+
+def test_sequential_looks_are_allowed_for_as_long_as_they_lead_to_one_contrast():
+    audited(scenes=15, stop_when="decided")
+    assert not audited(scenes=20, stop_when="all-decided").record.earlier
+    other = audited(scenes=20, stop_when="all-decided", primary="correct").record
+    assert [(look.scenes, look.primary) for look in other.earlier] == [(None, "shared")]

@@ -1,0 +1,111 @@
+"""After an audit: signals of the scenes that its report begins with, never an error."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import faultpath
+from faultpath.api import carrying_out
+from faultpath.api.saved import read_run
+from faultpath.trials.store.signals import SIGNALS, TOGETHER
+
+FILE = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+AUDIT = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain:scale=0.6",
+    "library": "carts",
+    "scenes": 3,
+    "workers": 0,
+    "progress": False,
+}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return faultpath.audit(FILE, **AUDIT, folder=tmp_path_factory.mktemp("recorded") / "run")
+
+
+def test_signals_of_the_first_scene_are_there_without_being_asked_for(run) -> None:
+    heard = read_run(run.folder)[0].signals
+    assert len({at.scene for at in heard}) == 1
+    assert {(at.variant, at.path) for at in heard} == {
+        (variant, path)
+        for variant in ("calibrated", "blind")
+        for path in ("correct", "controller", "observer", "shared")
+    }
+
+
+def test_two_errors_add_up_to_what_the_acceleration_differs_by(run) -> None:
+    for at, named in read_run(run.folder)[0].signals.items():
+        value = {each.name: each.values[:, 0].astype(float) for each in named}
+        wanted = value["goal"] - value["odometer"] - 2.0 * value["speedometer"]
+        had = np.diff(value["speedometer"], append=np.nan) / 0.1
+        assert np.allclose(value[TOGETHER], wanted - had, atol=1e-5, equal_nan=True), at
+        gain, slope = value["controller: wrong gain"], value["observer: wrong slope"]
+        assert np.allclose(gain + slope, value[TOGETHER], atol=1e-6, equal_nan=True)
+        assert gain.any() == (at.path in ("controller", "shared"))
+
+
+def test_a_second_call_flies_nothing_again_and_completes_what_is_missing(
+    run, tmp_path, monkeypatch
+) -> None:
+    place = tmp_path / "run"
+    shutil.copytree(run.folder, place)
+    kept = (place / SIGNALS).read_bytes()
+    with monkeypatch.context() as without:
+        without.setattr(carrying_out, "fly_again", None)
+        again = faultpath.audit(FILE, **AUDIT, folder=place)
+    assert (place / SIGNALS).read_bytes() == kept
+    assert SIGNALS in again.provenance.files
+    (place / SIGNALS).unlink()  # as where a run was killed before they were written
+    faultpath.audit(FILE, **AUDIT, folder=place)
+    assert (place / SIGNALS).read_bytes() == kept
+
+
+def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, monkeypatch) -> None:
+    def stopped(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(carrying_out, "fly_again", stopped)
+    run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run")
+    assert (run.folder / "report.html").is_file()
+    assert not (run.folder / SIGNALS).exists()
+    assert not run.record.findings
+
+
+@pytest.mark.parametrize("second", ["raises", "ends", "differs"])
+def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None:
+    """It flies each arm twice at most as the run asks; with listening taps it is another one."""
+    what = {
+        "raises": "raise RuntimeError('not again')",
+        "ends": "import sys; sys.exit(3)",
+        "differs": "outcomes = [replace(o, time_s=o.time_s / 2) for o in outcomes]",
+    }[second]
+    system = tmp_path / "odd.py"
+    system.write_text(
+        f"import sys; sys.path.insert(0, {str(FILE.parent)!r})\n"
+        "from dataclasses import replace\n"
+        "import toy\n"
+        "class Odd(toy.Toy):\n"
+        "    def run(self, variant, scenes, taps, seed):\n"
+        "        outcomes = super().run(variant, scenes, taps, seed)\n"
+        "        if taps._observer is not None:\n"
+        f"            {what}\n"
+        "        return outcomes\n"
+        "create = Odd\n",
+        "utf-8",
+    )
+    run = faultpath.audit(system, **AUDIT, folder=tmp_path / "run")
+    assert not (run.folder / SIGNALS).exists()
+    said = next(each for each in run.record.findings if "signals" in each.lower())
+    assert {"raises": "not again", "ends": "sys.exit(3)", "differs": "time_s"}[second] in said
+    assert said in (run.folder / "report.html").read_text("utf-8").replace("&#39;", "'")
+
+
+def test_without_signals_nothing_is_flown_again(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr(carrying_out, "fly_again", None)
+    run = faultpath.audit(FILE, **AUDIT, folder=tmp_path / "run", signals=False)
+    assert not (run.folder / SIGNALS).exists()

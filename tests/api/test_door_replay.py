@@ -1,0 +1,119 @@
+"""Trials of a finished run flown again: the same to the bit, heard, and in the report."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import faultpath
+from faultpath.cli.replay import command
+from faultpath.api.replaying import chosen_scenes, keep_signals, replay
+from faultpath.api.saved import read_run
+from faultpath.core.errors import UserError
+from faultpath.trials.store import TrialAddress
+from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal
+
+TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
+SCENE = "cart/001"
+AUDIT = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain:scale=0.6,onset=20,for=30",
+    "library": "carts",
+    "scenes": 3,
+    "workers": 0,
+    "progress": False,
+}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    place = tmp_path_factory.mktemp("replay") / "run"
+    faultpath.audit(TOY, **AUDIT, folder=place, signals=False)
+    return place
+
+
+@pytest.fixture(scope="module")
+def found(folder):
+    return replay(read_run(folder)[0], (SCENE,))
+
+
+def _signals(found, variant: str, path: str) -> dict[str, Signal]:
+    address = TrialAddress(variant, path, 0, SCENE)
+    return {s.name: s for each in found if each.address == address for s in each.signals}
+
+
+def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
+    assert len(found) == 8
+    assert not any(each.differs for each in found)
+    heard = _signals(found, "calibrated", "shared")
+    gain = heard["gain_estimate"].values
+    assert gain.shape == (100, 1)
+    struck = np.zeros((100, 1))
+    struck[20:50] = 1
+    assert np.array_equal(heard[IN_FORCE].values, struck)
+    for tap in ("controller.inverse", "observer.model"):
+        assert np.allclose(heard[f"gain at {tap}"].values, gain * (1 - 0.4 * struck))
+        assert np.allclose(heard[f"gain error at {tap}"].values, -0.4 * gain * struck)
+    assert heard["observed_slope"].topic == "slope"
+    assert np.isfinite(heard["observed_slope"].values).all()
+    assert "gain at observer.model" not in _signals(found, "blind", "shared")
+    assert IN_FORCE not in _signals(found, "blind", "correct")
+
+
+def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, tmp_path) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(folder, run)
+    held, _ = read_run(run)
+    few = [each for each in found if each.address.path == "shared"]
+    written = keep_signals(run, held, few)
+    assert written[0] == run / SIGNALS
+    more = read_run(run)[0]
+    assert len(more.signals) == 2
+    keep_signals(run, more, found)
+    assert len(read_run(run)[0].signals) == 8
+    (run / SIGNALS).write_bytes((run / SIGNALS).read_bytes()[:-1] + b"x")
+    with pytest.raises(UserError, match=r"signals.parquet changed since the run"):
+        read_run(run)
+
+
+def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
+    held, _ = read_run(folder)
+    rows = tuple(
+        replace(row, outcome=replace(row.outcome, time_s=9.0)) if row.path == "shared" else row
+        for row in held.outcomes.rows
+    )
+    changed = replace(held, outcomes=replace(held.outcomes, rows=rows))
+    found = replay(changed, (SCENE,), ("shared", "observer"))
+    assert {each.address.path: bool(each.differs) for each in found} == {
+        "shared": True,
+        "observer": False,
+    }
+    for each in found:
+        assert ("time_s by up to 1" in each.differs) == bool(each.differs)
+        assert bool(each.signals) != bool(each.differs)
+
+
+def test_scenes_and_paths_are_those_of_the_run(folder) -> None:
+    held, _ = read_run(folder)
+    assert len(chosen_scenes(held, (), ())) == 3
+    assert chosen_scenes(held, (SCENE, SCENE), ("shared",)) == (SCENE,)
+    with pytest.raises(UserError, match=r"unknown scene"):
+        chosen_scenes(held, ("cart/09",), ())
+    with pytest.raises(UserError, match=r"unknown path"):
+        chosen_scenes(held, (), ("both",))
+
+
+def test_an_object_cannot_be_flown_again(folder) -> None:
+    held, _ = read_run(folder)
+    question = held.record.question.model_copy(update={"system": "Toy object"})
+    lost = replace(held, record=held.record.model_copy(update={"question": question}))
+    with pytest.raises(UserError, match="flew a Toy object, which only its own process had"):
+        replay(lost, (SCENE,))
+
+
+def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
+    assert command(folder, scene=[SCENE], path=["observer"]) == 0
+    assert "2 trials in 1 scene came out as in the run, to the bit." in capsys.readouterr().out

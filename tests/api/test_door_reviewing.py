@@ -1,0 +1,48 @@
+"""`check` and `trace` from Python find what the commands find."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+import faultpath
+from faultpath.api import check, trace
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "cli"))
+from cli_runs import faultpath as command
+
+TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+ASKED = {"library": "carts", "scenes": 2, "workers": 0, "progress": False}
+
+
+def test_a_check_of_a_name_and_of_an_object_is_that_of_the_command():
+    found = check(TOY, variants=["blind"], **ASKED)
+    assert found.failures == ()
+    assert found.variants == ("blind",)
+    line = ["check", f"{TOY}:create", "--variants", "blind", "--library", "carts"]
+    said = command(*line, "--scenes", "2", "--workers", "0", "--json")
+    assert json.loads(said.out) == found.model_dump(mode="json")
+
+    class Own(type(faultpath.load_system(TOY))):
+        pass
+
+    own = check(Own(), variants=["blind"], **ASKED)
+    assert [each.status for each in own.checks] == [each.status for each in found.checks]
+    with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
+        check(Own(), workers=2)
+
+
+def test_a_trace_tells_whom_a_fault_reaches():
+    found = trace(TOY, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
+    struck = {read.consumer for read in found.reads if read.altered_by}
+    assert struck == {"controller.inverse", "observer.model"}
+    assert {read.step for read in found.reads} == {0, 1}
+    assert trace(faultpath.load_system(TOY), library="carts").variant == "calibrated"
+
+
+@pytest.mark.parametrize("call", [check, trace])
+def test_what_there_is_none_of_is_said(call):
+    asked = {"variants": ["octopus"]} if call is check else {"variant": "octopus"}
+    with pytest.raises(faultpath.UserError, match="unknown variant 'octopus'"):
+        call(TOY, library="carts", **asked)

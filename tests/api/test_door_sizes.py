@@ -1,0 +1,97 @@
+"""A fault of several sizes: an audit each, and what they have in common flies once."""
+
+from pathlib import Path
+
+import pytest
+
+import faultpath
+from faultpath.api.listing import runs
+from faultpath.core.errors import UserError
+from faultpath.faults import each_size
+
+TOY = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
+ASKED = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "library": "carts",
+    "scenes": 12,
+    "workers": 0,
+    "progress": False,
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "each"),
+    [
+        ("gain:scale=0.8", ("gain:scale=0.8",)),
+        ("gain:scale=0.8,0.9", ("gain:scale=0.8", "gain:scale=0.9")),
+        ("c=+0.1,-0.1", ("c=+0.1", "c=-0.1")),
+        (
+            "v:noise=0.1,0.2,relative,onset=3@p+q",
+            ("v:noise=0.1,relative,onset=3@p+q", "v:noise=0.2,relative,onset=3@p+q"),
+        ),
+        ("v:noise=0.1@p,0.2", ("v:noise=0.1@p", "v:noise=0.2@p")),
+        ("v:noise=0.1,0.2@p", ("v:noise=0.1@p", "v:noise=0.2@p")),
+        ("w:offset=1/0/0,0/1/0", ("w:offset=1/0/0", "w:offset=0/1/0")),
+        ("w:freeze,onset=3", ("w:freeze,onset=3",)),
+        ("c=-0.2..0.2/5", ("c=-0.2", "c=-0.1", "c=0", "c=0.1", "c=0.2")),
+        ("c=+1..-1/2", ("c=1", "c=-1")),
+        (
+            "g:scale=.8..1.1/4@p,onset=3",
+            tuple(f"g:scale={s},onset=3@p" for s in (0.8, 0.9, 1, 1.1)),
+        ),
+        ("g:scale=0.8..0.9/2,1.5", ("g:scale=0.8", "g:scale=0.9", "g:scale=1.5")),
+    ],
+)
+def test_a_text_for_each_size(text, each):
+    assert each_size(text) == each
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("gain:scale=0.8,0.80", "names a size twice"),
+        ("gain:freeze,0.8", "0.8 is a further size, and there is no first"),
+        ("gain:scale=0.8..0.9", "write FROM..TO/COUNT"),
+        ("gain:scale=0.8..x/3", "write FROM..TO/COUNT"),
+        ("gain:offset=1/0/0..2/0/0/3", "write FROM..TO/COUNT"),
+        ("gain:scale=0.8..0.9/1", "a range takes 2 to 99"),
+        ("gain:scale=0.8..0.9/1000000000", "a range takes 2 to 99"),
+        ("gain:scale=0.8..0.8/3", "names a size twice"),
+    ],
+)
+def test_lists_that_are_none(text, said):
+    with pytest.raises(UserError, match=said):
+        each_size(text)
+
+
+def test_the_arms_that_sizes_share_fly_once_and_the_others_as_if_alone(tmp_path):
+    asked = {**ASKED, "workers": 1}
+    _, strong = faultpath.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **asked)
+    alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **asked)
+    assert strong.record == alone.record
+    assert strong.table() == alone.table()
+    assert strong.provenance.blocks_kept > alone.provenance.blocks_kept == 0
+
+
+def test_one_audit_takes_one_size():
+    with pytest.raises(UserError, match=r"several sizes: use faultpath\.audits"):
+        faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)
+
+
+def test_runs_share_trials_unless_their_folder_is_named(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    asked = {**ASKED, "workers": 1, "scenes": 8}
+    first = faultpath.audit(TOY, fault="gain:scale=0.6", **asked)
+    second = faultpath.audit(TOY, fault="gain:scale=0.8", **asked)
+    assert first.provenance.blocks_kept == 0
+    assert second.provenance.blocks_kept == 2, "both arms under correct inputs"
+    assert len(list(Path("runs/.shared").rglob("*.parquet"))) > 2
+    assert {run.folder for run in runs(Path("runs"))} == {str(first.folder), str(second.folder)}
+    plane = {"against": ("controller", "observer"), "up_to": 0.2, "points": 25, "spread": 0.1}
+    drawn = faultpath.reversal_map(TOY, fault="gain", **plane, **asked)
+    assert drawn.provenance.blocks_kept == 6, "correct inputs, and every path of the second audit"
+    named = faultpath.audit(TOY, fault="gain:scale=0.8", folder="named", **asked)
+    assert named.provenance.blocks_kept == 0
+    assert named.record == second.record
+    assert named.provenance.outcomes_sha256 == second.provenance.outcomes_sha256

@@ -1,0 +1,193 @@
+"""Every reader of files that somebody names, against what is no file and what is no plain data."""
+
+import os
+import signal
+import socket
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
+from faultpath.systems.flightlog import read_columns, read_flight
+from faultpath.interface import read_interface
+from faultpath.decisions.plan.study import read_study
+from faultpath.learning.model_card import read_card
+from faultpath.learning.record import FitRecord
+from faultpath.trials.store import RunFolder, read_evidence, read_outcomes, read_traces
+from faultpath.trials.store.lock import locked
+from faultpath.trials.store.manifest import read_manifest
+from faultpath.trials.store.parquet import Unreadable, rows_in
+from faultpath.trials.store.sealed import read_regular
+from faultpath_quadrotor.paper.run import read_results
+
+Read = Callable[[Path], object]
+
+
+def _log(path: Path) -> object:
+    return read_flight(path, read_columns("px4").model_copy(update={"mass_kg": 1.0}))
+
+
+def _library(path: Path) -> object:
+    from faultpath_quadrotor.scenes.library import load_library
+
+    return load_library(path)
+
+
+def _card(path: Path) -> object:
+    from faultpath_quadrotor.checkpoint import ModelCard
+
+    return read_card(path, ModelCard)
+
+
+def _shard(path: Path) -> object:
+    folder = RunFolder(path.parents[1])
+    return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
+
+
+READERS: dict[str, tuple[str, Read]] = {
+    "columns of a log": ("map.yaml", lambda path: read_columns(str(path))),
+    "log as text": ("flight.csv", _log),
+    "log as a table": ("flight.parquet", _log),
+    "log as ULog": ("flight.ulg", _log),
+    "interface": ("toy.yaml", read_interface),
+    "study": ("study.yaml", read_study),
+    "library of scenes": ("mine.json", _library),
+    "card of a model": ("model.json", _card),
+    "record of a fit": ("fit.json", lambda path: read_card(path, FitRecord)),
+    "manifest": ("manifest.json", read_manifest),
+    "any file of a run": ("record.json", read_regular),
+    "outcomes": ("outcomes.parquet", read_outcomes),
+    "traces": ("traces.parquet", read_traces),
+    "evidence": ("evidence.parquet", read_evidence),
+    "reproduction": ("reproduction.json", lambda path: read_results(path.parent)),
+    "shard": ("shards/key-digest.parquet", _shard),
+    "length of a table": ("table.parquet", rows_in),
+}
+"""By what it reads: the name of the file, and the reader."""
+
+
+def _socket(path: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as endpoint, pytest.MonkeyPatch.context() as patch:
+        patch.chdir(path.parent)  # the path of a socket may be a hundred bytes long
+        endpoint.bind(path.name)
+
+
+THINGS: dict[str, Callable[[Path], Any]] = {
+    "pipe": os.mkfifo,
+    "socket": _socket,
+    "device": lambda path: path.symlink_to("/dev/zero"),
+    "folder": lambda path: path.mkdir(),
+}
+
+
+@pytest.fixture(autouse=True)
+def _in_time() -> Iterator[None]:
+    """End what would wait for ever."""
+
+    def stop(*_: object) -> None:
+        raise AssertionError("it does not end")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.alarm(30)
+    yield
+    signal.alarm(0)
+    signal.signal(signal.SIGALRM, before)
+
+
+@pytest.mark.parametrize("thing", THINGS)
+@pytest.mark.parametrize("reader", READERS)
+def test_what_is_no_file_is_refused_in_one_sentence(
+    reader: str, thing: str, tmp_path: Path
+) -> None:
+    name, read = READERS[reader]
+    if name.endswith(".ulg"):
+        pytest.importorskip("pyulog")
+    path = tmp_path / name
+    path.parent.mkdir(exist_ok=True)
+    THINGS[thing](path)
+    with pytest.raises((UserError, Unreadable)) as caught:
+        read(path)
+    assert "\n" not in str(caught.value)
+    assert path.exists() or thing == "socket"
+
+
+def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / ".lock")
+    with (
+        pytest.raises(UserError, match=r"\.lock is a pipe"),
+        locked(tmp_path, lambda said: None),
+    ):
+        raise AssertionError("it is locked")
+
+
+def test_a_file_is_read_up_to_a_size(tmp_path: Path) -> None:
+    path = tmp_path / "large"
+    with path.open("wb") as file:
+        file.truncate(10 * 2**30)  # takes no room
+    with pytest.raises(OSError, match="larger than 4 GiB"):
+        contents(path)
+    path.write_bytes(b"four")
+    assert contents(path, most=4) == b"four"
+    with pytest.raises(OSError, match="larger than"):
+        contents(path, most=3)
+    with pytest.raises(OSError, match="nothing can have that name"):
+        contents("a\0b")
+
+
+BOTH: dict[bytes, str] = {
+    b'{"a": 1e999}': "out of range",
+    b'{"a": ' + b"9" * 5000 + b"}": "out of range",
+    b'{"a": 1, "a": 2}': "appears twice",
+    b"[" * 100_000: "nested too deeply",
+    b"\xff\xfe{}": "not UTF-8",
+    b"\xef\xbb\xbf{}": "byte order mark",
+    b'{"a":\n"\0"}': "null character",
+    b"{": "is not",
+}
+YAML: dict[bytes, str] = {
+    b"a: .inf": "out of range",
+    b"a: .nan": "out of range",
+    b"a: &x [1]\nb: *x": "aliases",
+    b"a: !!bool 7": "tags",
+    b"? [1]\n: 2": "a key is no text",
+    b"a: 1\n---\nb: 2": "not plain YAML",
+    b"#" * 1_000_001: "too long",
+}
+JSON: dict[bytes, str] = {
+    b'{"a": NaN}': "no number",
+    b'{"a": -Infinity}': "no number",
+    '{"a": ٣}'.encode(): "not JSON",
+    b"": "not JSON",
+}
+
+
+@pytest.mark.parametrize(
+    ("read", "data", "says"),
+    [(read_yaml, *each) for each in (BOTH | YAML).items()]
+    + [(read_json, *each) for each in (BOTH | JSON).items()],
+)
+def test_what_is_not_plain_is_refused(read: Callable[[bytes], object], data: bytes, says: str):
+    with pytest.raises(Misread, match=says) as caught:
+        read(data)
+    assert "\n" not in str(caught.value)
+
+
+def test_what_is_not_plainly_a_number_is_text() -> None:
+    texts = ("0x10", "1_0", "1:30", "007", "٣", "2001-99-99", "½", "١٫٥", "1e", "e1", "--1")
+    for text in texts:
+        assert read_yaml(f"a: {text}".encode()).data == {"a": text}
+    numbers = {"1e-3": 1e-3, "-0": 0, "+7": 7, ".5": 0.5, "1.": 1.0, "-1.5E+3": -1500.0}
+    for text, number in numbers.items():
+        assert read_yaml(f"a: {text}".encode()).data == {"a": number}
+
+
+def test_what_is_written_reads_back() -> None:
+    data = {
+        "texts": ["1e-3", "0x10", "yes", "~", "", "07", "1.5", "a: b", "\u2028"],
+        "n": [1e-7, 2],
+    }
+    assert read_yaml(yaml_text(data).encode()).data == data

@@ -1,0 +1,73 @@
+"""Maps without a simulator: what scenes show at a point is a function of both errors."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from faultpath.decisions.map.asked import MapQuestion
+from faultpath.decisions.map.decide import decided
+from faultpath.decisions.map.grow import next_points
+from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.surface import Differences
+
+MODULES = ("observer", "predictor")
+Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
+"""From two errors to success of the repair and of the baseline, `[scenes]`."""
+
+
+def question(**given: object) -> MapQuestion:
+    return MapQuestion.model_validate(
+        {
+            "system": "toy",
+            "options": {},
+            "baseline": "old",
+            "repair": "new",
+            "fault": "gain",
+            "against": MODULES,
+            "up_to": 0.4,
+            "relative": True,
+            "unit": "1",
+            "means": (0.0, 0.0),
+            "spreads": (0.2, 0.2),
+            "points": 81,
+            "library": "carts",
+            "library_hash": "carts-1",
+            "n_scenes": 100,
+            "seeds": (0,),
+        }
+        | given
+    )
+
+
+def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:
+    arms = [seen(x / UNITS, y / UNITS) for x, y in points]
+    repair, baseline = (np.array(each, dtype=float)[..., None] for each in zip(*arms, strict=True))
+    return Differences(points, np.repeat(repair, seeds, 2), np.repeat(baseline, seeds, 2))
+
+
+def grown(seen: Seen, limit: int = 81) -> Differences:
+    points = lattice(COARSE)
+    while new := next_points(differences(seen, points), MODULES, limit, "toy"):
+        points += new
+    return differences(seen, points)
+
+
+def record(seen: Seen, **given: object) -> MapRecord:
+    return decided(question(**given), grown(seen))
+
+
+def reversal(scenes: int) -> Seen:
+    """A baseline whose two errors cancel, and a repair that looks at one error only; it is ahead
+    where the errors differ much."""
+    bears = (np.arange(scenes) + 0.5) / scenes
+
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        return bears > 0.3 + 0.2 * abs(x), bears > abs(x - y)
+
+    return seen
+
+
+def alike(scenes: int) -> Seen:
+    """Two arms that always tie."""
+    return lambda x, y: (np.arange(scenes) % 2 > 0, np.arange(scenes) % 2 > 0)

@@ -1,0 +1,124 @@
+"""Joint errors, break-even correlation, turning sizes, and that nothing undecided is said."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plane_toys import alike, grown, question, record, reversal
+
+from faultpath.decisions.map.decide import decided
+from faultpath.decisions.map.joint import Errors, Expected
+from faultpath.decisions.map.lattice import SHOWN, UNITS, lattice
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.surface import Differences
+from faultpath.decisions import RunProvenance
+from faultpath.report.map import tables
+
+REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"
+X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
+DECIDES = re.compile(r"(new|old) (is|does|is expected)")
+
+
+@pytest.mark.parametrize("correlation", [-1.0, -0.4, 0.0, 0.6, 1.0])
+def test_the_expectation_of_a_bilinear_surface_is_that_of_its_moments(correlation: float) -> None:
+    errors = Errors((0.1, -0.2), (0.15, 0.1))
+    weights = errors.weights(correlation)
+    assert weights.sum() == pytest.approx(1)
+    assert weights @ X == pytest.approx(0.1, abs=1e-6)
+    assert weights @ Y == pytest.approx(-0.2, abs=1e-6)
+    assert weights @ (X * Y) == pytest.approx(correlation * 0.015 - 0.02, abs=2e-4)
+    assert errors.outside(correlation) == 0
+
+
+def test_exchanging_the_modules_exchanges_the_errors() -> None:
+    one, two = Errors((0.1, -0.2), (0.3, 0.2)), Errors((-0.2, 0.1), (0.2, 0.3))
+    side = 2 * UNITS // SHOWN + 1
+    for correlation in (-0.7, 0.3, 1.0):
+        turned = two.weights(correlation).reshape(side, side).T
+        np.testing.assert_allclose(one.weights(correlation).reshape(side, side), turned, atol=1e-12)
+
+
+def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
+    found = grown(reversal(100))
+    made = record(reversal(100), spreads=(0.16, 0.16))
+    (estimate,) = made.joint.estimates
+    ((low, high),) = made.joint.undecided
+    assert -1 < low < estimate < high < 1
+    assert [region.sign for region in made.joint.regions] == [1, -1]
+    expected = Expected.over(Errors((0.0, 0.0), (0.4, 0.4)), found, "carts-1")
+    assert expected.at([estimate]).means[0] == pytest.approx(0, abs=0.1)
+    assert "new does better with an error correlation up to" in made.headline
+    assert "; old from" in made.headline
+    assert len(made.headline.split()) <= 20
+    stated = [float(each) for each in re.findall(r"-?\d\.\d+", made.headline)]
+    assert stated[0] <= low
+    assert stated[1] >= high
+
+
+def test_swapping_the_arms_swaps_the_record() -> None:
+    found = grown(reversal(60))
+    one = decided(question(), found)
+    two = decided(question(), Differences(found.points, found.baseline, found.repair))
+    assert [p.sign for p in one.points] == [-p.sign for p in two.points]
+    assert [r.sign for r in one.joint.regions] == [-r.sign for r in two.joint.regions]
+    np.testing.assert_allclose(one.joint.undecided, two.joint.undecided)
+    assert [(f.until, f.first, -f.start) for f in one.flips] == [
+        (f.until, f.first, f.start) for f in two.flips
+    ]
+
+
+@pytest.mark.parametrize("scenes", [1, 2, 4])
+def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
+    made = record(reversal(scenes))
+    assert made.headline.startswith(f"Too few scenes to decide anything: {scenes}")
+    assert not DECIDES.search(" ".join((made.headline, *made.sentences)))
+    assert not any(point.sign for point in made.points)
+    assert made.joint.regions == ()
+    assert made.joint.undecided == ((-1.0, 1.0),)
+
+
+def test_nothing_is_said_to_be_decided_of_ties() -> None:
+    made = record(alike(40))
+    assert made.headline == (
+        "At no correlation of the two errors is it decided which of old and new does better."
+    )
+    said = " ".join(made.sentences)
+    assert "old is ahead at 0 and new at 0; at" in said
+    assert said.count("nothing is decided") == 6
+    assert not DECIDES.search(said.replace("old is ahead at 0 and new at 0", ""))
+    assert [flip.estimate for flip in made.flips] == [None] * 6
+
+
+def test_every_claim_of_a_path_is_one_of_its_points() -> None:
+    made = record(reversal(100))
+    of = {point.errors: point for point in made.points}
+    observer = next(f for f in made.flips if (f.path, f.direction) == ("observer", 1))
+    assert (observer.start, observer.turned) == (-1, 1)
+    assert observer.until is not None
+    assert observer.first is not None
+    assert observer.estimate is not None
+    assert 0 < observer.until < observer.estimate < observer.first <= 0.4
+    for (x, y), point in of.items():
+        if y == 0 and 0 <= x <= observer.until:
+            assert point.sign == -1
+        if y == 0 and observer.first <= x <= (observer.last or 0):
+            assert point.sign == 1
+    shared = next(f for f in made.flips if (f.path, f.direction) == ("shared", -1))
+    assert (shared.until, shared.estimate, shared.first) == (-0.4, None, None)
+    said = " ".join(made.sentences)
+    assert "With both wrong alike, error below 0: old is ahead at every size of the map." in said
+    assert "Sharing the error reverses the ranking at" in said
+
+
+def origin() -> RunProvenance:
+    return RunProvenance.model_validate_json((REFERENCE / "map-toy/provenance.json").read_bytes())
+
+
+def shown(made: MapRecord) -> dict[str, tuple[str, ...]]:
+    """The table of turning sizes, by path and direction."""
+    (table,) = (each for each in tables(made) if each.name == "flips")
+    return {
+        f"{each.label}, {each.entries[0].text}": tuple(e.text for e in each.entries[1:])
+        for each in table.lines
+    }

@@ -1,0 +1,65 @@
+"""The reference map of the documents is what its trials give."""
+
+from pathlib import Path
+
+import pytest
+
+from faultpath.decisions.map.decide import conclude
+from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.map.model import MapRecord
+from faultpath.decisions.map.study import plan_map
+from faultpath.decisions.question import MapQuestion
+from faultpath.trials.store import read_outcomes
+from faultpath.trials import SystemSpec, library_of, load_system
+
+ROOT = Path(__file__).resolve().parents[2]
+MAPS = sorted(path.parent for path in (ROOT / "docs" / "reference").glob("*/map.json"))
+
+
+@pytest.mark.parametrize("folder", MAPS, ids=lambda path: path.name)
+def test_a_reference_map_follows_from_its_outcomes(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    record = MapRecord.model_validate_json((folder / "map.json").read_bytes())
+    asked = record.question
+    spec = SystemSpec(name=asked.system, options=asked.options)
+    system = load_system(spec)
+    plan = plan_map(
+        system,
+        spec,
+        MapQuestion(
+            baseline=asked.baseline,
+            repair=asked.repair,
+            fault=asked.fault,
+            against=asked.against,
+            up_to=asked.up_to,
+            points=asked.points,
+            mean=asked.means,
+            spread=asked.spreads,
+            correlation=asked.correlation,
+            scenes=asked.n_scenes,
+            seeds=asked.seeds,
+        ),
+        library_of(system, asked.library),
+    )
+    assert plan.question == asked
+    points = [
+        (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))
+        for x, y in (point.errors for point in record.points)
+    ]
+    table = read_outcomes(folder / "outcomes.parquet")
+    again = conclude(plan, points, table, record.findings)
+    if folder.name == "map-toy":
+        turned = conclude(plan, points[::-1], table, record.findings)
+        assert turned == again, "the order in which points were flown is in the record"
+    assert again.sentences == record.sentences
+    assert again.headline == record.headline
+    for one, two in zip(again.points, record.points, strict=True):
+        assert (one.errors, one.sign, one.won, one.lost) == (
+            two.errors,
+            two.sign,
+            two.won,
+            two.lost,
+        )
+        assert (one.low, one.high) == pytest.approx((two.low, two.high), abs=1e-6)

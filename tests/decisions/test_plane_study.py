@@ -1,0 +1,114 @@
+"""What a map flies: two errors at two modules of one source, and mistakes in asking for it."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from faultpath.core.errors import UserError
+from faultpath.decisions.map.lattice import UNITS
+from faultpath.decisions.map.study import MapPlan, plan_map
+from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.question import AuditQuestion, MapQuestion, ask
+from faultpath.trials import SystemSpec, library_of, load_system
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+SPEC = SystemSpec(name=f"{EXAMPLES / 'toy.py'}:create")
+TOY = load_system(SPEC)
+ASKED: dict[str, Any] = {
+    "baseline": "calibrated",
+    "repair": "blind",
+    "fault": "gain",
+    "against": ("controller", "observer"),
+    "up_to": 0.4,
+    "scenes": 8,
+}
+
+
+def plan(**given: Any) -> MapPlan:
+    return plan_map(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
+
+
+def test_the_paths_of_an_audit_are_points_of_the_map() -> None:
+    """To the arm, so that both would be the same trials."""
+    audit = plan_audit(
+        TOY,
+        SPEC,
+        AuditQuestion(baseline="calibrated", repair="blind", fault="gain:scale=0.6", scenes=8),
+        library_of(TOY, "carts"),
+    )
+    points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
+    names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
+    made = plan()
+    arms = {(row.variant, row.path): row.arm for row in made.study(points).rows}
+    for row in audit.study.rows:
+        assert arms[row.variant, made.path(names[row.path])] == row.arm
+
+
+def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
+    rows = plan().study([(8, -16)]).rows
+    struck = {
+        (row.variant, fault.consumers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
+        for row in rows
+        for fault in row.arm.faults
+    }
+    assert struck == {
+        ("calibrated", ("controller.inverse",), 1.1),
+        ("calibrated", ("observer.model",), 0.8),
+        ("blind", ("controller.inverse",), 1.1),
+    }
+
+
+def test_an_offset_is_in_the_unit_of_the_reading() -> None:
+    dock = SystemSpec(name=f"{EXAMPLES / 'dock.py'}:create")
+    system = load_system(dock)
+    made = plan_map(
+        system,
+        dock,
+        MapQuestion(
+            baseline="wheels",
+            repair="ranges",
+            fault="range:offset,onset=5",
+            against=("approach", "speedometer"),
+            up_to=0.5,
+            scenes=4,
+        ),
+        library_of(system, "floors"),
+    )
+    assert not made.question.relative
+    assert made.question.said(-0.25) == "−0.25 m"
+    (fault,) = made.study([(0, 16)]).rows[1].arm.faults
+    assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"fault": "gain:scale=0.6"}, "the map sets the size itself; leave '=0.6' out"),
+        ({"fault": "gain@observer"}, "name the modules with --against"),
+        ({"fault": "gain:noise"}, "errors of both signs"),
+        ({"fault": "gian"}, "did you mean 'gain'"),
+        ({"points": 9 * 10**400}, "takes at most 10000"),
+        ({"against": ("controller",)}, "--against needs two modules"),
+        ({"against": ("controller", "controller")}, "--against needs two modules"),
+        ({"against": ("controller", "controller.inverse")}, "share no place"),
+        ({"against": ("controller", "speedometer")}, "unknown consumer"),
+        ({"against": ("controller", "observer"), "baseline": "blind"}, "two different variants"),
+        ({"up_to": None}, "say how large errors may be"),
+        ({"up_to": 1.0}, "less than 1"),
+        ({"up_to": 0.0}, "above 0"),
+        ({"up_to": float("nan")}, "finite number"),
+        ({"points": 24}, "begins with 25"),
+        ({"spread": (0.0,)}, "above 0"),
+        ({"spread": (0.1, 0.1, 0.1)}, "one for each module"),
+        ({"mean": (0.5,)}, "beyond the map"),
+        ({"correlation": 1.5}, "between -1 and 1"),
+        ({"scenes": 1000}, "choose 1 to 100"),
+        ({"repair": "other"}, "unknown variant"),
+    ],
+)
+def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(UserError) as refused:
+        plan(**given)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)

@@ -1,0 +1,112 @@
+"""The surface between the points, what is decided on it, and which points come next."""
+
+import numpy as np
+import pytest
+from plane_toys import MODULES, differences, grown, reversal
+
+from faultpath.decisions.map.grow import first_turn
+from faultpath.decisions.map.lattice import (
+    COARSE,
+    SHOWN,
+    UNITS,
+    along,
+    corners,
+    cut,
+    lattice,
+    rays,
+    sizes,
+    surface_weights,
+)
+from faultpath.decisions.map.surface import Combined, Differences, simultaneous
+from faultpath.statistics import Resamples, success_effect
+
+PLACES = lattice(SHOWN)
+FINER = (*lattice(COARSE), *cut((0, 0), COARSE), *cut((8, 8), 8))
+
+
+def test_the_surface_is_what_was_measured_at_a_point_and_a_mean_elsewhere() -> None:
+    weights = surface_weights(FINER)
+    assert (weights >= 0).all()
+    np.testing.assert_allclose(weights.sum(axis=1), 1)
+    for column, point in enumerate(FINER):
+        assert weights[PLACES.index(point), column] == 1
+
+
+@pytest.mark.parametrize("turned", [lambda x, y: (y, x), lambda x, y: (-x, y)])
+def test_exchanging_the_modules_or_the_sign_of_an_error_turns_the_surface(turned) -> None:
+    weights = surface_weights(FINER)
+    other = surface_weights([turned(*point) for point in FINER])
+    order = [PLACES.index(turned(*place)) for place in PLACES]
+    np.testing.assert_allclose(other[order], weights)
+
+
+def test_a_finer_point_moves_the_surface_around_it_and_nowhere_else() -> None:
+    weights = surface_weights(FINER)
+    middle = FINER.index((12, 12))
+    reached = {place for place, row in zip(PLACES, weights, strict=True) if row[middle]}
+    assert reached == {(x, y) for x, y in PLACES if max(abs(x - 12), abs(y - 12)) < 4}
+
+
+def test_decisions_at_a_point_are_those_of_its_own_score_interval() -> None:
+    found = differences(reversal(60), lattice(COARSE))
+    all_ = Combined.of(np.eye(25), found)
+    low, high = all_.ends(1.959963984540054)
+    resamples = Resamples.draw("toy", 60, n_resamples=1)
+    for i in (0, 4, 12, 20):
+        effect = success_effect(found.repair[i], found.baseline[i], resamples)
+        assert effect.interval == pytest.approx((low[i], high[i]), abs=1e-6)
+        assert effect.value == pytest.approx(all_.means[i])
+
+
+def test_swapping_the_arms_mirrors_every_decision() -> None:
+    found = grown(reversal(40))
+    mirrored = Differences(found.points, found.baseline, found.repair)
+    weights = surface_weights(found.points)
+    z = simultaneous(weights, found, "toy")
+    assert simultaneous(weights, mirrored, "toy") == pytest.approx(z)
+    one, two = Combined.of(weights, found), Combined.of(weights, mirrored)
+    np.testing.assert_array_equal(one.signs(z), -two.signs(z))
+    assert one.signs(z).any()
+    np.testing.assert_allclose(one.ends(z)[0], -two.ends(z)[1])
+
+
+def test_copies_of_a_seed_decide_nothing_more() -> None:
+    points = lattice(COARSE)
+    one, two = differences(reversal(40), points), differences(reversal(40), points, seeds=3)
+    weights = np.eye(25)
+    assert simultaneous(weights, one, "toy") == simultaneous(weights, two, "toy")
+    np.testing.assert_array_equal(*(Combined.of(weights, f).signs(2.5) for f in (one, two)))
+
+
+def test_cells_are_cut_where_the_sign_is_not_decided_and_nowhere_else() -> None:
+    found = grown(reversal(100))
+    flown = set(found.points)
+    weights = np.eye(len(found.points))
+    signs = Combined.of(weights, found).signs(simultaneous(weights, found, "toy"))
+    of = dict(zip(found.points, signs, strict=True))
+    on_paths = {along(way, size) for way in rays(MODULES).values() for size in range(UNITS)}
+    for cell in [(x, y) for x, y in lattice(COARSE) if max(x, y) < UNITS]:
+        around = {of[corner] for corner in corners(cell, COARSE)}
+        inside = set(cut(cell, COARSE)) & flown
+        middle = (cell[0] + COARSE // 2, cell[1] + COARSE // 2)
+        if around in ({1}, {-1}):
+            assert middle not in flown - on_paths
+        else:
+            assert len(inside) == 5
+    assert any(
+        around == {1} for around in ({of[c] for c in corners(x, COARSE)} for x in [(-32, 16)])
+    )
+
+
+def test_the_first_turn_of_a_path_is_bisected_to_one_unit() -> None:
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        # Ahead at 0; behind where the first error is above 0.3 of the largest.
+        return np.full(30, x <= 0.3), np.full(30, x > 0.3)
+
+    found = grown(seen, 25)
+    known = sizes((1, 0), found.points)
+    turn = first_turn(known, [found.mean((size, 0)) for size in known])
+    assert turn == (9, 10)
+    assert turn[0] < 0.3 * UNITS <= turn[1]
+    assert sizes((-1, 0), found.points) == (0, 16, 32)
+    assert sizes((1, 1), found.points) == tuple(sorted({*known}))

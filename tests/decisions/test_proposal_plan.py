@@ -1,0 +1,277 @@
+"""What a plan ranks, lays out and says."""
+
+from pathlib import Path
+
+import pytest
+from declared_toy import Declared
+
+import faultpath
+from faultpath.api.planned import Planned
+from faultpath.core.errors import UserError
+from faultpath.faults import Coupled, Fault
+from faultpath.faults.values import Scale
+from faultpath.interface import read_interface
+from faultpath.decisions.plan.order import makers, placed, ranked, recursion, repaired_modules
+from faultpath.decisions.plan.sources import Candidate, candidates
+from faultpath.decisions.plan.words import sentences
+from faultpath.trials import Library, SceneRef, System, Variant
+
+HERE = Path(__file__).resolve().parent
+DECLARED = f"{HERE / 'declared_toy.py'}:create"
+DOCK = HERE.parents[1] / "examples" / "dock.py"
+ASKED = {"baseline": "calibrated", "repair": "blind", "library": "carts", "scenes": 20}
+
+
+def plan(system=DECLARED, **changes) -> Planned:
+    return faultpath.plan(system, **(ASKED | {"progress": False} | changes))
+
+
+@pytest.fixture(scope="module")
+def planned() -> Planned:
+    return plan()
+
+
+FACTS = """
+name: sized
+sources:
+- {name: mass, unit: kg, provenance: estimated, correlation_group: calibration, UNSURE: 0.1}
+- {name: thrust, unit: '1', provenance: estimated, correlation_group: calibration, UNSURE: 0.1}
+- {name: gyro, unit: rad/s, provenance: measured, uncertainty: {std: 0.02}}
+- {name: odometer, unit: m, provenance: measured, uncertainty: {half_range: 0.5}}
+- {name: exact, unit: m, provenance: measured, uncertainty: {std: 0}}
+- {name: twice, unit: m, provenance: measured, uncertainty: {std: 1}}
+- {name: a, unit: m, provenance: measured, correlation_group: mixed, uncertainty: {std: 1}}
+- {name: b, unit: m, provenance: measured, correlation_group: mixed, uncertainty: {std: 2}}
+- {name: silent, unit: m, provenance: measured}
+- {name: unread, unit: m, provenance: measured, uncertainty: {std: 1}}
+- {name: goal, unit: m, provenance: commanded}
+- {name: truth, unit: m, provenance: privileged}
+channels:
+- {name: mass, sources: [mass], consumers: [model.mass, planner.mass]}
+- {name: thrust, sources: [thrust], consumers: [model.mass]}
+- {name: rate, sources: [gyro], consumers: [model.rate]}
+- {name: place, sources: [odometer, truth], consumers: [planner.place]}
+- {name: exact, sources: [exact], consumers: [planner.place]}
+- {name: one, sources: [twice], consumers: [planner.place]}
+- {name: two, sources: [twice], consumers: [model.rate]}
+- {name: a, sources: [a], consumers: [model.rate]}
+- {name: b, sources: [b], consumers: [model.rate]}
+- {name: silent, sources: [silent], consumers: [model.rate, planner.place]}
+- {name: unread, sources: [unread], consumers: [logger.file]}
+- {name: goal, sources: [goal], consumers: [planner.place]}
+""".replace("UNSURE: 0.1", "uncertainty: {half_range: 0.1, relative: true}")
+
+
+def calibration(size: float) -> Coupled:
+    scale = Scale(factor=1.0 + size)
+    faults = tuple(Fault(channel=name, intervention=scale) for name in ("mass", "thrust"))
+    return Coupled(name="calibration", faults=faults)
+
+
+READ = frozenset({"model.mass", "model.rate", "planner.mass", "planner.place"})
+
+
+class Sized(System):
+    name, control_dt_s, interface = "sized", 0.1, read_interface(FACTS)
+    variants = {  # noqa: RUF012 - never changed
+        "all": Variant("all", "", READ),
+        "less": Variant("less", "", READ - {"planner.mass"}),
+        "told": Variant("told", "", READ, {"place": "truth"}, frozenset({"truth"})),
+    }
+
+    def library(self, name):
+        return Library(name, (SceneRef("s", 0),), f"{name}-1")
+
+    def run(self, variant, scenes, taps, seed):
+        raise AssertionError("nothing flies")
+
+
+class Preset(Sized):
+    fault_presets = {"calibration": calibration}  # noqa: RUF012 - never changed
+
+
+def found(system: System, *given: str, variants=("less", "all")) -> dict[str, Candidate]:
+    pair = [system.variants[name] for name in variants]
+    return {each.name: each for each in candidates(system, pair, given)}
+
+
+def test_faults_are_as_large_as_what_is_declared():
+    by_name = found(Sized())
+    assert {name: each.fault for name, each in by_name.items() if each.fault} == {
+        "calibration": "calibration:scale=1.1",
+        "gyro": "rate:offset=0.02",
+        "odometer": "place:offset=0.5",
+    }
+    assert found(Preset())["calibration"].fault == "calibration=+0.1"
+    assert by_name["silent"].unsized == "declares no uncertainty"
+    assert by_name["exact"].unsized == "declares that it has no error"
+    assert "different uncertainties" in by_name["mixed"].unsized
+    assert "feeds one and two" in by_name["twice"].unsized
+    assert not {"unread", "goal", "truth"} & set(by_name)
+
+
+def test_a_given_error_takes_the_place_of_a_declared_one():
+    by_name = found(Sized(), "rate:scale=1.5", "silent:offset=3", "mass:scale=1.2")
+    assert by_name["gyro"].fault == "rate:scale=1.5"
+    assert by_name["silent"].fault == "silent:offset=3"
+    assert (by_name["mass"].fault, by_name["mass"].channels) == ("mass:scale=1.2", ("mass",))
+    assert by_name["calibration"].fault == "calibration:scale=1.1"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("rate:scale=1.1,1.2", "takes one size"),
+        ("rate:scale=1.1@model", "strikes every module by itself"),
+        ("unread:scale=2", "strikes nobody in either variant"),
+        ("rat:scale=2", "did you mean 'rate'"),
+    ],
+)
+def test_wrong_errors_are_refused(text, said):
+    with pytest.raises(UserError, match=said):
+        found(Sized(), text)
+
+
+def candidate(name: str, readers: int, response: float | None = None, **more) -> Candidate:
+    consumers = tuple(f"m{i}.x" for i in range(readers))
+    moved = {} if response is None else {"calibrated": {"shared": response}}
+    given = {"fault": f"{name}:scale=2"} | more
+    return Candidate(
+        name=name, sources=(name,), channels=(name,), consumers=consumers, responses=moved, **given
+    )
+
+
+def test_consumers_come_first_then_the_probe():
+    order = ranked(
+        [
+            candidate("few", 1, 9.0),
+            candidate("weak", 2, 0.1),
+            candidate("same", 2, 0.1),
+            candidate("blank", 2),
+            candidate("open", 7, fault="", unsized="declares no uncertainty"),
+            candidate("strong", 2, 0.2),
+        ]
+    )
+    assert [(each.name, each.rank, placed(each, order)) for each in order] == [
+        ("open", 1, True),
+        ("strong", 2, True),
+        ("weak", 3, True),
+        ("same", 3, True),
+        ("blank", 5, False),
+        ("few", 6, True),
+    ]
+    unsized = {"fault": "", "unsized": "declares no uncertainty"}
+    order = ranked([candidate("late", 2, **unsized), candidate("sized", 2)])
+    assert [(each.name, each.rank) for each in order] == [("sized", 1), ("late", 1)]
+
+
+UNSIZED = {"fault": "", "unsized": "declares none"}
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ([candidate("a", 3)], "a (3 consumers) is the only uncertain source"),
+        ([candidate("a", 3, 0.1), candidate("b", 2, 9.0)], "more than any other source"),
+        ([candidate("a", 3), candidate("b", 3, **UNSIZED)], "a and b tie: 3 consumers each"),
+        ([candidate("a", 3, **UNSIZED), candidate("b", 2)], "b is the first in the ranking that"),
+        ([candidate("a", 2, 0.5), candidate("b", 2, 0.25)], "largest known probe response (0.5)"),
+        ([candidate("a", 2, 0.5), candidate("b", 2)], "largest known probe response (0.5)"),
+        ([candidate(name, 2) for name in "abc"], "a, b and c tie"),
+    ],
+)
+def test_the_words_say_what_put_a_source_first(planned, given, said):
+    changed = planned.plan.model_copy(update={"candidates": ranked(given)})
+    assert said in " ".join(sentences(changed)[:2])
+
+
+def test_the_repaired_module_is_told_from_what_differs():
+    toy, dock = Declared(), faultpath.load_system(DOCK)
+    pair = (toy.variants["calibrated"], toy.variants["blind"])
+    assert repaired_modules(toy, *pair, ()) == ("observer",)
+    assert repaired_modules(toy, *pair, ("controller",)) == ("controller",)
+    wheels, ranges = dock.variants["wheels"], dock.variants["ranges"]
+    assert repaired_modules(dock, wheels, ranges, ()) == ("speedometer",)
+    assert repaired_modules(toy, pair[0], pair[0], ()) == ()
+    with pytest.raises(UserError, match="did you mean 'observer'"):
+        repaired_modules(toy, *pair, ("obsever",))
+
+
+def test_the_recursion_takes_outputs_and_inputs_and_what_makes_them():
+    toy = Declared()
+    pair = [toy.variants[name] for name in ("calibrated", "blind")]
+    assert makers(toy.interface, pair) == {"observer": ("observed_slope",)}
+    every = [
+        Candidate(name=name, sources=(name,), channels=(name,), consumers=readers)
+        for name, readers in {
+            "wind": ("planner.wind",),
+            "drift": ("reconstruction.drift",),
+            "imu": ("filter.imu", "planner.imu"),
+            "goal": ("planner.goal",),
+        }.items()
+    ]
+    made_by = {"reconstruction": ("wind",), "filter": ("drift",), "other": ("nothing",)}
+    assert recursion(every, made_by, ("planner", "reconstruction")) == {
+        "wind": "output of reconstruction",
+        "drift": "input of reconstruction, which makes wind",
+        "imu": "input of filter, which makes drift",
+    }
+    assert recursion(every, made_by, ("planner",)) == {}
+
+
+def test_the_plan_of_the_toy(planned):
+    audits = planned.plan.study.audits
+    assert [(each.fault, each.why) for each in audits] == [
+        ("velocity:offset=0.1", "first by rank"),
+        ("gain:scale=1.25", "input of observer, which makes observed_slope"),
+        ("slope:offset=0.2", "output of observer"),
+    ]
+    roles = {arm.path: arm.role for arm in audits[1].arms}
+    assert roles == {
+        "correct": "correct",
+        "controller": "attribution",
+        "observer": "repaired",
+        "shared": "shared",
+    }
+    assert planned.plan.trials == (160, 80, 40)
+    said = " ".join(planned.sentences)
+    assert "280 trials in all" in said
+    assert "without an audit: odometer (declares no uncertainty)" in said
+    assert "Taken as changed by the repair: observer." in said
+
+
+def test_the_trials_told_are_those_flown(planned, tmp_path):
+    runs = planned.audit(tmp_path, workers=0, progress=False)
+    assert [run.folder.name for run in runs] == ["speedometer", "gain_estimate", "observed_slope"]
+    flown = [{path.name for path in (run.folder / "shards").iterdir()} for run in runs]
+    fresh = [flown[0], *(each - flown[0] for each in flown[1:])]
+    assert tuple(20 * len(each) for each in fresh) == planned.plan.trials  # a block an arm
+    first = faultpath.audit(
+        DECLARED,
+        fault="velocity:offset=0.1",
+        folder=tmp_path / "alone",
+        workers=0,
+        progress=False,
+        **ASKED,
+    )
+    assert runs[0].record == first.record
+
+
+def test_a_repair_that_changes_nothing_to_be_seen_says_so():
+    said = " ".join(
+        plan(
+            DOCK, baseline="ranges", repair="wheels", library="floors", fault="range:scale=0.7"
+        ).sentences
+    )
+    assert "range_rate (output of speedometer)" in said
+    assert "wheel_odometry" in said
+
+
+def test_nothing_to_plan_is_said_with_what_to_do():
+    with pytest.raises(UserError, match=r"declare it .* for example --fault range:scale=1\.1"):
+        plan(DOCK, baseline="wheels", repair="ranges", library="floors")
+
+
+def test_an_object_cannot_be_planned_for():
+    with pytest.raises(UserError, match="a study file cannot hold an object"):
+        plan(Declared())

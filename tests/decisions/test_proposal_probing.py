@@ -1,0 +1,80 @@
+"""The probe of a source: only what the modules make of the faulty input differs."""
+
+import numpy as np
+import pytest
+from declared_toy import Declared
+
+from faultpath.faults import parse_fault
+from faultpath.loop import Batch
+from faultpath.decisions.plan.probing import command_responses
+from faultpath.loop.taps import Taps
+
+SYSTEM = Declared()
+SCENES = tuple(f"cart/{i:03d}" for i in range(5))
+
+
+def responses(variant: str, **texts: str) -> dict[str, float]:
+    consumers = SYSTEM.variants[variant].consumers
+    arms = {
+        (name, ""): parse_fault(text, SYSTEM.interface, {}, 0.1).resolved(
+            SYSTEM.interface, consumers
+        )
+        for name, text in texts.items()
+    }
+    found = command_responses(SYSTEM, variant, arms, SCENES, 0)
+    return {name: value for (name, _), value in found.items()}
+
+
+def flight(variant: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return commands and gains under correct inputs, `[T, B]` and `[B]`."""
+    taps = Taps(
+        SYSTEM.interface,
+        scenes=SCENES,
+        dt_s=0.1,
+        consumers=SYSTEM.variants[variant].consumers,
+    )
+    loop = SYSTEM.loop(variant, 0)
+    commands, gain = [], None
+    for instant in loop.execute(Batch(SCENES, 0, 0.1), taps):
+        if len(instant.inputs):
+            commands.append(np.array(instant.inputs["push", "motor"]))
+            gain = instant.state.gain
+    return np.stack(commands), gain
+
+
+def median(moved: np.ndarray, commands: np.ndarray) -> float:
+    return float(np.median(np.abs(moved)) / np.sqrt(np.mean(commands**2)))
+
+
+@pytest.mark.parametrize("variant", ["calibrated", "blind"])
+def test_the_controller_alone_divides_by_the_error(variant):
+    commands, _ = flight(variant)
+    found = responses(variant, gain="gain:scale=1.25@controller")
+    assert found["gain"] == pytest.approx(median(commands * (1 / 1.25 - 1), commands), rel=1e-5)
+
+
+def test_the_observer_alone_works_on_the_commands_of_the_flight_and_remembers():
+    commands, gain = flight("calibrated")
+    slope = np.zeros_like(gain)
+    moved = [slope]
+    for executed in commands[:-1]:  # an observer that believes another gain, on the same history
+        slope = 0.5 * slope - 0.5 * 0.25 * gain * executed
+        moved.append(slope)
+    found = responses("calibrated", gain="gain:scale=1.25@observer")
+    assert found["gain"] == pytest.approx(median(np.stack(moved) / gain, commands), rel=1e-5)
+
+
+def test_errors_that_cancel_are_seen_where_one_module_has_them_alone():
+    shared, alone = (
+        responses("calibrated", gain=f"gain:scale=1.25{at}")["gain"] for at in ("", "@observer")
+    )
+    assert shared < 0.1 * alone
+
+
+def test_probing_leaves_no_trace_and_repeats():
+    before, _ = flight("calibrated")
+    one = responses("calibrated", gain="gain:scale=1.25", velocity="velocity:offset=0.1")
+    two = responses("calibrated", velocity="velocity:offset=0.1", gain="gain:scale=1.25")
+    assert one == two
+    after, _ = flight("calibrated")
+    np.testing.assert_array_equal(before, after)

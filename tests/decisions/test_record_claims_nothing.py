@@ -1,0 +1,328 @@
+"""Whatever comes out of a run, no sentence claims what was not decided."""
+
+import re
+from collections.abc import Callable, Iterator
+
+import pytest
+from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
+
+from faultpath.core.errors import UserError
+from faultpath.decisions.question import StopWhen
+from faultpath.decisions import (
+    CORRECT,
+    SHARED,
+    DecisionRecord,
+    StopRule,
+    decide,
+    phrases,
+    wording,
+)
+from faultpath.decisions.model import Change, Effect
+from faultpath.decisions.summary import MOST_WORDS, answers, in_short
+from faultpath.core.streams import generator
+from faultpath.trials import OutcomeTable, Status
+
+SIDES = ((REPAIR, 1), (BASELINE, -1))
+Statuses = dict[str, list[Status]]
+PATHS = {
+    "one path": (CORRECT,),
+    "one module": (CORRECT, "a"),
+    "shared": (CORRECT, "a", "b", SHARED),
+}
+YES, NO = Status.SUCCESS, Status.TIMEOUT
+
+
+def always(path: str, seed: int, n: int) -> Statuses:
+    return arms((n, 0, 0), n)
+
+
+def never(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, 0), n)
+
+
+def no_discordance(path: str, seed: int, n: int) -> Statuses:
+    return arms((n // 2, 0, 0), n)
+
+
+def ties(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n // 2, n // 2), n)
+
+
+def for_the_repair(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n, 0), n)
+
+
+def against_it_when_shared(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, n) if path == SHARED else (0, n, 0), n)
+
+
+def against_it_without_a_fault(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, 0, n) if path == CORRECT else (0, n, 0), n)
+
+
+def near_the_floor(path: str, seed: int, n: int) -> Statuses:
+    return arms((0, n // 12, 0), n)
+
+
+def near_the_ceiling(path: str, seed: int, n: int) -> Statuses:
+    return arms((n - n // 12, 0, n // 12), n)
+
+
+def by_chance(path: str, seed: int, n: int) -> Statuses:
+    stream = generator("test/words", path, seed)
+    return {v: [YES if x else NO for x in stream.random(n) < 0.5] for v in (REPAIR, BASELINE)}
+
+
+def leaning(path: str, seed: int, n: int) -> Statuses:
+    """Return effects of different size and side on every path, some of them detected."""
+    stream = generator("test/words", path, seed)
+    lean = {CORRECT: -0.1, "a": 0.25, "b": 0.0, SHARED: -0.3}[path]
+    chances = {REPAIR: 0.5 + lean, BASELINE: 0.5 - lean}
+    return {v: [YES if x else NO for x in stream.random(n) < p] for v, p in chances.items()}
+
+
+SHAPES: dict[str, Callable[[str, int, int], Statuses]] = {
+    shape.__name__: shape
+    for shape in (
+        always,
+        never,
+        no_discordance,
+        ties,
+        for_the_repair,
+        against_it_when_shared,
+        against_it_without_a_fault,
+        near_the_floor,
+        near_the_ceiling,
+        by_chance,
+        leaning,
+    )
+}
+RUNS = ("one seed", "three seeds", "identical seeds", "void", "never acted", "one path idle")
+RULES: dict[str, tuple[StopWhen, float | None, int]] = {
+    "as soon as decided": ("decided", None, 100),
+    "to the last scene": ("decided", 99.0, 0),
+    "all": ("all-decided", None, 0),
+    "all or small": ("all-decided", 50.0, 100),
+}
+"""When sequential audits stop, their margins, and how many scenes they may take; 0 for as many as
+they did."""
+
+
+def stop_rule(when: StopWhen, margin: float | None) -> StopRule:
+    return StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
+
+
+def run(
+    shape: str, over: tuple[str, ...], n: int, how: str, trained: bool, rule: str = ""
+) -> DecisionRecord:
+    seeds = (0, 1, 2) if "seeds" in how else (0,)
+    out = []
+    for seed in seeds:
+        for path in over:
+            made = SHAPES[shape](path, 0 if how == "identical seeds" else seed, n)
+            idle = how == "never acted" or (how == "one path idle" and path == over[-1])
+            for variant, statuses in made.items():
+                ends = list(statuses)
+                if how == "void" and variant == REPAIR and path == over[-1]:
+                    ends[0] = Status.FAILED
+                out += rows(variant, path, ends, seed=seed, altered=0 if idle else None)
+    decided_by = "exact" if trained else "unconditional"
+    asked = question(n, seeds).model_copy(update={"trained": trained, "rule": decided_by})
+    if rule:
+        when, margin, most = RULES[rule]
+        update = {"stop": stop_rule(when, margin), "n_scenes": most or n}
+        asked = asked.model_copy(update=update)
+    return decide(asked, paths(*over), OutcomeTable(tuple(out)))
+
+
+def sentences(made: DecisionRecord) -> Iterator[str]:
+    yield made.verdict.headline
+    yield from made.verdict.sentences
+    yield from made.verdict.would_change
+    yield from answers(made).values()
+
+
+def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+    """Return p-values by Holm's procedure, weighted where the rule is."""
+    primary = [isinstance(e, Effect) and e.path == made.question.primary for e in tested]
+    weighted = made.question.rule == "unconditional" and any(primary)
+    weights = [max(1, len(tested) - 1) if weighted and it else 1 for it in primary]
+    order = sorted(range(len(tested)), key=lambda i: tested[i].p_value / weights[i])
+    adjusted, worst = [0.0] * len(tested), 0.0
+    for rank, i in enumerate(order):
+        left = sum(weights[j] for j in order[rank:])
+        worst = max(worst, min(1.0, left / weights[i] * tested[i].p_value))
+        adjusted[i] = worst
+    return adjusted
+
+
+def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+    """Return p-values by the shares of all that a sequential audit could have announced."""
+    named = {path.name for path in made.paths}
+    others = len(named) - 1 + (len(named - {CORRECT, SHARED}) if SHARED in named else 0)
+    adjusted: list[float] = []
+    for each in tested:
+        primary = isinstance(each, Effect) and each.path == made.question.primary
+        factor = 1 if not others else 2 if primary else 2 * others
+        adjusted.append(min(1.0, factor * each.p_value))
+    return adjusted
+
+
+def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
+    """Return the signs that the numbers allow, of effects and of changes, worked out anew."""
+    tested: list[Effect | Change] = [e for e in made.effects if e.acted]
+    tested += made.changes
+    signs: list[int] = []
+    adjusted = shared_out(made, tested) if made.stopped else holm(made, tested)
+    for each, p in zip(tested, adjusted, strict=True):
+        shown = each.success if isinstance(each, Effect) else each.change
+        low, high = shown.low or 0.0, shown.high or 0.0
+        signs.append((low > 0) - (high < 0) if p <= 0.05 and not each.unsettled else 0)
+        assert not each.unsettled or any(effect.failed for effect in made.effects)
+    of = {e.path: s for e, s in zip(tested, signs, strict=False) if isinstance(e, Effect)}
+    turned = dict(zip([c.isolated for c in made.changes], signs[len(of) :], strict=True))
+    return of, turned
+
+
+def claimed(text: str, who: str) -> bool:
+    """Return whether a text says of an arm that it is ahead, anywhere."""
+    return bool(re.search(rf"\b{who} (is ahead|succeeds more often|does \(|is(\.| \(for))", text))
+
+
+def check(made: DecisionRecord) -> None:
+    effects, changes = may_be_said(made)
+    whole = " ".join(sentences(made))
+    for who, sign in SIDES:
+        assert claimed(whole, who) == (sign in effects.values()), whole
+        headed = {e.path for e in made.effects if effects.get(e.path) == sign and not e.extreme}
+        assert not claimed(made.verdict.headline, who) or headed
+    for effect in made.effects:
+        sign = effects.get(effect.path, 0)
+        for who, side in ((REPAIR, 1), (BASELINE, -1)):
+            assert claimed(phrases.effect(made, effect), who) == (sign == side)
+        said = phrases.effect(made, effect)
+        assert ("no difference is detected" not in said) or sign == 0
+        assert effect.acted or "nothing was tested" in said
+    for change in made.changes:
+        opposite = effects[change.isolated] * effects[change.shared] < 0
+        said = phrases.change(made, change)
+        assert ("reverses" in said) == opposite
+        assert ("Interaction detected" in said) == (not opposite and changes[change.isolated] != 0)
+    turned = {c.isolated for c in made.changes if effects[c.isolated] * effects[c.shared] < 0}
+    extreme = {e.path for e in made.effects if e.extreme}
+    assert ("Do not" in whole) == bool(turned - extreme and SHARED not in extreme)
+    plain = answers(made)
+    advised = "Ask which" in " ".join(plain.values())
+    if made.scenes < made.scenes_needed:
+        assert list(plain) == ["Not decided", "How sure"]
+        assert plain["Not decided"].startswith("Too few scenes to decide")
+        assert not advised
+    else:
+        assert advised == bool(turned - extreme and SHARED not in extreme)
+        follows = plain["What follows"]
+        told = {sign for path, sign in effects.items() if sign and path not in extreme}
+        assert not claimed(follows, REPAIR) or 1 in told
+        assert not claimed(follows, BASELINE) or -1 in told
+        alone = any(each.turn == "interaction" for each in made.changes)
+        assert ("does not stand for the shared one" in follows) == alone
+    for effect in made.effects:
+        short, said = in_short(made, effect), phrases.effect(made, effect)
+        low, high = effect.success.low or 0.0, effect.success.high or 0.0
+        if effect.unsettled:
+            assert "failed" in said
+            assert "failed" in short
+        elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.path):
+            assert "interval alone decides nothing" in said
+            assert made.scenes < made.scenes_needed or f"{effect.adjusted_p_value:.3f}" in short
+        for who, side in SIDES:
+            assert claimed(short, who) == (effects.get(effect.path, 0) == side)
+    for item in made.break_even:
+        ends = {effects.get(CORRECT, 0), effects.get(item.path, 0)} - {0}
+        for who, sign in ((REPAIR, 1), (BASELINE, -1)):
+            assert not claimed(item.words, who) or sign in ends
+        shown = wording.break_even(item.result)
+        part = " is ahead where the fault is " in item.words
+        assert (shown == "any") == (not item.words or part), (shown, item.words)
+        assert item.result.level >= 0.95 - 1e-12
+    if made.question.primary not in {e.path for e in made.effects}:
+        assert "no pair of trials is left" in made.verdict.headline
+    elif made.scenes < made.scenes_needed:
+        assert made.verdict.headline.startswith("Too few scenes to decide")
+        assert str(made.scenes_needed) in made.verdict.headline
+
+
+def reads_well(made: DecisionRecord) -> None:
+    assert len(made.verdict.headline.split()) <= MOST_WORDS
+    for sentence in sentences(made):
+        assert sentence[0].isupper() or sentence.startswith((REPAIR, BASELINE))
+        assert sentence.endswith(".")
+        assert not re.search(r"  |\bnan\b|None|\.\.|,,|\bfly|(always|never) favoured", sentence)
+        assert sentence.count("(") == sentence.count(")")
+
+
+@pytest.mark.parametrize("n", [1, 2, 4, 8, 40])
+@pytest.mark.parametrize("how", RUNS)
+@pytest.mark.parametrize("over", PATHS)
+def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
+    for shape in SHAPES:
+        if how == "void" and n == 1 and len(PATHS[over]) == 1:
+            with pytest.raises(UserError, match="no scene is left"):
+                run(shape, PATHS[over], n, how, trained=False)
+            continue
+        made = run(shape, PATHS[over], n, how, trained=n % 3 == 0)
+        check(made)
+        reads_well(made)
+
+
+def says_how_it_stopped(made: DecisionRecord) -> None:
+    """Check what is said of stopping, and that nothing is shown that needs a fixed number."""
+    held, asked = made.stopped, made.question
+    assert held
+    assert asked.stop
+    told = next(s for s in made.verdict.sentences if s.startswith("This audit was sequential"))
+    most = asked.n_scenes
+    signs = may_be_said(made)[0]
+    settled = {path for path, sign in signs.items() if sign} | set(held.small)
+    wanted = {e.path for e in made.effects} if asked.stop.when == "all-decided" else {asked.primary}
+    assert held.reached == (wanted <= settled)
+    assert ("it stopped after" in told) == (held.reached and held.scenes < most)
+    assert ("all that it was allowed" in told) == (held.scenes == most)
+    assert ("not decided" in told or "not every" in told) == (not held.reached)
+    assert held.scenes == 1 or "1 scenes" not in told
+    for effect in made.effects:
+        small = effect.path in held.small
+        assert not small or asked.stop.margin_pp
+        low, high = effect.success.low, effect.success.high
+        assert low is not None
+        assert high is not None
+        assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
+        assert ("it is smaller than" in phrases.effect(made, effect)) <= small
+        assert effect.minimum_detectable_pp is None
+        for other in (effect.time_s, *effect.metrics.values()):
+            assert other is None or (other.low, other.high) == (None, None)
+    if "differ by less than" in made.verdict.headline:
+        assert asked.primary in held.small
+    whole = made.model_dump_json()
+    for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):
+        assert fixed not in whole
+
+
+@pytest.mark.parametrize("n", [1, 2, 4, 40])
+@pytest.mark.parametrize("how", ["one seed", "three seeds", "void", "one path idle"])
+@pytest.mark.parametrize("over", ["one path", "shared"])
+def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(
+    n: int, how: str, over: str
+) -> None:
+    for shape in SHAPES:
+        for rule in RULES if how == "one seed" and n > 2 else ("to the last scene",):
+            if how == "void" and n == 1 and len(PATHS[over]) == 1:
+                continue
+            made = run(shape, PATHS[over], n, how, trained=n % 3 == 0, rule=rule)
+            check(made)
+            reads_well(made)
+            says_how_it_stopped(made)
+
+
+def test_without_a_scene_there_is_nothing_to_say() -> None:
+    with pytest.raises(Exception, match=r"no trial|no scene"):
+        run("ties", PATHS["shared"], 0, "one seed", trained=False)

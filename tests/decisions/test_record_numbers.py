@@ -1,0 +1,236 @@
+"""From tables with known counts to exactly their numbers."""
+
+import numpy as np
+import pytest
+from outcome_tables import (
+    BASELINE,
+    REPAIR,
+    arms,
+    exact_p,
+    paths,
+    question,
+    record,
+    rows,
+    seeded,
+    table,
+    three,
+)
+
+from faultpath.core.errors import UserError
+from faultpath.decisions import CORRECT, SHARED, decide
+from faultpath.trials import OutcomeTable, Status
+
+
+@pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
+def test_counts_make_the_effect_and_the_p_value(counts):
+    both, wins, losses = counts
+    (effect,) = record({CORRECT: counts}).effects
+    assert effect.success.value == pytest.approx(wins - losses)  # of 100 scenes: points
+    assert effect.success.unit == "pp"
+    assert (effect.wins, effect.losses) == ((wins,), (losses,))
+    assert effect.scenes == 100
+    assert effect.joint_successes == both
+    assert effect.p_value == pytest.approx(exact_p(wins, losses), rel=1e-9)
+    low, high = effect.success.low, effect.success.high
+    assert low is not None
+    assert high is not None
+    assert low <= effect.success.value <= high
+
+
+def test_cells_count_every_trial():
+    made = record({CORRECT: (40, 20, 5), "observer": (10, 0, 30)})
+    cells = {(cell.variant, cell.path): cell for cell in made.cells}
+    assert len(cells) == 4
+    assert cells[REPAIR, CORRECT].success == 60
+    assert cells[BASELINE, CORRECT].success == 45
+    assert cells[REPAIR, "observer"].success == 10
+    assert cells[BASELINE, "observer"].success == 40
+    for cell in made.cells:
+        assert cell.success + cell.crash == cell.trials == 100
+        assert cell.timeout == cell.failed == 0
+        assert cell.success_percent == cell.success
+        assert cell.struck_trials == (0 if cell.path == CORRECT else 100)
+        altered = cell.path != CORRECT and cell.variant == REPAIR
+        assert cell.altered_trials == (100 if altered else 0)
+    assert cells[REPAIR, CORRECT].median_time_s == pytest.approx(5 + 0.01 * 29.5)
+
+
+@pytest.mark.parametrize(
+    ("correct", "fault", "p_star", "signs"),
+    [
+        ((50, 0, 16), (30, 24, 0), 16 / 40, [-1, 1]),
+        ((50, 16, 0), (30, 0, 24), 16 / 40, [1, -1]),
+        ((50, 10, 0), (30, 20, 0), None, [1]),
+        ((50, 0, 10), (30, 0, 20), None, [-1]),
+        ((50, 0, 0), (50, 0, 0), None, []),
+    ],
+)
+def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
+    made = record({CORRECT: correct, "observer": fault})
+    (item,) = made.break_even
+    assert item.path == "observer"
+    assert item.result.p_star == (None if p_star is None else pytest.approx(p_star))
+    assert [region.sign for region in item.result.regions] == signs
+    curve = np.array(item.curve)
+    inside = [any(a <= p <= b for a, b in item.result.pieces) for p in curve[:, 0]]
+    touches = (curve[:, 2] <= 0) & (curve[:, 3] >= 0)
+    near = [
+        any(abs(p - end) < 0.02 for ends in item.result.pieces for end in ends) for p in curve[:, 0]
+    ]
+    assert all(a == b or c for a, b, c in zip(inside, touches, near, strict=True))
+    d0, df = made.effects[0].success.value, made.effects[1].success.value
+    assert curve[0, 0] == 0
+    assert curve[-1, 0] == 1
+    assert np.allclose(curve[:, 1], (1 - curve[:, 0]) * d0 + curve[:, 0] * df)
+    assert (curve[:, 2] <= curve[:, 1] + 1e-9).all()
+    assert (curve[:, 1] <= curve[:, 3] + 1e-9).all()
+
+
+def holm(p_values: list[float]) -> list[float]:
+    """Return Holm's adjusted p-values, by their definition."""
+    order = sorted(range(len(p_values)), key=lambda i: p_values[i])
+    adjusted, worst = [0.0] * len(p_values), 0.0
+    for rank, i in enumerate(order):
+        worst = max(worst, min(1.0, (len(p_values) - rank) * p_values[i]))
+        adjusted[i] = worst
+    return adjusted
+
+
+def test_the_family_is_all_that_may_be_announced():
+    made = record({CORRECT: (50, 12, 2), "a": (40, 15, 5), "b": (30, 9, 8), SHARED: (40, 3, 14)})
+    contrasts = (*made.effects, *made.changes)
+    assert made.hypotheses == len(contrasts) == 6
+    adjusted = holm([each.p_value for each in contrasts])
+    assert [each.adjusted_p_value for each in contrasts] == pytest.approx(adjusted)
+    for each, p in zip(contrasts, adjusted, strict=True):
+        assert (each.sign != 0) <= (p <= 0.05)
+
+
+@pytest.mark.parametrize(("n", "enough"), [(3, False), (7, False), (8, True), (30, True)])
+def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
+    made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
+    assert made.scenes_needed == 8  # 2 / 2^8 <= 0.05 / 6 < 2 / 2^7
+    assert all(effect.detected == enough for effect in made.effects)
+    assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
+
+
+def _with_failures(*failed: tuple[str, str, int]) -> OutcomeTable:
+    """Return trials on three paths of which some failed: variant, path, scene."""
+    out = []
+    for path, counts in {
+        CORRECT: (40, 20, 10),
+        "observer": (20, 10, 30),
+        "driver": (20, 9, 3),
+    }.items():
+        for variant, statuses in arms(counts).items():
+            for v, p, i in failed:
+                if (v, p) == (variant, path):
+                    statuses[i] = Status.FAILED
+            out += rows(variant, path, statuses)
+    return OutcomeTable(tuple(out))
+
+
+def test_a_failed_trial_voids_its_pair_and_shows_and_leaves_its_scene_out_of_every_path():
+    # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
+    made = decide(question(), paths(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45)))
+    correct, observer = made.effects
+    assert (correct.void_pairs, observer.void_pairs) == (0, 1)
+    assert correct.scenes == observer.scenes == made.scenes == 99
+    assert correct.wins == (19,)
+    assert observer.losses == (29,)
+    assert correct.success.value == pytest.approx(100 * (19 - 10) / 99)
+    assert correct.p_value == pytest.approx(exact_p(19, 10))
+    cells = {(cell.variant, cell.path): cell for cell in made.cells}
+    assert cells[REPAIR, "observer"].failed == 1
+    assert cells[REPAIR, "observer"].trials == 100
+    assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)
+
+
+def test_when_every_pair_is_void_there_is_nothing_to_decide():
+    every = tuple((REPAIR, CORRECT, i) for i in range(100))
+    with pytest.raises(UserError, match="no scene is left"):
+        decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+
+
+def test_a_path_without_any_pair_costs_the_others_nothing_and_is_named():
+    every = tuple((REPAIR, "observer", i) for i in range(100))
+    made = decide(question(), paths(CORRECT, "observer"), _with_failures(*every))
+    (correct,) = made.effects
+    assert (correct.path, correct.scenes, correct.void_pairs) == (CORRECT, 100, 0)
+    assert not made.break_even
+    said = "With only the observer faulted, no pair of trials is left to compare"
+    assert made.verdict.headline.startswith(said)
+    assert made.findings[0].startswith(said)
+    assert {(c.path, c.failed) for c in made.cells if c.variant == REPAIR} == {
+        (CORRECT, 0),
+        ("observer", 100),
+    }
+
+
+def test_several_seeds_are_averaged_within_each_scene():
+    out = []
+    for seed, counts in ((0, (40, 20, 5)), (1, (40, 10, 5))):
+        for variant, statuses in arms(counts).items():
+            out += rows(variant, CORRECT, statuses, seed=seed)
+    both = decide(question(seeds=(0, 1)), paths(CORRECT), OutcomeTable(tuple(out)))
+    (effect,) = both.effects
+    assert effect.success.value == pytest.approx((15 + 5) / 2)
+    assert (effect.wins, effect.losses) == ((20, 10), (5, 5))
+    assert effect.scenes == 100
+    assert "sign test" in effect.test
+    assert effect.success.n_seeds == 2
+
+
+SECONDARY = {"time_s", "joint_successes", "metrics"}
+
+
+def test_seeds_that_change_nothing_are_counted_once():
+    """Not only the p-value: interval, counts and detectable effect are those of one seed."""
+    thrice = seeded({CORRECT: [(40, 9, 2)] * 3, "observer": [(40, 2, 9)] * 3})
+    once = seeded({CORRECT: [(40, 9, 2)], "observer": [(40, 2, 9)]})
+    for many, one in zip(thrice.effects, once.effects, strict=True):
+        assert many.model_dump(exclude=SECONDARY) == (one.model_dump(exclude=SECONDARY))
+        assert many.wins == one.wins
+    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.verdict.sentences)
+    assert "seeds" not in " ".join(once.verdict.sentences)
+
+
+@pytest.mark.parametrize("counts", [(50, 0, 0), (0, 0, 0), (100, 0, 0)])
+def test_no_interval_of_a_success_difference_has_no_width(counts):
+    for effect in three(counts, counts, counts).effects:
+        assert effect.success.low < -1
+        assert effect.success.high > 1
+
+
+@pytest.mark.parametrize(
+    ("counts", "extreme"),
+    [((0, 7, 0), "floor"), ((92, 4, 4), "ceiling"), ((5, 5, 0), None), ((90, 0, 8), None)],
+)
+def test_floor_and_ceiling_are_both_arms_below_10_or_above_90(counts, extreme):
+    assert record({CORRECT: counts}).effects[0].extreme == extreme
+
+
+def test_a_path_on_which_the_fault_never_acted_is_no_part_of_the_family():
+    out = []
+    for path, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
+        for variant, statuses in arms(counts).items():
+            out += rows(variant, path, statuses, altered=0 if path == "a" else None)
+    made = decide(question(), paths(CORRECT, "a", SHARED), OutcomeTable(tuple(out)))
+    idle = made.effects[1]
+    assert not idle.acted
+    assert not idle.detected
+    assert idle.adjusted_p_value is None
+    assert made.hypotheses == 2
+    assert made.changes == ()
+    assert [each.path for each in made.break_even] == [SHARED]
+
+
+def test_the_primary_contrast_is_the_shared_path_or_the_only_isolated_one_or_the_one_named():
+    level = (50, 5, 5)
+    assert three(level, level, level).question.primary == SHARED
+    assert record({CORRECT: level, "observer": level}).question.primary == "observer"
+    named = question().model_copy(update={"primary": "observer"})
+    cells = {CORRECT: level, "observer": level, SHARED: level}
+    assert decide(named, paths(*cells), table(cells)).question.primary == "observer"
+    with pytest.raises(UserError, match=r"no path 'obs'.*has correct, observer, shared"):
+        decide(named.model_copy(update={"primary": "obs"}), paths(*cells), table(cells))

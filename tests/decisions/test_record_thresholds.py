@@ -1,0 +1,86 @@
+"""A metric beside success, and success by thresholds of it: told, never decided."""
+
+from dataclasses import replace
+
+import pytest
+from outcome_tables import paths, question, record, table
+
+from faultpath.core.errors import UserError
+from faultpath.decisions.planning import plan_audit
+from faultpath.decisions.question import AuditQuestion, ask
+from faultpath.decisions import decide
+from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
+
+CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}
+TOY = SystemSpec(name="examples/toy.py:create")
+
+
+def told(better: str, values: dict[str, float], *thresholds: float):
+    """Return the record of a metric that grows with the scene and is larger in one variant."""
+    rows = [
+        replace(
+            row,
+            outcome=replace(
+                row.outcome, metrics={"error": values[row.variant] + row.scene_index / 100}
+            ),
+        )
+        for row in table(CELLS).rows
+    ]
+    metrics = {"error": Metric(unit="rad", better=better)}
+    update = {"metrics": metrics, "metric": "error", "thresholds": thresholds}
+    asked = question().model_copy(update=update)
+    return decide(asked, paths(*CELLS), OutcomeTable(tuple(rows)))
+
+
+@pytest.mark.parametrize("better", ["less", "more"])
+def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(better):
+    found = told(better, {"old": 0.0, "new": 0.25}, 0.5)
+    sound = [row for row in table(CELLS).rows if row.path == "correct"]
+    offset = {"old": 0.0, "new": 0.25}
+    percent = {
+        name: sum(
+            row.outcome.status is not Status.CRASH
+            and (
+                offset[name] + row.scene_index / 100 <= 0.5
+                if better == "less"
+                else offset[name] + row.scene_index / 100 >= 0.5
+            )
+            for row in sound
+            if row.variant == name
+        )
+        for name in offset
+    }
+    (at,) = found.effects[0].thresholds
+    assert (at.baseline_percent, at.repair_percent) == (percent["old"], percent["new"])
+    assert at.difference.value == pytest.approx(percent["new"] - percent["old"])
+    assert found.effects[0].metric_means == pytest.approx((0.495, 0.745))
+    assert found.effects[0].metrics["error"].unit == "rad"
+
+
+def test_nothing_that_is_decided_depends_on_it():
+    plain = record(CELLS)
+    found = told("less", {"old": 0.0, "new": 0.25}, 0.1, 0.5)
+    assert [e.success for e in found.effects] == [e.success for e in plain.effects]
+    assert [e.adjusted_p_value for e in found.effects] == [
+        e.adjusted_p_value for e in plain.effects
+    ]
+    assert found.verdict.headline == plain.verdict.headline
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"metric": "speed"}, "unknown metric 'speed'; known: terminal_distance_m"),
+        ({"thresholds": (0.1,)}, "thresholds of what"),
+        (
+            {"metric": "terminal_distance_m", "thresholds": (float("nan"),)},
+            "thresholds.*finite number",
+        ),
+    ],
+)
+def test_what_the_system_does_not_measure_is_refused(asked, said, monkeypatch, request):
+    monkeypatch.chdir(request.config.rootpath)
+    system = load_system(TOY)
+    arms = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
+    with pytest.raises(UserError, match=said):
+        plan_audit(system, TOY, ask(AuditQuestion, arms | asked), system.library("carts"))

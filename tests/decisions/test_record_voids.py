@@ -1,0 +1,107 @@
+"""Trials that failed on one side decide nothing, and what they leave open is said."""
+
+import numpy as np
+import pytest
+from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
+
+from faultpath.decisions import CORRECT, SHARED, DecisionRecord, decide, phrases
+from faultpath.decisions.summary import answers
+from faultpath.trials import OutcomeTable, Status
+
+YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
+EVEN = [YES, NO] * (SCENES // 2)
+Ends = list[Status]
+
+
+def audit(correct: tuple[Ends, Ends], shared: tuple[Ends, Ends] | None = None) -> DecisionRecord:
+    """Return the record of ends of repair and baseline, by the rule in force."""
+    over = {CORRECT: correct} | ({} if shared is None else {"observer": correct, SHARED: shared})
+    out = [
+        row
+        for path, ends in over.items()
+        for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
+        for row in rows(variant, path, statuses)
+    ]
+    asked = question(len(correct[0])).model_copy(update={"rule": "unconditional"})
+    return decide(asked, paths(*over), OutcomeTable(tuple(out)))
+
+
+def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
+    failed = np.zeros_like(success) if failed is None else failed
+    return [FAILED if f else YES if s else NO for s, f in zip(success, failed, strict=True)]
+
+
+def dies_in_hard_scenes(stream: np.random.Generator) -> tuple[Ends, Ends]:
+    """The repair dies in a third of the scenes, the hard ones; it gains 6 pp, deaths counted."""
+    hard = stream.random(SCENES)
+    baseline = stream.random(SCENES) < 0.57 + 0.6 * (0.5 - hard)
+    return ends(stream.random(SCENES) < 0.945, hard > 2 / 3), ends(baseline)
+
+
+def raises_on_its_failures(stream: np.random.Generator) -> tuple[Ends, Ends]:
+    """Equal arms, of which the repair's raises in half of the trials that it does not solve."""
+    repair, baseline = stream.random((2, SCENES)) < 0.5
+    return ends(repair, ~repair & (stream.random(SCENES) < 0.5)), ends(baseline)
+
+
+@pytest.mark.parametrize("case", [dies_in_hard_scenes, raises_on_its_failures])
+def test_an_arm_whose_bad_trials_fail_is_not_announced(case):
+    """Before, most of the first and a fifth of the second were `new is ahead`."""
+    stream = np.random.default_rng(11)
+    made = [audit(case(stream)) for _ in range(20)]
+    assert sum("new is ahead" in each.verdict.headline for each in made) == 0
+    assert sum(each.effects[0].sign != 0 for each in made) <= 2
+    assert sum(each.effects[0].p_value < 0.05 for each in made) >= 3
+    for each in made:
+        found = each.effects[0].failed
+        assert found is not None
+        assert found.against_pp <= found.favour_pp
+        (said,) = [text for text in each.findings if "failed" in text]
+        assert f"{found.repair} trials of new failed and 0 of old" in said
+
+
+def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
+    """Five wins are decided among 100 scenes, and are not with a sixth scene that could be lost."""
+    rest = [*[YES] * 44, *[NO] * 50]
+    worse, lost = [*[NO] * 5, *rest, YES], [*[YES] * 5, *rest, FAILED]
+    whole = audit(([*[YES] * 5, *rest, YES], worse))
+    assert whole.effects[0].sign == 1
+    assert whole.effects[0].failed is None
+    open_ = audit((lost, worse))
+    effect = open_.effects[0]
+    assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
+    assert effect.p_value < 0.05
+    said = phrases.effect(open_, effect)
+    assert "failed" in said
+    assert "failed" in open_.verdict.headline
+    assert "no difference" not in " ".join((open_.verdict.headline, said)).lower()
+    assert "depends on trials that failed" in answers(open_)["Not decided"]
+    safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
+    assert safe.effects[0].sign == 1
+    assert "new is ahead" in safe.verdict.headline
+
+
+def test_a_failure_on_one_path_is_open_on_the_others_too():
+    """The scenes that it leaves out are those of every path: there the others are known."""
+    wins = np.arange(SCENES) < 9
+    against = np.ones(SCENES, bool)
+    against[50:59] = False  # lost under correct inputs, in scenes that only the shared path voids
+    correct = ends(against), ends(~wins)
+    shared = ends(np.ones(SCENES, bool), ~against), ends(np.ones(SCENES, bool))
+    made = audit(correct, shared)
+    first = made.effects[0]
+    assert first.p_value < 0.05
+    assert (first.sign, first.unsettled) == (0, True)
+    assert first.failed is not None
+
+
+def test_no_reversal_rests_on_a_path_where_one_arm_fails_more_often():
+    """Decided even with all that is open against it: who is ahead stands, but carries nothing."""
+    stands = ends(np.arange(SCENES) < 90), ends(np.arange(SCENES) < 30)
+    fails = ends(np.arange(SCENES) < 20, np.arange(SCENES) >= 92), ends(np.arange(SCENES) < 80)
+    made = audit(stands, fails)
+    shared = next(effect for effect in made.effects if effect.path == SHARED)
+    assert shared.sign == -1
+    assert (shared.uneven, shared.leads) == (True, False)
+    assert made.changes[0].turn != "reversal"
+    assert "Do not choose" not in made.verdict.headline

@@ -1,0 +1,158 @@
+"""The sentences say what was decided, and read well, case by case."""
+
+import re
+
+import pytest
+from outcome_tables import BASELINE, REPAIR, arms, paths, question, record, rows, seeded, three
+
+from faultpath.decisions import CORRECT, SHARED, DecisionRecord, decide, phrases
+from faultpath.trials import OutcomeTable
+
+LEVEL = (50, 5, 5)
+GAIN = (40, 30, 2)
+LOSS = (40, 2, 30)
+
+
+@pytest.mark.parametrize(("isolated", "shared"), [(GAIN, LOSS), (LOSS, GAIN)])
+def test_a_reversal_is_the_headline_and_names_who_is_ahead_where(isolated, shared):
+    made = three((50, 0, 0), isolated, shared)
+    (change,) = made.changes
+    one, other = (REPAIR, BASELINE) if isolated == GAIN else (BASELINE, REPAIR)
+    assert change.turn == "reversal"
+    said = phrases.change(made, change)
+    assert said in made.verdict.sentences
+    assert f"with only the observer faulted, {one} succeeds" in said
+    assert f"under the shared fault, {other} does" in said
+    assert made.verdict.headline.startswith("Do not choose by the isolated fault")
+    assert f"{one} is ahead with only the observer faulted, {other}" in made.verdict.headline
+
+
+def test_a_change_without_two_effects_is_an_interaction_and_no_advice():
+    made = three((50, 0, 0), (50, 9, 9), LOSS)
+    (change,) = made.changes
+    assert change.turn == "interaction"
+    assert phrases.change(made, change).startswith("Interaction detected")
+    assert "Do not" not in made.verdict.headline
+
+
+def test_a_fault_without_a_shared_path_has_no_change():
+    assert record({CORRECT: LEVEL, "observer": LOSS}).changes == ()
+
+
+@pytest.mark.parametrize(
+    ("cells", "said"),
+    [
+        ((GAIN, GAIN, GAIN), "new is ahead of old on every path."),
+        ((LEVEL, LEVEL, LEVEL), "No difference between old and new is detected on any path."),
+        ((LEVEL, GAIN, GAIN), "under the shared fault and with only the observer faulted."),
+        ((LOSS, GAIN, GAIN), "; old is ahead under correct inputs."),
+        ((LOSS, LEVEL, LEVEL), "is detected under the shared fault"),
+        ((GAIN, GAIN, (0, 9, 0)), "Both nearly always fail under the shared fault; new is ahead"),
+        (((100, 0, 0),) * 3, "No difference could show"),
+        (((0, 0, 0),) * 3, "No difference could show"),
+    ],
+)
+def test_the_headline_of_each_case(cells, said):
+    assert said in three(*cells).verdict.headline
+
+
+def test_a_primary_contrast_of_ones_own_leads():
+    cells = {CORRECT: LOSS, "observer": GAIN, SHARED: LOSS}
+    out = [
+        row
+        for path, counts in cells.items()
+        for variant, statuses in arms(counts).items()
+        for row in rows(variant, path, statuses)
+    ]
+    asked = question().model_copy(update={"primary": CORRECT})
+    headline = decide(asked, paths(*cells), OutcomeTable(tuple(out))).verdict.headline
+    assert headline.startswith("old is ahead under correct inputs")
+    assert "sharing reverses the ranking" in headline
+
+
+def _words(made: DecisionRecord, path: str) -> str:
+    (effect,) = (e for e in made.effects if e.path == path)
+    assert phrases.effect(made, effect) in made.verdict.sentences
+    return phrases.effect(made, effect)
+
+
+def test_where_nothing_is_detected_the_words_say_what_would_have_been_found():
+    made = three(LEVEL, GAIN, GAIN)
+    words = _words(made, CORRECT)
+    (effect,) = (e for e in made.effects if e.path == CORRECT)
+    least = re.search(r"a true one of (\d+) pp would be found with 80 % power", words)
+    assert least is not None
+    assert effect.minimum_detectable_pp <= int(least[1]) < effect.minimum_detectable_pp + 1
+
+
+def test_three_scenes_decide_nothing_however_clear_they_look():
+    made = record({CORRECT: (0, 0, 3), "observer": (0, 3, 0), SHARED: (0, 0, 3)}, n=3)
+    assert made.scenes_needed == 8
+    assert made.verdict.headline.startswith("Too few scenes to decide: 3 compared")
+    assert "nothing is decided (+100.0 pp" in _words(made, "observer")
+
+
+@pytest.mark.parametrize(
+    ("correct", "fault", "said"),
+    [
+        ((50, 0, 16), (30, 24, 0), r"old is ahead up to \d+ %, new is ahead from \d+ % on"),
+        ((50, 16, 0), (30, 0, 24), r"new is ahead up to \d+ %, old is ahead from \d+ % on"),
+        ((50, 20, 0), (30, 20, 0), "new is ahead at every frequency"),
+        ((50, 0, 20), (30, 0, 20), "old is ahead at every frequency"),
+        ((50, 6, 1), (30, 30, 0), "new is ahead from 1?[0-9] % on|where the fault is frequent"),
+    ],
+    ids=["above", "below", "always", "never", "cost not detected"],
+)
+def test_the_fault_frequency_is_said_where_it_is_decided(correct, fault, said):
+    made = three(correct, fault, fault)
+    (sentence,) = (s for s in made.verdict.sentences if s.startswith("By fault frequency: "))
+    assert len(re.findall(said, sentence)) == 2
+    assert "with only the observer faulted" in sentence
+    assert "under the shared fault" in sentence
+
+
+def test_a_fault_that_never_acted_was_not_tested():
+    """Not: no difference is detected."""
+
+    def made(altered: dict[str, int | None]) -> DecisionRecord:
+        out = []
+        for path in (CORRECT, "observer", SHARED):
+            for variant, statuses in arms(GAIN).items():
+                out += rows(variant, path, statuses, altered=altered.get(path))
+        return decide(question(), paths(CORRECT, "observer", SHARED), OutcomeTable(tuple(out)))
+
+    never = made({"observer": 0, SHARED: 0})
+    assert never.verdict.headline == "The fault never acted: nothing was tested."
+    assert "nothing was tested" in _words(never, SHARED)
+    assert never.break_even == ()
+    partly = made({"observer": 0})
+    assert partly.verdict.headline.startswith("new is ahead of old under the shared fault")
+    rarely = made({"observer": 30})
+    assert (
+        "With only the observer faulted, the fault changed something in only 30 of 100 trials of "
+        "new." in rarely.verdict.sentences
+    )
+
+
+def test_results_of_trained_models_are_said_to_be_theirs():
+    cells = {CORRECT: [LEVEL] * 1, "observer": [GAIN], SHARED: [LOSS]}
+    plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
+    assert "model" not in " ".join((plain.verdict.headline, *plain.verdict.sentences))
+    assert "model" not in plain.effects[0].success.estimand
+    assert trained.verdict.headline == plain.verdict.headline
+    assert trained.estimand == "new scenes like these, for these trained models"
+    assert "models trained anew may differ" in trained.verdict.sentences[0]
+
+
+def test_newly_trained_models_need_no_qualification_but_a_caution_with_few():
+    by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1)]
+    cells = {CORRECT: by_seed, "observer": by_seed}
+    made = seeded(cells, trained=True, generalise="models")
+    assert made.estimand.endswith("models newly trained with other seeds")
+    assert "these trained models" not in made.verdict.headline
+    assert "Caution: 3 trainings say little about new ones" in " ".join(made.verdict.sentences)
+    assert all("t test" in effect.test for effect in made.effects)
+    by_number = {n: [(40 - i, 30 + i, 2) for i in range(n)] for n in (9, 10)}
+    for number, drawn in by_number.items():
+        several = seeded(dict.fromkeys(cells, drawn), trained=True, generalise="models")
+        assert ("Caution" in " ".join(several.verdict.sentences)) == (number < 10)

@@ -1,0 +1,71 @@
+"""One table, four renderers: each shows every text, takes it literally and marks what is marked."""
+
+import io
+
+from rich.console import Console
+
+from faultpath.decisions.tables import Entry, Table, line
+from faultpath.decisions.tables.html import html
+from faultpath.decisions.tables.markdown import grid
+from faultpath.decisions.tables.terminal import drawn
+
+TABLE = Table(
+    title="What came out",
+    corner="Model",
+    columns=("Rate, %", "What it is"),
+    words=("What it is",),
+    lines=(
+        line("With wind"),
+        line("wm-a", Entry(text="70.3", published="69"), "a model", name=True, aside="zero wind"),
+        line("dob", Entry(text="+5.0", detected=True, aside="floor"), "an observer"),
+        line("gru", Entry(text="3", tone="bad"), Entry(text="ab12", name=True)),
+    ),
+)
+
+
+def _terminal(table: Table, width: int = 100, **how: bool) -> str:
+    console = Console(file=io.StringIO(), width=width, force_terminal=False)
+    console.print(drawn(table, **how))
+    return console.file.getvalue()  # type: ignore[attr-defined] - a StringIO
+
+
+def test_markdown_marks_names_detections_and_alarms() -> None:
+    assert grid(TABLE).splitlines() == [
+        "| Model | Rate, % | What it is |",
+        "| :-- | --: | :-- |",
+        "| *With wind* |  |  |",
+        "| `wm-a` (zero wind) | 70.3 (69) | a model |",
+        "| dob | **+5.0** (floor) | an observer |",
+        "| gru | **3** | `ab12` |",
+    ]
+
+
+def test_html_has_a_cell_for_every_column_and_escapes() -> None:
+    text = html(TABLE.model_copy(update={"title": "<b>"}))
+    assert "<caption>&lt;b&gt;</caption>" in text
+    assert "<caption>" not in html(TABLE, caption=False)
+    assert '<th scope="rowgroup" colspan="3"><span>With wind</span>' in text
+    assert '<span class="ours found">+5.0 <small>(floor)</small></span>' in text
+    assert '<td class="alarm"><span class="ours">3</span></td>' in text
+    short = Table(columns=("a", "b"), lines=(line("x", "<1>"),))
+    assert '<td><span class="ours">&lt;1&gt;</span></td><td></td>' in html(short)
+
+
+def test_terminal_shows_everything_and_takes_it_literally() -> None:
+    strange = TABLE.model_copy(update={"corner": "[red]Model[/]"})
+    text = _terminal(strange)
+    for words in ("[red]Model[/]", "What came out", "wm-a (zero wind)", "(69)", "+5.0 (floor)"):
+        assert words in text
+
+
+def test_a_narrow_terminal_cuts_words_but_no_number() -> None:
+    long = Table(
+        corner="Claim",
+        columns=("Estimate", "Words"),
+        words=("Words",),
+        lines=(line("C01", "+57.3 pp [48.3, 66.3]", "word " * 40),),
+    )
+    text = _terminal(long, width=50, one_line=True)
+    assert text.splitlines()[1].startswith("C01    +57.3 pp [48.3, 66.3]  word")
+    assert text.splitlines()[1].rstrip().endswith("…")
+    assert len(text.splitlines()) == 2

@@ -1,0 +1,79 @@
+"""Every kind of fault does in a fit what it does in a flight; images and several modules too."""
+
+import numpy as np
+import pytest
+
+from faultpath.faults import (
+    INTERVENTIONS,
+    Bias,
+    Delay,
+    Drift,
+    Dropout,
+    Erase,
+    Fault,
+    Freeze,
+    Hold,
+    Intermittence,
+    Intervention,
+    Noise,
+    Offset,
+    Quantise,
+    Replace,
+    Scale,
+    Sequence,
+    Shuffle,
+    UniformScale,
+)
+from faultpath.interface import read_interface
+from faultpath.learning.windows import Windows, delivered
+from faultpath.loop.taps import Reading, Taps
+
+WINDOWS, STEPS, DT_S = 5, 8, 0.05
+INTERFACE = read_interface("""
+name: rover
+sources:
+- {name: camera, unit: '1', shape: [6, 8], provenance: measured}
+channels:
+- {name: image, sources: [camera], consumers: [encoder.pixels, guard.pixels], erasure_default: 0.5}
+""")
+KINDS: tuple[Intervention, ...] = (
+    Scale(factor=1.1),
+    UniformScale(half_range=0.2),
+    Offset(by=0.1),
+    Quantise(step_size=0.25),
+    Erase(),
+    Noise(std=0.3),
+    Drift(walk_per_sqrt_s=0.5),
+    Bias(std=0.3, time_constant_s=0.2),
+    Delay(steps=3),
+    Hold(every=3),
+    Freeze(),
+    Dropout(probability=0.4),
+    Replace(value=2.0),
+    Shuffle(axis=1),
+    Sequence(parts=(Scale(factor=1.1), Noise(std=0.1))),
+)
+COMES_AND_GOES = Intermittence(mean_on_s=0.2, mean_off_s=0.1)
+
+
+def test_no_kind_is_missing() -> None:
+    assert {each.kind for each in KINDS} == set(INTERVENTIONS)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+@pytest.mark.parametrize("kind", KINDS, ids=lambda each: each.kind)
+def test_a_window_gets_what_a_flight_of_its_name_and_seed_gets(kind: Intervention) -> None:
+    images = np.random.default_rng(0).uniform(size=(WINDOWS, STEPS, 6, 8)).astype(np.float32)
+    data = Windows(INTERFACE, "encoder", {"image": images}, targets=np.zeros(WINDOWS), dt_s=DT_S)
+    for fault in (
+        Fault(channel="image", intervention=kind, onset_step=1),
+        Fault(channel="image", intervention=kind, intermittence=COMES_AND_GOES),
+    ):
+        got, counts = delivered(data, (fault,), data.readings, range(WINDOWS), 0, epoch=2)
+        (seen,) = got.values()
+        taps = Taps(INTERFACE, (fault,), scenes=data.ids, dt_s=DT_S, seed=2)
+        flown = [
+            taps.deliver("image", "encoder.pixels", Reading(images[:, step], "camera", step), step)
+            for step in range(STEPS)
+        ]
+        np.testing.assert_array_equal(seen, np.stack(flown, axis=1))
+        assert sum(count.altered_steps for count in counts)

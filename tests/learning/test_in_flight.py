@@ -1,0 +1,152 @@
+"""Repaired modules in a loop get what they got in their fit."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+import torch
+from repair_toys import INTERFACE, SHORT, Net, windows
+
+from faultpath.core.errors import UserError
+from faultpath.faults import Fault, Scale
+from faultpath.loop import Batch, Inputs, Module, Port
+from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
+from faultpath.systems import ComposedSystem, FunctionPlant, Parts
+from faultpath.loop.taps import Reading, Taps
+
+GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
+
+
+class Brake(Module):
+    """Pushes against what it reads, and keeps what it got."""
+
+    name, writes = "brake", ("push",)
+    reads = frozenset({Port("place", "feedback"), Port("gain", "model"), Port("bias", "trim")})
+
+    def __init__(self) -> None:
+        self.got: list[Mapping[Port, np.ndarray]] = []
+
+    def step(self, inputs: Inputs, memory: None):
+        self.got.append({port: inputs[port] for port in inputs})
+        wanted = -0.5 * inputs["place", "feedback"] - inputs["bias", "trim"]
+        return {"push": wanted / inputs["gain", "model"]}, memory
+
+
+def system(*variants: Module) -> ComposedSystem:
+    plant = FunctionPlant(
+        lambda rng: {"place": rng.uniform(1, 2), "gain": rng.uniform(0.5, 1.5), "bias": 0.0},
+        lambda state, push, rng: state | {"place": state["place"] + state["gain"] * push},
+        observes={"place": "place", "gain": "gain", "bias": "bias"},
+        action="push",
+        steps=5,
+        dt_s=0.1,
+        succeeded=lambda episode: bool(abs(episode["place"][-1]) < 0.05),
+    )
+    units = dict.fromkeys(("place", "gain", "bias", "push"), "1")
+    parts = {f"variant_{i}": Parts("One of them.", [m]) for i, m in enumerate(variants)}
+    return ComposedSystem("cart", plant, parts, units)
+
+
+def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "seed/2")):
+    declared = made.variants[variant]
+    taps = Taps(
+        made.interface,
+        faults,
+        scenes=scenes,
+        dt_s=0.1,
+        bindings=declared.bindings,
+        consumers=declared.consumers,
+    )
+    return made.run(variant, scenes, taps, 0)
+
+
+def test_a_withheld_channel_is_not_read_and_its_neutral_value_arrives() -> None:
+    inner = Brake()
+    interface = system(Brake()).interface
+    made = system(Brake(), withheld(inner, withholding("gain", value=1.25), interface))
+    assert made.variants["variant_0"].consumers - made.variants["variant_1"].consumers == {
+        "brake.model"
+    }
+    inner.got.clear()
+    fly(made, "variant_1")
+    assert {float(value) for got in inner.got for value in got[Port("gain", "model")]} == {1.25}
+    assert all(got[Port("gain", "model")].shape == (2,) for got in inner.got)
+    with pytest.raises(UserError, match="strikes nobody in this variant"):
+        fly(made, "variant_1", Fault(channel="gain", intervention=Scale(factor=2.0)))
+
+
+def test_what_is_withheld_in_flight_is_what_was_in_the_fit() -> None:
+    repair = withholding("heading", "pilot")
+    resolved = repair.against(INTERFACE, 0.1, {"pilot.course"})
+
+    class Pilot(Module):
+        name, writes = "pilot", ("course",)
+        reads = frozenset({Port("heading", "course"), Port("velocity", "feedback")})
+
+        def step(self, inputs, memory):
+            return {"course": inputs["heading", "course"]}, memory
+
+    made = withheld(Pilot(), repair, INTERFACE)
+    (fault,) = resolved.faults
+    taps = Taps(INTERFACE, (fault,), scenes=("a", "b"), dt_s=0.1, consumers={"pilot.course"})
+    in_fit = taps.deliver("heading", "pilot.course", Reading(np.ones((2, 3)), "compass", 0), 0)
+    delivered = {Port("velocity", "feedback"): torch.zeros(2)}
+    inputs = Inputs("pilot", 0, delivered, {})
+    memory = made.begin(Batch(("a", "b"), 0, 0.1))
+    outputs, _ = made.step(inputs, memory)
+    assert isinstance(outputs["course"], torch.Tensor)
+    assert np.array_equal(outputs["course"].numpy(), in_fit)
+
+
+def test_a_learned_module_gets_the_last_steps_as_in_its_windows() -> None:
+    data = windows(12, 4)
+    net = fit(Net, data, schedule=SHORT).module
+    made = Learned("observer", net, "slope", [GAIN, VELOCITY], steps=4)
+    memory = None
+    for step in range(4):
+        delivered = {
+            GAIN: np.asarray(data.readings["gain"], dtype=float),
+            VELOCITY: np.asarray(data.readings["velocity"][:, step], dtype=float),
+        }
+        outputs, memory = made.step(Inputs("observer", step, delivered, {}), memory)
+    gain = torch.from_numpy(np.repeat(np.asarray(data.readings["gain"])[:, None], 4, axis=1))
+    velocity = torch.from_numpy(np.asarray(data.readings["velocity"]))
+    with torch.no_grad():
+        expected = net({GAIN: gain, VELOCITY: velocity}).numpy()
+    assert outputs["slope"] == pytest.approx(expected, rel=1e-5)
+    first, _ = made.step(Inputs("observer", 0, delivered, {}), None)
+    alone, _ = made.step(
+        Inputs("observer", 0, {port: value[3:4] for port, value in delivered.items()}, {}), None
+    )
+    assert first["slope"][3] == alone["slope"][0]  # to the bit, in other company
+
+
+class Slope(torch.nn.Module):
+    def __init__(self) -> None:
+        super().__init__()
+        self.weight = torch.nn.Parameter(torch.ones(1))
+
+    def forward(self, inputs):
+        return -self.weight * inputs["place", "past"][:, -1] * inputs["gain", "model"][:, -1]
+
+
+def test_a_learned_module_flies_in_a_variant_and_faults_reach_it() -> None:
+    ports = [Port("place", "past"), Port("gain", "model")]
+    made = system(Learned("brake", Slope(), "push", ports, steps=3))
+    clean = fly(made, "variant_0")
+    struck = fly(made, "variant_0", Fault(channel="gain", intervention=Scale(factor=0.5)))
+    assert [outcome.time_s for outcome in clean] == pytest.approx([0.5, 0.5])
+    assert clean != struck
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (withholding("wind", value=0.0), "unknown channel 'wind'"),
+        (withholding("gain", "pilot", 1.0), "reads nothing of"),
+        (uncertainty_training(errors({"gain": 0.1})), "no withholding"),
+    ],
+)
+def test_bad_input_is_one_sentence(wrong, said) -> None:
+    with pytest.raises(UserError, match=said):
+        withheld(Brake(), wrong, INTERFACE)

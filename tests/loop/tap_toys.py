@@ -1,0 +1,107 @@
+"""A small system and a way to play readings through its taps."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from faultpath.faults import (
+    Bias,
+    Coupled,
+    Delay,
+    Drift,
+    Dropout,
+    Erase,
+    Fault,
+    Freeze,
+    Hold,
+    Intervention,
+    Noise,
+    Offset,
+    Quantise,
+    Replace,
+    Scale,
+    Shuffle,
+    UniformScale,
+)
+from faultpath.faults import Sequence as InTurn
+from faultpath.interface import Channel, Interface, Provenance, Source
+from faultpath.core.streams import generator
+from faultpath.loop.taps import Reading, Taps
+
+DT_S = 0.05
+SHAPES = {"mass": (), "wind": (3,)}
+INTERFACE = Interface(
+    name="toy",
+    sources=(
+        Source(name="scale", unit="kg", provenance=Provenance.ESTIMATED),
+        Source(name="still", unit="m/s", shape=(3,), provenance=Provenance.CONSTANT),
+        Source(name="truth", unit="m/s", shape=(3,), provenance=Provenance.PRIVILEGED),
+    ),
+    channels=(
+        Channel(
+            name="mass",
+            sources=("scale",),
+            consumers=("predictor.dynamics", "observer.model"),
+            erasure_default=1.0,
+        ),
+        Channel(
+            name="wind",
+            sources=("still", "truth"),
+            consumers=("predictor.wind", "planner.wind"),
+            erasure_default=(0.0, 0.0, 1.0),
+        ),
+    ),
+)
+SOURCES = {"mass": "scale", "wind": "still"}
+
+INTERVENTIONS: tuple[Intervention, ...] = (
+    Scale(factor=1.1),
+    UniformScale(half_range=0.2),
+    Offset(by=(0.1, 0.0, -0.2)),
+    Quantise(step_size=0.25),
+    Erase(),
+    Noise(std=0.3),
+    Noise(std=0.3, relative=True),
+    Drift(rate_per_s=(1.0, 0.0, 2.0)),
+    Drift(walk_per_sqrt_s=0.5),
+    Bias(std=(0.3, 0.1, 0.2)),
+    Bias(std=0.3, relative=True, time_constant_s=0.2),
+    Delay(steps=3),
+    Hold(every=4),
+    Freeze(),
+    Dropout(probability=0.4),
+    Dropout(probability=0.4, substitute=Erase()),
+    Replace(value=2.0),
+    Shuffle(axis=1),
+    InTurn(parts=(Scale(factor=1.1), Noise(std=0.1), Delay(steps=2))),
+)
+
+
+def series(scene: str, channel: str, steps: int) -> np.ndarray[Any, Any]:
+    """Return a scene's readings `[T, ...]`, whatever runs beside it."""
+    return generator("series", scene, 0).normal(size=(steps, *SHAPES[channel]))
+
+
+def make(faults: Iterable[Fault | Coupled] = (), scenes: Sequence[str] = "ab", **more: Any) -> Taps:
+    return Taps(INTERFACE, faults, scenes=tuple(scenes), dt_s=DT_S, **more)
+
+
+def play(
+    faults: Iterable[Fault | Coupled],
+    scenes: Sequence[str],
+    *,
+    consumer: str = "predictor.wind",
+    channel: str = "wind",
+    to: Any = np.asarray,
+    steps: int = 16,
+    **more: Any,
+) -> np.ndarray[Any, Any]:
+    """Return what `consumer` gets, `[T, B, ...]`."""
+    taps = make(faults, scenes, **more)
+    readings = np.stack([series(scene, channel, steps) for scene in scenes], axis=1)
+    values = [
+        taps.deliver(channel, consumer, Reading(to(readings[step]), SOURCES[channel], step), step)
+        for step in range(steps)
+    ]
+    return np.stack([np.asarray(value) for value in values])

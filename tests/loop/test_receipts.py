@@ -1,0 +1,148 @@
+"""Receipts: what was delivered, where a fault acted, and what is an error."""
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from tap_toys import make
+
+from faultpath.faults import Fault, Scale
+from faultpath.loop.taps import (
+    NotDelivered,
+    Reading,
+    StruckElsewhere,
+    Taps,
+    check_delivered,
+)
+
+LIBRARIES = pytest.mark.parametrize("to", [np.asarray, torch.asarray], ids=["numpy", "torch"])
+LATE = Fault(
+    channel="mass",
+    intervention=Scale(factor=2.0),
+    consumers=("observer",),
+    onset_step=3,
+    duration_steps=2,
+)
+
+
+def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1) -> None:
+    for step in steps:
+        value = to(np.array([0.0, 0.0] if step == zero else [1.0, 2.0]))
+        for consumer in ("predictor.dynamics", "observer.model"):
+            taps.deliver("mass", consumer, Reading(value, "scale", step), step)
+
+
+@LIBRARIES
+def test_counts_deliveries_and_steps(to: Any) -> None:
+    taps = make([LATE])
+    run(taps, to, range(2, 6))
+    struck = taps.receipts().at("mass", "observer.model")
+    assert struck.deliveries == 4
+    assert struck.steps_struck.tolist() == [2, 2]
+    assert struck.steps_altered.tolist() == [2, 2]
+    assert [s.fault for s in struck.strikes] == [
+        "mass scaled by 2 at observer.model from step 3 for 2 steps"
+    ]
+    clean = taps.receipts().at("mass", "predictor.dynamics")
+    assert (clean.deliveries, clean.strikes, clean.steps_struck.tolist()) == (4, (), [0, 0])
+    silent = taps.receipts().at("wind", "planner.wind")
+    assert silent.deliveries == 0
+
+
+@LIBRARIES
+def test_struck_is_not_yet_altered(to: Any) -> None:
+    taps = make([LATE.model_copy(update={"onset_step": 1})])
+    run(taps, to, zero=2)
+    receipt = taps.receipts().at("mass", "observer.model")
+    assert receipt.steps_struck.tolist() == [2, 2]
+    assert receipt.steps_altered.tolist() == [1, 1]
+
+
+@LIBRARIES
+def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
+    taps = make([Fault(channel="mass", intervention=Scale(factor=2.0))])
+    for step, lost in enumerate((0.0, np.nan)):
+        reading = Reading(to(np.array([lost, 1.0])), "scale", step)
+        taps.deliver("mass", "observer.model", reading, step)
+    assert taps.receipts().steps_altered.tolist() == [0, 2]
+
+
+@LIBRARIES
+@pytest.mark.parametrize("mask_to", [np.asarray, torch.asarray])
+def test_only_running_scenes_count(to: Any, mask_to: Any) -> None:
+    taps = make([LATE.model_copy(update={"onset_step": 1, "duration_steps": None})])
+    run(taps, to, range(3))
+    taps.set_active(mask_to(np.array([True, False])))
+    run(taps, to, range(3, 5))
+    taps.set_active(None)
+    run(taps, to, range(5, 6))
+    assert taps.receipts().steps_struck.tolist() == [5, 3]
+    assert taps.receipts().steps_altered.tolist() == [5, 3]
+
+
+@LIBRARIES
+def test_a_step_counts_once_for_the_run_however_many_taps_are_struck(to: Any) -> None:
+    taps = make([LATE.striking("*")])
+    run(taps, to)
+    assert taps.receipts().steps_struck.tolist() == [2, 2]
+
+
+def test_two_faults_at_a_tap_are_told_apart() -> None:
+    early = LATE.model_copy(update={"onset_step": 0, "duration_steps": 4})
+    taps = make([early, LATE])
+    run(taps)
+    receipt = taps.receipts().at("mass", "observer.model")
+    assert [s.steps_in_force.tolist() for s in receipt.strikes] == [[4, 4], [2, 2]]
+    assert receipt.steps_struck.tolist() == [5, 5]
+
+
+@pytest.mark.parametrize(
+    ("steps", "last"),
+    [(range(3), [2, 2]), (range(4), [3, 1])],
+    ids=["both ended before the onset", "one ended before it"],
+)
+def test_a_fault_that_missed_some_scenes_is_no_error(steps: Any, last: list[int]) -> None:
+    taps = make([LATE])
+    run(taps, steps=steps)
+    taps.verify(np.array(last))
+
+
+@pytest.mark.parametrize("steps", [(), (0,), (0, 5)])
+def test_a_fault_that_never_came_to_bear_is_an_error(steps: tuple[int, ...]) -> None:
+    taps = make([LATE])
+    run(taps, steps=steps)
+    with pytest.raises(NotDelivered, match=r"never reached it, although 1 of 2 scenes ran past"):
+        taps.verify(np.array([5, 2]))
+
+
+def test_one_of_two_faults_that_never_came_to_bear_is_an_error() -> None:
+    taps = make([LATE.model_copy(update={"onset_step": 0}), LATE])
+    run(taps, steps=[0])
+    with pytest.raises(NotDelivered, match="from step 3"):
+        taps.verify(5)
+
+
+def test_a_fault_that_reached_another_is_an_error() -> None:
+    taps = make([LATE])
+    run(taps)
+    receipts = taps.receipts()
+    last = np.array([5, 5])
+    with pytest.raises(StruckElsewhere, match=re.escape("tap mass -> observer.model altered a")):
+        check_delivered(receipts, frozenset(), last)
+    named = frozenset({("mass", "observer.model")})
+    check_delivered(receipts, named, last)
+    strange = tuple(
+        replace(r, steps_altered=np.array([1, 0])) if r.channel == "wind" else r
+        for r in receipts.taps
+    )
+    with pytest.raises(StruckElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
+        check_delivered(replace(receipts, taps=strange), named, last)
+
+
+def test_a_named_tap_where_nothing_acts_is_an_error() -> None:
+    named = frozenset({("mass", "predictor.dynamics")})
+    with pytest.raises(NotDelivered, match="a fault names it, but none acted there"):
+        check_delivered(make().receipts(), named, np.array([5, 5]))

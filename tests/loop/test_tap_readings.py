@@ -1,0 +1,127 @@
+"""What a reading has to be, and that no consumer can change it for another."""
+
+import re
+from contextlib import nullcontext
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from tap_toys import make
+
+from faultpath.faults import Fault, Freeze, Scale
+from faultpath.loop.taps import MalformedReading, NotFinite, Reading, Taps, WrittenTo
+
+NULL = Fault(channel="mass", intervention=Scale(factor=1.0), consumers=("observer",))
+STRONG = NULL.model_copy(update={"intervention": Scale(factor=2.0)})
+FROZEN = NULL.model_copy(update={"intervention": Freeze()})
+ANY_FAULT = pytest.mark.parametrize("faults", [(), (NULL,), (STRONG,), (FROZEN,)])
+CLEAN_OR_NULL = pytest.mark.parametrize("faults", [(), (NULL,)])
+
+
+def mass(step: int, value: Any) -> Reading:
+    return Reading(value, "scale", step)
+
+
+def deliver(taps: Taps, value: Any, step: int = 0, place: str = "observer.model") -> Any:
+    return taps.deliver("mass", place, mass(step, value), step)
+
+
+@ANY_FAULT
+def test_a_consumer_cannot_write_into_what_it_gets(faults: tuple[Fault, ...]) -> None:
+    taps = make(faults)
+    plant = np.array([1.0, 3.0])
+    for step in range(2):
+        got = deliver(taps, plant, step)
+        with pytest.raises(ValueError, match="read-only"):
+            got += 1.0
+        with pytest.raises(ValueError, match="read-only"):
+            got[0] = 7.0
+    assert plant.tolist() == [1.0, 3.0]
+    plant += 1.0  # the plant's own array stays the plant's
+    assert deliver(taps, plant, 2, "predictor.dynamics").tolist() == [2.0, 4.0]
+
+
+@CLEAN_OR_NULL
+@pytest.mark.parametrize("to", [np.array, torch.tensor])
+def test_a_second_delivery_is_the_first_one_with_a_null_fault_and_without(
+    faults: tuple[Fault, ...], to: Any
+) -> None:
+    taps = make(faults)
+    first = deliver(taps, to([1.0, 3.0]))
+    assert deliver(taps, to([1.0, 3.0])) is first
+    with pytest.raises(MalformedReading, match="step 0 brings two different readings"):
+        deliver(taps, to([1.0, 4.0]))
+    with pytest.raises(MalformedReading, match="step 0 brings two different readings"):
+        deliver(taps, to([[1.0, 3.0]]))
+    assert taps.receipts().at("mass", "observer.model").deliveries == 1
+
+
+@CLEAN_OR_NULL
+@pytest.mark.parametrize(
+    ("value", "sentence"),
+    [
+        (np.zeros(3), "the reading has 3 rows for 2 scenes"),
+        (np.zeros(()), "the reading has no rows for 2 scenes"),
+        (np.zeros((2, 3)), "the reading of one scene has the shape [3], but source 'scale' is"),
+        (torch.zeros(2, 1), "the reading of one scene has the shape [1]"),
+        ([1.0, 2.0], "the reading's value is a list"),
+        (1.0, "the reading's value is a float"),
+        (None, "the reading's value is a NoneType"),
+        (np.array(["a", "b"]), "the reading is of <U1; a source gives real numbers"),
+        (np.array([None, 1.0]), "the reading is of object"),
+        (np.array([1j, 1.0]), "the reading is of complex128"),
+        (torch.tensor([1j, 1.0]), "the reading is of torch.complex64"),
+    ],
+)
+def test_the_first_reading_is_as_declared_struck_or_not(
+    faults: tuple[Fault, ...], value: Any, sentence: str
+) -> None:
+    with pytest.raises(MalformedReading, match=re.escape(sentence)):
+        deliver(make(faults), value)
+
+
+@CLEAN_OR_NULL
+@pytest.mark.parametrize("to", [np.array, torch.tensor])
+@pytest.mark.parametrize("lost", [np.nan, np.inf])
+def test_the_first_reading_is_finite(faults: tuple[Fault, ...], to: Any, lost: float) -> None:
+    with pytest.raises(NotFinite, match=r"in 1 of 2 scenes, 'b' for one"):
+        deliver(make(faults), to([1.0, lost]))
+    taps = make(faults)
+    deliver(taps, to([1.0, 3.0]))
+    deliver(taps, to([1.0, lost]), 1)  # only what comes first is looked at
+
+
+@pytest.mark.parametrize("given", [[1.0, 2.0], 1.0, None, np.zeros(2)])
+def test_what_is_no_reading_is_told_how_to_be_one(given: Any) -> None:
+    with pytest.raises(MalformedReading, match=re.escape("Reading(value, 'scale', step)")):
+        make().deliver("mass", "observer.model", given, 0)
+
+
+def test_a_step_before_the_first_is_refused() -> None:
+    with pytest.raises(MalformedReading, match="step -1 is before the first"):
+        make().deliver("mass", "observer.model", mass(-1, np.zeros(2)), -1)
+
+
+class TestGuard:
+    @pytest.mark.parametrize("mode", [nullcontext, torch.inference_mode])
+    @ANY_FAULT
+    def test_a_consumer_that_writes_is_named(self, mode: Any, faults: tuple[Fault, ...]) -> None:
+        with mode():
+            taps = make(faults, guard=True)
+            for step in range(3):
+                deliver(taps, torch.ones(2), step, "predictor.dynamics")
+                got = deliver(taps, torch.ones(2), step)
+                if step == 1:
+                    got += 1.0
+            with pytest.raises(WrittenTo, match=re.escape("tap mass -> observer.model: the cons")):
+                taps.verify(2)
+
+    @pytest.mark.parametrize("mode", [nullcontext, torch.inference_mode])
+    def test_a_plant_may_write_into_its_own(self, mode: Any) -> None:
+        with mode():
+            taps, plant = make(guard=True), torch.ones(2)
+            for step in range(3):
+                assert torch.equal(deliver(taps, plant, step), plant)
+                plant += 1.0
+            taps.verify(2)

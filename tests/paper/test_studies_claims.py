@@ -1,0 +1,176 @@
+"""The claims over whole runs: as published, mirrored, in part, and not at all."""
+
+import pytest
+from study_toys import SCENES, as_published, mirrored, outcomes, whole, windows, without
+from toy_runs import EMPTY, trials
+
+from faultpath.trials.evidence import EvidenceTable, Measured
+from faultpath.decisions import ClaimVerdict
+from faultpath.statistics.contrast import MIN_SCENES
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
+from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW
+from faultpath_quadrotor.paper.claims.statement import Statement, answered, verdict
+from faultpath_quadrotor.paper.claims.turning import TurnsDown
+from faultpath_quadrotor.paper.pages import table_1, table_4
+from faultpath_quadrotor.paper.published import published_claims
+from faultpath_quadrotor.paper.quantities.differences import together
+from faultpath_quadrotor.paper.results import Results
+from faultpath.trials import OutcomeTable, Status
+
+Answers = dict[str, ClaimVerdict]
+
+
+def by_id(claims: tuple[ClaimVerdict, ...]) -> Answers:
+    return {claim.id: claim for claim in claims}
+
+
+@pytest.fixture(scope="module")
+def published_run() -> Results:
+    return whole()
+
+
+@pytest.fixture(scope="module")
+def answers(published_run: Results) -> Answers:
+    return by_id(evaluate(published_run))
+
+
+@pytest.fixture(scope="module")
+def mirror() -> Answers:
+    return by_id(evaluate(whole(mirrored, power=-1.0, slower_s=-1.4)))
+
+
+def test_every_published_claim_has_statements_and_nothing_else_has() -> None:
+    assert set(STATEMENTS) == {claim.id for claim in published_claims()}
+    assert all(STATEMENTS.values())
+
+
+def test_an_empty_run_leaves_every_claim_undecided() -> None:
+    claims = evaluate(EMPTY)
+    assert len(claims) == 39
+    assert {claim.verdict for claim in claims} == {"undecided"}
+    assert all(part.reason.startswith("not run: ") for c in claims for part in c.parts)
+
+
+def test_a_run_of_some_pages_answers_what_it_is_about(published_run: Results) -> None:
+    cells = set(table_4.PAGE.cells)
+    rows = [row for row in published_run.outcomes.rows if row.path in {c.path for c in cells}]
+    some = Results(OutcomeTable(tuple(rows)), EvidenceTable({}), "toy")
+    found = ledger(some, "toy", "hash", SCENES, (0, 1, 2), only_run=True)
+    assert {"C23", "C26"} <= {claim.id for claim in found.claims}
+    assert not {"C01", "C05"} & {claim.id for claim in found.claims}
+    assert len(found.claims) + found.left_out == len(published_claims())
+
+
+def test_where_the_papers_figures_come_true_every_claim_is_confirmed(answers: Answers) -> None:
+    others = {id: answer.parts for id, answer in answers.items() if answer.verdict != "confirmed"}
+    assert not others
+
+
+def test_turning_all_outcomes_round_refutes_what_was_detected(
+    answers: Answers, mirror: Answers
+) -> None:
+    """Success becomes failure and errors their inverse: each detected side is the other one."""
+    detected = [
+        (old, new)
+        for id, statements in STATEMENTS.items()
+        for statement, old, new in zip(statements, answers[id].parts, mirror[id].parts, strict=True)
+        # C04 is of crashes and C30 of sizes, which do not turn round; in C12 both sides do.
+        if isinstance(statement, Statement)
+        and statement.rule in (ABOVE, BELOW)
+        and id not in ("C04", "C12", "C30")
+    ]
+    assert len(detected) > 25
+    for old, new in detected:
+        assert old.answer == "confirmed"
+        assert new.answer == "refuted"
+        if old.test:
+            assert new.estimate == pytest.approx(-(old.estimate or 0))
+            assert new.p_value == old.p_value
+
+
+def test_every_difference_in_success_says_what_could_have_been_detected(answers: Answers) -> None:
+    tested = [part for claim in answers.values() for part in claim.parts if part.test]
+    assert len(tested) > 40
+    assert all(part.mde is not None and part.counts and part.p_value is not None for part in tested)
+
+
+def test_one_seed_leaves_open_what_the_paper_says_of_three(published_run: Results) -> None:
+    one = without(published_run, lambda variant, path, seed: seed != 0)
+    change, seeds = (answered(statement, one) for statement in STATEMENTS["C26"])
+    assert change.answer == "confirmed"
+    assert (seeds.answer, seeds.reason) == ("undecided", "run with 1 of 3 seeds")
+
+
+def test_a_reversal_in_two_of_three_seeds_is_none_in_every_seed() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        turned = seed == 2 and cell.variant == "gru+dcc"
+        return mirrored(cell, seed, scene) if turned else as_published(cell, seed, scene)
+
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
+    seeds = STATEMENTS["C26"][1].part(run)
+    assert (seeds.answer, seeds.estimate) == ("refuted", 2)
+
+
+def test_what_was_not_run_is_named(published_run: Results) -> None:
+    cell = table_1.DKI
+    fewer = without(published_run, lambda variant, path, seed: variant == cell.variant)
+    (part,) = (answered(statement, fewer) for statement in STATEMENTS["C03"])
+    assert (part.answer, part.reason) == ("undecided", f"not run: {cell}")
+
+
+def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: Results) -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        lost = cell == table_4.cell("gru", "shared") and seed == 1 and scene in (0, 60)
+        return Status.FAILED if lost else as_published(cell, seed, scene)
+
+    run = Results(trials(table_4.PAGE.cells, ends, range(SCENES)), None, "toy")
+    statement = STATEMENTS["C26"][0]
+    assert isinstance(statement, TurnsDown)
+    for found in together(run, statement.before, statement.after):
+        assert found.n_scenes == SCENES - 2
+
+
+def test_few_scenes_decide_nothing_but_what_is_reported() -> None:
+    few = Results(outcomes(as_published, scenes=MIN_SCENES - 1), None, "toy")
+    parts = [part for claim in evaluate(few) for part in claim.parts]
+    assert {part.answer for part in parts if not part.words.startswith("reported")} == {"undecided"}
+    assert all(part.interval is None for part in parts)
+
+
+def test_errors_on_other_windows_are_not_compared() -> None:
+    table = windows()
+    odd = table_1.common_error(table_1.DKI)
+    found = table.values(odd)
+    moved = Measured(found.scenes, found.steps + 1, found.values)
+    run = Results(EMPTY.outcomes, EvidenceTable({**table.entries, odd: moved}), "toy")
+    parts = [answered(statement, run) for statement in STATEMENTS["C01"]]
+    assert [part.answer for part in parts] == ["undecided"] * 3 + ["confirmed"] * 2
+    assert "on the windows of" in parts[0].reason
+
+
+def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: Results) -> None:
+    """A claim with other published words gets the same answer."""
+    claim = published_claims()[4]
+    other = claim.model_copy(update={"paper": "69 -> 0"})
+    found = verdict(other, STATEMENTS[claim.id], published_run)
+    assert found.parts == answers[claim.id].parts
+
+
+def test_ten_scenes_that_all_end_alike_answer_only_what_is_far_off() -> None:
+    """No arm is ahead of another anywhere, and ten scenes could have missed much, but no 28 pp."""
+    far_off = {
+        "success of WM-A at e = +0.1 minus at e = 0 is at most -30 and detected",
+        "percentage of scenes that succeed in all eight configurations is at least 50",
+        "percentage of scenes that fail in all eight configurations is at least 10",
+    }
+    for status in (Status.SUCCESS, Status.CRASH):
+        alike = Results(outcomes(lambda *_, s=status: s, scenes=10, slower_s=0.0), None, "toy")
+        parts = [part for claim in evaluate(alike) for part in claim.parts if not part.not_run]
+        answered = [
+            part.words
+            for part in parts
+            if part.answer != "undecided" and not part.words.startswith("reported")
+        ]
+        assert len(parts) > 50
+        assert set(answered) <= far_off

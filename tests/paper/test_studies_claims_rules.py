@@ -1,0 +1,311 @@
+"""Each rule of the claims: when it confirms, when it refutes, and when it leaves open."""
+
+import numpy as np
+import pytest
+
+from faultpath.statistics import (
+    Contrast,
+    Resamples,
+    change,
+    mean_effect,
+    success_effect,
+    weighted_sum,
+    with_test,
+)
+from faultpath.statistics.estimate import PairedTest
+from faultpath_quadrotor.paper.claims.paying import Crossing
+from faultpath_quadrotor.paper.claims.rules import (
+    ABOVE,
+    BELOW,
+    NO_DIFFERENCE,
+    NO_GAIN,
+    NO_LOSS,
+    POINT_SCENES,
+    REPORTED,
+    Bound,
+    Rule,
+    at_least,
+    at_most,
+    bounded,
+    by_point,
+    less_than,
+    within,
+)
+from faultpath_quadrotor.paper.claims.turning import Turned
+from faultpath_quadrotor.paper.results import decisive
+
+
+def more_than(limit: float) -> Rule:
+    """Return the rule that a value is above a limit."""
+    return bounded(Bound(limit, 1, strict=True))
+
+
+UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
+
+
+def shown(
+    value: float,
+    interval: tuple[float, float] | None,
+    n_scenes: int = 100,
+    test: PairedTest | None = None,
+    mde: float | None = None,
+) -> Contrast:
+    """Return a difference with this interval, that notable ones of 20 pp are set beside."""
+    draws = np.empty(0) if interval is None else np.repeat(interval, 50)
+    made = Contrast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0)
+    vars(made)["least"] = mde  # in the place of what it would work out
+    return made
+
+
+def found(
+    interval: tuple[float, float] | None, p_value: float | None = None, mde: float | None = 8.0
+) -> Contrast:
+    """Return a difference at the middle of its interval, with a test that finds its side ahead."""
+    value = 0.0 if interval is None else sum(interval) / 2
+    test = None if p_value is None else PairedTest("sign", p_value, 1 if value > 0 else -1)
+    return shown(value, interval, test=test, mde=mde)
+
+
+@pytest.mark.parametrize(
+    ("rule", "difference", "answer"),
+    [
+        (ABOVE, found(UP, 0.01), "confirmed"),
+        (ABOVE, found(DOWN, 0.01), "refuted"),
+        (ABOVE, found(OPEN, 0.3), "undecided"),
+        (ABOVE, found(UP, 0.06), "undecided"),
+        (ABOVE, found(OPEN, 0.01), "undecided"),
+        (ABOVE, found(UP), "confirmed"),
+        (ABOVE, found(None), "undecided"),
+        (BELOW, found(DOWN, 0.01), "confirmed"),
+        (BELOW, found(UP, 0.01), "refuted"),
+        (BELOW, found((-5.0, 0.0), 0.01), "undecided"),
+    ],
+)
+def test_a_difference_is_detected_when_interval_and_test_agree(
+    rule: Rule, difference: Contrast, answer: str
+) -> None:
+    assert rule.judge(difference).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "difference", "answer"),
+    [
+        (NO_LOSS, found(OPEN, 0.3), "confirmed"),
+        (NO_LOSS, found(DOWN, 0.01), "refuted"),
+        (NO_LOSS, found((-15.0, 1.0), 0.04), "refuted"),
+        (NO_LOSS, found(UP, 0.01), "confirmed"),
+        (NO_GAIN, found(UP, 0.01), "refuted"),
+        (NO_DIFFERENCE, found(UP, 0.01), "refuted"),
+        (NO_DIFFERENCE, found(DOWN, 0.01), "refuted"),
+        (NO_DIFFERENCE, found(DOWN, 0.06), "confirmed"),
+        (NO_LOSS, found(OPEN, 0.3, mde=20.0), "confirmed"),
+        (NO_LOSS, found(OPEN, 0.3, mde=20.1), "undecided"),
+        (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
+        (NO_LOSS, found(DOWN), "refuted"),
+        (NO_LOSS, found(None, 0.3), "undecided"),
+    ],
+)
+def test_not_detecting_counts_only_where_something_would_have_been_seen(
+    rule: Rule, difference: Contrast, answer: str
+) -> None:
+    assert rule.judge(difference).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "difference", "answer"),
+    [
+        (at_least(10), found(UP), "confirmed"),
+        (at_least(10.1), found(UP), "undecided"),
+        (at_least(15), found(UP), "undecided"),
+        (at_least(15.1), found(UP), "refuted"),
+        (less_than(4.9), found(UP), "refuted"),
+        (more_than(10), found(UP), "undecided"),
+        (more_than(15), found(UP), "undecided"),
+        (more_than(15.1), found(UP), "refuted"),
+        (less_than(10), found(UP), "undecided"),
+        (less_than(10.1), found(UP), "confirmed"),
+        (bounded(Bound(10, 1), seen=True), found(UP, 0.01), "confirmed"),
+        (at_most(-10, seen=True), found(DOWN, 0.01), "confirmed"),
+        (at_most(-10, seen=True), found(DOWN, 0.2), "undecided"),
+        (at_most(-20), found(DOWN, 0.01), "refuted"),
+        (bounded(Bound(10, 1), seen=True), found(UP, 0.2), "undecided"),
+        (bounded(Bound(3, 1), seen=True), found(OPEN, 0.2), "undecided"),
+        (bounded(Bound(20, 1), seen=True), found(UP, 0.01), "refuted"),
+        (within(9, 11), found(UP), "confirmed"),
+        (within(11, 12), found(UP), "undecided"),
+        (within(16, 20), found(UP), "refuted"),
+        (within(1, 2), found(UP), "refuted"),
+        (at_least(-1), found(None), "undecided"),
+        (within(-1, 1), found(None), "undecided"),
+    ],
+)
+def test_a_threshold_is_met_by_the_estimate_and_missed_by_the_whole_interval(
+    rule: Rule, difference: Contrast, answer: str
+) -> None:
+    assert rule.judge(difference).answer == answer
+
+
+@pytest.mark.parametrize(
+    ("rule", "value", "answer"),
+    [
+        (by_point(1), 0.1, "confirmed"),
+        (by_point(1), 0.0, "undecided"),
+        (by_point(1, strict=False), 0.0, "confirmed"),
+        (by_point(-1), 0.1, "refuted"),
+        (by_point(-1, -0.5, strict=False), -0.5, "confirmed"),
+        (by_point(-1, -0.5, strict=False), -0.4, "refuted"),
+        (REPORTED, -7.0, "confirmed"),
+    ],
+)
+def test_claims_about_points_are_decided_by_points(rule: Rule, value: float, answer: str) -> None:
+    assert rule.judge(shown(value, OPEN)).answer == answer
+
+
+@pytest.mark.parametrize("n_scenes", [1, 5, 10, POINT_SCENES - 1])
+@pytest.mark.parametrize("rule", [by_point(1), by_point(-1), by_point(1, 60), by_point(-1, 0.0)])
+def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int) -> None:
+    for value in (-50.0, 0.0, 50.0):
+        judged = rule.judge(shown(value, (value - 5, value + 5), n_scenes))
+        assert judged.answer == "undecided"
+        assert "scenes" in judged.reason
+
+
+TOUCHING = [(0.0, 15.0), (-15.0, 0.0), (0.0, 0.0), OPEN]
+
+
+@pytest.mark.parametrize("rule", [ABOVE, BELOW, more_than(0), less_than(0), at_least(0)])
+@pytest.mark.parametrize("interval", TOUCHING)
+@pytest.mark.parametrize("n_scenes", [10, 100])
+def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(
+    rule: Rule, interval: tuple[float, float], n_scenes: int
+) -> None:
+    difference = shown(sum(interval) / 2, interval, n_scenes)
+    assert rule.judge(difference).answer == "undecided"
+
+
+@pytest.mark.parametrize(
+    ("rule", "n_scenes", "answer"),
+    [
+        (at_least(8), 10, "undecided"),
+        (at_least(8), 100, "confirmed"),
+        (at_least(4), 10, "confirmed"),
+        (at_least(16), 10, "refuted"),
+        (within(8, 12), 10, "undecided"),
+        (within(8, 12), 100, "confirmed"),
+        (within(4, 16), 10, "confirmed"),
+        (within(16, 20), 10, "refuted"),
+    ],
+)
+def test_few_scenes_meet_a_threshold_by_their_whole_interval(
+    rule: Rule, n_scenes: int, answer: str
+) -> None:
+    assert rule.judge(shown(10.0, UP, n_scenes)).answer == answer
+
+
+@pytest.mark.parametrize(
+    "rule", [at_least(30), at_least(-60), less_than(30), within(1, 2), within(49, 51)]
+)
+@pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
+def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(
+    rule: Rule, value: float
+) -> None:
+    difference = shown(value, (value, value), 10, mde=1.0)
+    assert rule.judge(difference).answer == "undecided"
+
+
+def effect(n: int, wins: int, losses: int) -> Contrast:
+    """Return the tested difference of one seed with so many scenes won and lost."""
+    scene = np.arange(n)
+    arms = scene < wins, (scene >= wins) & (scene < wins + losses)
+    return with_test(success_effect(*arms, Resamples.draw("turn", n, n_resamples=10)), "exact")
+
+
+N = 40
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "answer"),
+    [
+        (effect(N, 20, 0), effect(N, 0, 20), "confirmed"),
+        (effect(N, 20, 0), effect(N, 0, 0), "undecided"),
+        (effect(N, 2, 0), effect(N, 0, 2), "undecided"),
+        (effect(N, 40, 0), effect(N, 12, 0), "refuted"),
+        (effect(N, 0, 20), effect(N, 0, 20), "refuted"),
+        (effect(N, 0, 8), effect(N, 12, 0), "refuted"),
+        (effect(N, 4, 5), effect(N, 20, 0), "refuted"),
+        (effect(5, 5, 0), effect(5, 0, 5), "undecided"),
+    ],
+)
+def test_a_reversal_is_refuted_by_a_detected_sign_that_it_forbids(
+    before: Contrast, after: Contrast, answer: str
+) -> None:
+    assert Turned(decisive(change(before, after)), before, after).judge().answer == answer
+
+
+def crossing(
+    value: float | None, *, ahead: bool = False, behind: bool = False, never: bool = False
+) -> Crossing:
+    return Crossing(
+        value=value,
+        interval=None if value is None else (max(0.0, value - 10), value + 10),
+        n_scenes=100,
+        ahead=ahead,
+        behind=behind,
+        never=never,
+    )
+
+
+@pytest.mark.parametrize(
+    ("bound", "at", "answer"),
+    [
+        (Bound(15, -1, strict=True), crossing(5, ahead=True), "confirmed"),
+        (Bound(15, -1, strict=True), crossing(20, ahead=True), "undecided"),
+        (Bound(15, -1, strict=True), crossing(40, ahead=True), "refuted"),
+        (Bound(15, -1, strict=True), crossing(0, ahead=True), "confirmed"),
+        (Bound(30, 1, strict=True), crossing(0, ahead=True), "refuted"),
+        (Bound(30, 1, strict=True), crossing(None, behind=True, never=True), "refuted"),
+        (Bound(30, 1, strict=True), crossing(None, never=True), "undecided"),
+        (Bound(15, -1, strict=True), crossing(None), "undecided"),
+        (None, crossing(None, never=True), "confirmed"),
+        (None, crossing(None, never=True, behind=True), "confirmed"),
+        (None, crossing(40), "undecided"),
+        (None, crossing(40, ahead=True), "refuted"),
+    ],
+)
+def test_a_break_even_frequency_is_judged_by_what_is_decided(
+    bound: Bound | None, at: Crossing, answer: str
+) -> None:
+    judged = at.pays_within(bound) if bound else at.pays_never()
+    assert judged.answer == answer
+
+
+def mean(values: list[float]) -> Contrast:
+    array = np.array(values)
+    return mean_effect(array, np.zeros_like(array), Resamples.draw("toy", len(values)), "m")
+
+
+def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
+    one = mean([float(i) for i in range(10)])
+    assert one.least == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
+
+
+def test_what_does_not_vary_detects_nothing() -> None:
+    assert mean([0.1] * 10).least is None
+
+
+def test_effects_that_cancel_leave_exactly_nothing() -> None:
+    one = mean([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6])
+    gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])
+    assert gone.value == 0
+    assert not gone.draws.any()
+
+
+def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
+    """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
+    drawn = Resamples.draw("claims", 25)
+    arms = np.ones((25, 1), dtype=bool)
+    found = decisive(change(success_effect(arms, arms, drawn), success_effect(arms, arms, drawn)))
+    assert found.interval is not None
+    low, high = found.interval
+    assert found.least == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
+    assert found.least > high

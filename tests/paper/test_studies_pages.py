@@ -1,0 +1,130 @@
+"""Pages of the studies: what they need flown, what they show without it, and what is published."""
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import pytest
+from toy_runs import (
+    CELLS,
+    EMPTY,
+    MEASUREMENTS,
+    Watched,
+    calibrated,
+    entries,
+    measured,
+    page,
+    run,
+    tables,
+    trials,
+    won,
+)
+
+from faultpath.trials.evidence import EvidenceTable
+from faultpath.decisions import Sweep
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_quadrotor.paper.published import published
+from faultpath.decisions.tables import MISSING, Table
+from faultpath.trials import OutcomeTable
+
+NAMES = tuple(page.name for page in PAGES)
+
+
+@cache
+def whole() -> tuple[OutcomeTable, EvidenceTable]:
+    return trials(CELLS, won(calibrated)), measured(MEASUREMENTS, lambda m: 0.1)
+
+
+# What a page needs
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_flies_and_measures_exactly_what_it_reads(name: str) -> None:
+    watched = Watched(*whole(), "toy")
+    page(name).build(watched)
+    flown = {(cell.side, seed) for cell in page(name).cells for seed in cell.seeds}
+    read = {(cell.side, seed) for cell in watched.cells for seed in cell.seeds}
+    assert set(watched.measurements) == set(page(name).measurements) or name == "text"
+    assert read == flown or name == "text"
+
+
+def test_names_of_pages_and_of_their_parts_are_unique() -> None:
+    parts = [part.name for each in PAGES for part in each.build(EMPTY)]
+    assert len(set(parts)) == len(parts)
+    assert len(set(NAMES)) == len(NAMES)
+
+
+# What was not run
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_empty_run_leaves_dashes_beside_the_published_figures(name: str) -> None:
+    for part in page(name).build(EMPTY):
+        if isinstance(part, Sweep):
+            assert all(not series.points for series in part.series)
+            assert part.published
+            continue
+        assert {entry.text for entry in entries(part)} <= {MISSING, ""}
+        assert all(entry.text == MISSING for entry in entries(part) if entry.published)
+
+
+@pytest.mark.parametrize("part", [0, 1, 2])
+def test_any_part_of_a_run_makes_whole_tables(part: int) -> None:
+    cells = [Cell(c.setting, c.variant, c.faults, (part,)) for c in CELLS if part in c.seeds]
+    some = run(won(calibrated), cells[part::3], measured(MEASUREMENTS[part::3], lambda m: 0.1))
+    for built in (built for each in PAGES for built in each.build(some)):
+        if isinstance(built, Table):
+            widths = {len(each.entries) for each in built.lines}
+            assert widths <= {0, len(built.columns)}
+        assert type(built).model_validate_json(built.model_dump_json()) == built
+
+
+# The paper's figures
+
+
+BELOW = (
+    "error_span",
+    "paired_time_minus_WM-A_s",
+    "success_range_over_seeds",
+    "unseen_wind_subset_L3",
+)
+"""What the paper prints below a table."""
+
+
+def _figures(value: Any) -> Iterator[float | str]:
+    if isinstance(value, dict):
+        for key, each in value.items():
+            yield from () if key in BELOW else _figures(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from _figures(each)
+    elif value is not None and value != "no crossing":
+        yield value
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [
+        ("table_1_prediction_accuracy", "table-1"),
+        ("table_2_calibration", "table-2"),
+        ("table_3_wind", "table-3"),
+        ("table_4_shared_calibration", "table-4"),
+        ("table_5_decision_record", "table-5"),
+        ("table_6_compensation", "table-6"),
+    ],
+)
+def test_every_published_figure_of_a_table_stands_in_it(key: str, name: str) -> None:
+    built = tables(page(name), EMPTY).values()
+    shown = " ".join(entry.published for table in built for entry in entries(table))
+    shown = f" {shown} ".replace("−", "-").replace("+", "")
+    for mark in "[](),/–":
+        shown = shown.replace(mark, " ")
+    words = shown.split()
+    numbers = {
+        float(word)
+        for word in words
+        if ":" not in word and word.strip("-.").replace(".", "").isdigit()
+    }
+    for figure in _figures(published(key)):
+        assert (figure in words) if isinstance(figure, str) else (figure in numbers)

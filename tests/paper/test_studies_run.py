@@ -1,0 +1,120 @@
+"""A reproduction from start to end, on two selection scenes and two of its cells."""
+
+from pathlib import Path
+
+import pytest
+
+from faultpath.api.display import Display
+from faultpath.api.job import Job
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import EvidenceTable
+from faultpath.decisions import Reproduction
+from faultpath_quadrotor.paper import flights
+from faultpath_quadrotor.paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
+from faultpath_quadrotor.paper.entries import Group, centimetres, success
+from faultpath_quadrotor.paper.flights import Flown
+from faultpath_quadrotor.paper.page import Page, Row, TableSpec
+from faultpath_quadrotor.paper.pages import PAGES, table_1, table_2
+from faultpath_quadrotor.paper.results import Results
+from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, read_results, save
+from faultpath.trials.work import Here, Progress
+
+SILENT = Display(command=("faultpath", "reproduce"))
+TINY = Profile("tiny", scenes=2, seeds=(0,))
+NOMINAL = table_2.cell("wm-a", 0.0)
+FAULTY = table_2.cell("wm-a", 0.1)
+ERROR = table_2.error_under(0.1)
+
+
+def table(*groups: Group) -> TableSpec:
+    return TableSpec("one", "One", ("Success, %",), tuple(Row("", (group,)) for group in groups))
+
+
+ONE = Page("one", "One", (table(success(NOMINAL), success(FAULTY), centimetres(ERROR)),))
+TWO = Page("two", "Two", (table(success(NOMINAL)),))
+
+
+def a_plan(*pages: Page) -> Plan:
+    return Plan(pages, TINY)
+
+
+def fly(asked: Plan, folder: Path) -> Flown:
+    return flights.fly(asked.legs(), folder, Job(folder, Here(), SILENT).run, lambda now: None)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the whole of page one."""
+    folder = tmp_path_factory.mktemp("run")
+    asked = a_plan(ONE)
+    flown = fly(asked, folder)
+    evidence = measure_all(asked, folder, 0, lambda done, total: None)
+    results = asked.results(flown.outcomes, evidence)
+    save(folder, flown, results, evidence, conclude(asked, results))
+    return folder
+
+
+def test_what_was_saved_is_read_back(run: Path) -> None:
+    results, found = read_results(run)
+    assert found.trials == 4
+    assert found.ledger.library == HELD_OUT
+    assert len(results.pairs(NOMINAL, FAULTY).scenes) == 2
+    assert len(results.measured(ERROR).values) > 0
+    assert found == Reproduction.model_validate_json(found.model_dump_json())
+
+
+def test_cells_are_flown_once_for_all_pages(run: Path) -> None:
+    flown = fly(a_plan(TWO, ONE), run)
+    assert sum(result.blocks_computed for result in flown.results) == 0
+    assert len(flown.outcomes.rows) == 4
+
+
+def test_the_faulty_cell_is_struck_and_pairs_with_the_nominal_one(run: Path) -> None:
+    results, _ = read_results(run)
+    struck = {
+        cell: {row.outcome.struck_steps > 0 for row in results.outcomes.arm("wm-a", cell.path, 0)}
+        for cell in (NOMINAL, FAULTY)
+    }
+    assert struck == {NOMINAL: {False}, FAULTY: {True}}
+
+
+def test_a_run_without_measurements_says_which_is_missing(run: Path) -> None:
+    results, _ = read_results(run)
+    blind = Results(results.outcomes, EvidenceTable({}), results.library_hash)
+    with pytest.raises(Exception, match="position-error of wm-a"):
+        blind.measured(ERROR)
+
+
+def test_progress_reaches_the_end(tmp_path: Path) -> None:
+    seen: list[Progress] = []
+    one = Plan((TWO,), Profile("one", 1, (0,)))
+    flights.fly(one.legs(), tmp_path, Job(tmp_path, Here(), SILENT).run, seen.append)
+    assert (seen[-1].done, seen[-1].total) == (1, 1)
+
+
+def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
+    first, second = Cell(table_1.STILL, "wm-a"), Cell(table_1.STILL, "wm-a", seeds=(1, 2))
+    (joined,) = PAPER.cells([first, second])
+    assert joined.seeds == (0, 1, 2)
+    assert QUICK.cells([second]) == ()
+    fine = Cell(table_1.STILL, "wm-a", (calibration(0.05),), quick=False)
+    assert QUICK.cells([fine]) == ()
+    assert [cell.side for cell in PAPER.cells([fine])] == [fine.side]
+
+
+def test_a_page_that_the_paper_does_not_have_is_refused() -> None:
+    with pytest.raises(UserError, match=r"no page 'table-9'; choose from .*table-1"):
+        plan(["table-9"], "quick")
+    with pytest.raises(UserError, match="unknown profile 'huge'; choose one of quick, paper"):
+        plan([], "huge")
+
+
+def test_all_pages_are_the_whole_paper() -> None:
+    assert plan([], "paper").whole
+    assert plan(["table-4"], "paper").place == "table-4"
+    assert [page.name for page in PAGES] == [page.name for page in plan([], "quick").pages]
+
+
+def test_a_folder_without_a_reproduction_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="holds no finished reproduction"):
+        read_results(tmp_path)

@@ -1,0 +1,143 @@
+"""Sizes: how an estimate stands to the paper's figure, beside answers that do not know it."""
+
+from dataclasses import replace
+
+import pytest
+from study_toys import as_published, outcomes, whole
+
+from faultpath.decisions import ClaimVerdict
+from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate
+from faultpath_quadrotor.paper.claims.statement import Statement, size
+from faultpath_quadrotor.paper.published import Printed
+from faultpath_quadrotor.paper.results import Results
+
+EXACT, MEASURED = Printed(10.0), Printed(10.0, (4.0, 16.0))
+UNPRINTED = {
+    ("C12", 1): "90th percentile",
+    **{("C13", at): "Figure 3" for at in range(4)},
+    **{("C15", at): "under an error" for at in range(2)},
+    **{("C16", at): "ordering stated in text" for at in range(2)},
+    ("C20", 0): "stated in text",
+    ("C26", 1): "seeds are counted",
+    ("C33", 3): "no crossing",
+    ("C35", 0): "stated in text",
+    **{("C39", at): "stated in text" for at in range(3)},
+}
+"""Statements for which the paper prints no figure, by claim and place."""
+
+
+@pytest.mark.parametrize(
+    ("value", "interval", "paper", "expected"),
+    [
+        (12.0, (8.0, 16.0), EXACT, "compatible"),
+        (12.0, (10.0, 14.0), EXACT, "compatible"),
+        (10.0, (10.0, 10.0), EXACT, "compatible"),
+        (12.0, (10.1, 14.0), EXACT, "right sign, other size"),
+        (5.0, (1.0, 9.0), EXACT, "right sign, other size"),
+        (4.0, (0.0, 8.0), EXACT, "other size"),
+        (4.0, (-1.0, 9.0), EXACT, "other size"),
+        (-4.0, (-7.0, -1.0), EXACT, "other sign"),
+        (0.0, (0.0, 0.0), EXACT, "other size"),
+        (4.0, (1.0, 7.0), Printed(0.0), "other size"),
+        # Both have errors: 10 apart, and hypot(8, 6) is 10.
+        (20.0, (12.0, 28.0), MEASURED, "compatible"),
+        (20.1, (12.1, 28.1), MEASURED, "right sign, other size"),
+        # Overlap is not enough: 16 lies in both.
+        (22.0, (16.0, 28.0), MEASURED, "right sign, other size"),
+        (-20.0, (-26.0, -14.0), MEASURED, "other sign"),
+        (40.0, (30.0, 50.0), Printed(1.0, (-2.0, 4.0)), "other size"),
+        # Only the sides that face each other count.
+        (20.0, (18.0, 60.0), Printed(10.0, (-60.0, 12.0)), "other size"),
+        (20.0, (18.0, 60.0), Printed(10.0, (1.0, 12.0)), "right sign, other size"),
+    ],
+)
+def test_an_estimate_stands_to_a_figure(
+    value: float, interval: tuple[float, float], paper: Printed, expected: str
+) -> None:
+    assert size(value, interval, 100, paper, 0.0) == expected
+    low, high = interval
+    ends = paper.interval and (-paper.interval[1], -paper.interval[0])
+    assert size(-value, (-high, -low), 100, Printed(-paper.value, ends), 0.0) == expected
+
+
+@pytest.mark.parametrize("n_scenes", [0, 1, 2, 4, 10, 49])
+def test_few_scenes_compare_no_size(n_scenes: int) -> None:
+    assert size(12.0, (8.0, 16.0), n_scenes, EXACT, 0.0) == "not comparable"
+    assert size(-99.0, (-99.0, -99.0), n_scenes, EXACT, 0.0) == "not comparable"
+
+
+def test_without_figure_estimate_or_interval_nothing_is_compared() -> None:
+    assert size(12.0, (8.0, 16.0), 100, None, 0.0) == "not comparable"
+    assert size(12.0, None, 100, EXACT, 0.0) == "not comparable"
+    assert size(None, None, 100, EXACT, 0.0) == "not comparable"
+
+
+def test_a_ratio_has_its_sides_about_1_and_a_share_has_none() -> None:
+    assert size(0.5, (0.4, 0.6), 100, Printed(0.8), 1.0) == "right sign, other size"
+    assert size(0.5, (0.4, 0.6), 100, Printed(1.2), 1.0) == "other sign"
+    assert size(60.0, (50.0, 70.0), 100, Printed(80.0), None) == "other size"
+
+
+@pytest.fixture(scope="module")
+def published_run() -> Results:
+    return whole()
+
+
+@pytest.fixture(scope="module")
+def answers(published_run: Results) -> tuple[ClaimVerdict, ...]:
+    return evaluate(published_run)
+
+
+def test_every_figure_that_the_paper_prints_is_carried() -> None:
+    without = {
+        (claim, at)
+        for claim, statements in STATEMENTS.items()
+        for at, statement in enumerate(statements)
+        if statement.paper is None
+    }
+    assert without == set(UNPRINTED)
+
+
+def test_where_the_papers_figures_come_true_sizes_are_compatible(
+    answers: tuple[ClaimVerdict, ...],
+) -> None:
+    """The toy's windows are noisier than its intervals in two medians; all else is as printed."""
+    others = [
+        (claim.id, at)
+        for claim in answers
+        for at, part in enumerate(claim.parts)
+        if part.paper is not None and part.size != "compatible"
+    ]
+    assert others == [("C12", 0), ("C30", 7), ("C34", 0), ("C34", 1)]
+
+
+def test_the_paper_has_the_sign_that_a_claim_states() -> None:
+    """A figure with its terms in the wrong order would contradict its own claim."""
+    stated = {" is above 0": 1, " is below 0": -1, " turns from above 0 to below 0": -1}
+    checked = 0
+    for statements in STATEMENTS.values():
+        for statement in statements:
+            for words, sign in stated.items():
+                if statement.words.endswith(words) and statement.paper is not None:
+                    assert statement.paper.value * sign > 0, statement.words
+                    checked += 1
+    assert checked > 25
+
+
+def test_no_answer_depends_on_the_papers_figure(
+    published_run: Results, answers: tuple[ClaimVerdict, ...]
+) -> None:
+    hidden = {"paper", "paper_interval", "size"}
+    for claim in answers:
+        for statement, part in zip(STATEMENTS[claim.id], claim.parts, strict=True):
+            if isinstance(statement, Statement):
+                other = replace(statement, paper=Printed(-1e9)).part(published_run)
+                assert other.model_dump(exclude=hidden) == part.model_dump(exclude=hidden)
+
+
+def test_a_run_of_few_scenes_carries_figures_and_compares_none() -> None:
+    for scenes in (1, 4, 49):
+        few = Results(outcomes(as_published, scenes=scenes), None, "toy")
+        parts = [part for claim in evaluate(few) for part in claim.parts]
+        assert {part.size for part in parts} == {"not comparable"}
+        assert sum(part.paper is not None for part in parts) > 70

@@ -1,0 +1,162 @@
+"""Tables of the studies: known figures from runs with known results."""
+
+from toy_runs import (
+    EMPTY,
+    MEASUREMENTS,
+    SCENES,
+    calibrated,
+    line,
+    measured,
+    page,
+    papers,
+    run,
+    tables,
+    texts,
+    won,
+)
+
+from faultpath.trials.evidence import Measurement
+from faultpath.decisions import Sweep
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
+from faultpath.trials import Status
+
+
+def test_table_1_counts_how_trials_end_and_when() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        if cell.variant == "dki" and scene == SCENES - 1:
+            return Status.FAILED
+        if scene < 12:
+            return Status.SUCCESS
+        return Status.CRASH if scene < 14 else Status.TIMEOUT
+
+    table = tables(page("table-1"), run(ends))["table-1"]
+    assert texts(line(table, "WM-A"))[2:] == ["60", "10", "30", "3.55"]
+    assert papers(line(table, "WM-A")) == ["8.2", "9.5", "69", "21", "10", "2.75"]
+    # Of 19 trials: the one that failed says nothing.
+    assert texts(line(table, "DKI"))[2:5] == ["63", "11", "26"]
+    assert texts(line(table, "True-parameter", below="With ground-truth clearance"))[2] == "60"
+
+
+def test_table_1_compares_errors() -> None:
+    errors = {"dki": 0.4, "wm-a": 0.1, "wm-u": 0.08, "true-parameter": 0.02}
+    evidence = measured(MEASUREMENTS, lambda m: errors.get(m.subject, 1.0))
+    parts = tables(page("table-1"), run(won(lambda cell: 10), evidence=evidence))
+    assert texts(line(parts["table-1"], "DKI"))[:2] == ["40.0", "40.0"]
+
+
+def test_table_2_has_means_over_seeds_and_detected_differences() -> None:
+    table = tables(page("table-2"), run(won(calibrated)))["table-2"]
+    assert texts(line(table, "WM-A")) == ["10.0", "70.0", "10.0"]
+    assert papers(line(table, "WM-A")) == ["18", "69", "8"]
+    heading = "WM-A+DCC minus WM-A (pp)"
+    difference = line(table, "Difference", below=heading)
+    assert texts(difference) == ["+65.0", "+5.0", "+65.0"]
+    assert papers(difference) == ["+49.7", "−1.0", "+57.3"]
+    assert [entry.detected for entry in difference.entries] == [True, False, True]
+    counts = line(table, "Wins:losses", below=heading)
+    assert texts(counts) == ["13:0/13:0/13:0", "1:0/1:0/1:0", "13:0/13:0/13:0"]
+    assert papers(counts)[0] == "51:0/51:1/49:1"
+    assert texts(line(table, "Success (%)")) == ["10", "70", "10"]
+
+
+def test_table_2_gives_median_and_tail_of_the_error() -> None:
+    table = tables(page("table-2"), run(won(calibrated), evidence=measured(MEASUREMENTS, _error)))
+    assert texts(line(table["table-2"], "Error, median (cm)")) == ["50.0", "10.0", "50.0"]
+    tail = texts(line(table["table-2"], "Error, 90th percentile (cm)"))
+    assert tail == ["54.0", "10.8", "54.0"]
+
+
+def _error(measurement: Measurement) -> float:
+    return 0.5 if measurement.faults else 0.1
+
+
+def test_figure_3_has_a_point_with_its_interval_for_each_error() -> None:
+    results = run(won(lambda cell: 20 if not cell.faults else 10))
+    (sweep,) = page("figure-3").build(results)
+    assert isinstance(sweep, Sweep)
+    assert [series.label for series in sweep.series] == ["WM-A", "WM-A+DCC", "WM-U", "WM-U+DCC"]
+    points = sweep.series[0].points
+    assert [point.x for point in points] == list(figure_3.ERRORS)
+    assert [point.y for point in points if point.x == 0] == [100.0]
+    assert all(p.low is not None and p.high is not None and p.low <= p.y <= p.high for p in points)
+    assert "100 throughout" in sweep.published
+
+
+def test_table_3_prints_means_with_a_decimal() -> None:
+    results = run(won(lambda cell: 75), scenes=range(60, 100))
+    parts = tables(page("table-3"), results)
+    trajectory = "Wind-conditioned, trajectory GRU"
+    assert texts(line(parts["table-3"], trajectory)) == ["38", "38", "37.5"]
+    assert papers(line(parts["table-3"], trajectory)) == ["100", "100", "96.7"]
+
+
+def _reconstructed(cell: Cell) -> int:
+    """GRU falls under the isolated error and recovers under the shared one; GRU+DCC stays."""
+    alone = any("reconstruction" in fault for fault in cell.faults)
+    return 10 if cell.variant == "gru+dcc" else 4 if alone else 16
+
+
+def test_table_4_shows_the_reversal_and_its_changes() -> None:
+    table = tables(page("table-4"), run(won(_reconstructed)))["table-4"]
+    difference = line(table, "Difference", below="GRU+DCC minus GRU, success (pp)")
+    assert texts(difference) == ["−30.0", "+30.0", "−30.0"]
+    assert all(entry.detected for entry in difference.entries)
+    interaction = line(table, "DOB minus GRU, shared minus reconstruction-only (pp)")
+    assert texts(interaction) == ["", "", "0.0"]
+    # Each scene that is lost ends 2 m farther away.
+    assert texts(line(table, "Mean difference")) == ["+0.60", "−0.60", "+0.60"]
+    assert texts(line(table, "Shared minus reconstruction-only (m)"))[2] == "+1.20"
+
+
+def test_table_5_gives_the_break_even_frequency_or_says_that_there_is_none() -> None:
+    table = tables(page("table-5"), run(won(_reconstructed)))["table-5"]
+    alone = texts(line(table, "GRU: reconstruction only"))
+    assert alone[:2] == ["−30.0", "+30.0"]
+    assert alone[2].startswith("50 [")
+    assert texts(line(table, "GRU: shared with predictor"))[2] == "no crossing"
+    assert papers(line(table, "GRU: reconstruction only"))[2] == "59 [33, 80]"
+
+
+def test_a_failed_trial_leaves_its_scene_out_of_both_ends_of_a_break_even() -> None:
+    def ends(cell: Cell, seed: int, scene: int) -> Status:
+        if scene == 0 and cell == table_4.cell("gru", "reconstruction-only"):
+            return Status.FAILED
+        return won(_reconstructed)(cell, seed, scene)
+
+    table = tables(page("table-5"), run(ends))["table-5"]
+    # Over 19 scenes: 9 against 15, and 9 against 3.
+    assert texts(line(table, "GRU: reconstruction only"))[:2] == ["−31.6", "+31.6"]
+
+
+def test_table_6_averages_the_medians_of_the_seeds() -> None:
+    def value(measurement: Measurement) -> float:
+        return 1.0 + measurement.seed
+
+    evidence = measured(table_6.PAGE.measurements, value)
+    table = tables(page("table-6"), run(won(calibrated), evidence=evidence))["table-6a"]
+    assert texts(line(table, "GRU")) == ["2.00"] * 4
+    assert texts(line(table, "DOB")) == ["1.00"] * 4
+    assert texts(line(table, "GRU, wind term alone")) == ["", "2.00", "", "2.00"]
+    first = measured([m for m in table_6.PAGE.measurements if m.seed == 0], value)
+    table = tables(page("table-6"), run(won(calibrated), evidence=first))["table-6a"]
+    assert texts(line(table, "GRU")) == ["1.00"] * 4
+
+
+def test_notes_say_what_was_flown_and_measured() -> None:
+    results = run(won(calibrated), evidence=measured(MEASUREMENTS, lambda m: 0.1))
+    built = {k: v for each in PAGES for k, v in tables(each, results).items()}
+    assert built["table-4"].notes[0] == "20 scenes of the held-out library, seeds 0, 1, 2."
+    assert any(
+        note.endswith("220 windows of 20 scenes of the held-out library, seeds 0, 1, 2.")
+        for note in built["table-6a"].notes
+    )
+    (nothing,) = {table.notes[0] for table in tables(page("table-4"), EMPTY).values()}
+    assert nothing == "No trial of this table was run."
+
+
+def test_table_6_tests_the_negative_offset() -> None:
+    table = tables(page("table-6"), run(won(_reconstructed)))["table-6b"]
+    assert texts(line(table, "GRU+DCC only:GRU only")) == ["0:6", "6:0", "0:6"]
+    assert texts(line(table, "Exact McNemar p")) == ["0.031"] * 3
+    assert papers(line(table, "Exact McNemar p")) == ["0.002", "0.648", "0.057"]

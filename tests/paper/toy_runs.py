@@ -1,0 +1,145 @@
+"""Runs of studies made up: every cell flown and every measurement made, with known results."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
+from faultpath_quadrotor.paper.cells import Cell, of_seed
+from faultpath_quadrotor.paper.page import Page
+from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_quadrotor.paper.results import Results
+from faultpath.decisions.tables import Entry, Line, Table
+from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow
+
+SCENES = 20
+Ends = Callable[[Cell, int, int], Status]
+"""How the trial of a cell, seed and scene index ends."""
+
+CELLS = tuple(dict.fromkeys(cell for page in PAGES for cell in page.cells))
+MEASUREMENTS = tuple(dict.fromkeys(m for page in PAGES for m in page.measurements))
+
+
+def won(wins: Callable[[Cell], int]) -> Ends:
+    """Let a cell win its first so many scenes and crash in the others, whatever the seed."""
+    return lambda cell, seed, scene: Status.SUCCESS if scene < wins(cell) else Status.CRASH
+
+
+def trials(
+    cells: Iterable[Cell], ends: Ends, scenes: Iterable[int] = range(SCENES)
+) -> OutcomeTable:
+    """Return a table with each variant, path and seed once."""
+    arms = {(c.variant, c.path, seed): c for c in cells for seed in c.seeds}
+    indices = tuple(scenes)
+    return OutcomeTable(
+        tuple(
+            TrialRow(variant, path, seed, i, "", _outcome(i, seed, ends(cell, seed, i)))
+            for (variant, path, seed), cell in arms.items()
+            for i in indices
+        )
+    )
+
+
+def measured(
+    measurements: Iterable[Measurement], value: Callable[[Measurement], float], scenes: int = SCENES
+) -> EvidenceTable:
+    """Return a table with eleven windows a scene, spread evenly around the value by 10 %."""
+    spread = np.linspace(0.9, 1.1, 11)
+    return EvidenceTable(
+        {
+            measurement: Measured(
+                tuple(f"s{i:03d}" for i in range(scenes) for _ in spread),
+                np.arange(scenes * len(spread)),
+                np.tile(value(measurement) * spread, scenes),
+            )
+            for measurement in measurements
+        }
+    )
+
+
+def run(
+    ends: Ends,
+    cells: Iterable[Cell] = CELLS,
+    evidence: EvidenceTable | None = None,
+    scenes: Iterable[int] = range(SCENES),
+) -> Results:
+    """Return what a run of some cells leaves."""
+    return Results(trials(cells, ends, scenes), evidence, "toy")
+
+
+EMPTY = Results(OutcomeTable(()), None, "toy")
+
+
+@dataclass(frozen=True)
+class Watched(Results):
+    """Remembers what it is asked for."""
+
+    cells: list[Cell] = field(default_factory=list[Cell])
+    measurements: list[Measurement] = field(default_factory=list[Measurement])
+
+    def pairs(self, first: Cell, second: Cell, **named: object) -> Pairs:
+        self.cells.extend((first, second))
+        # Keywords are passed on as they come, so their types are those of the method itself.
+        return super().pairs(first, second, **named)
+
+    def counts(self, cell: Cell, seed: int = 0) -> dict[Status, int]:
+        self.cells.append(of_seed(cell, seed))
+        return super().counts(cell, seed)
+
+    def measured(self, measurement: Measurement) -> Measured:
+        self.measurements.append(measurement)
+        return super().measured(measurement)
+
+
+def _outcome(scene: int, seed: int, status: Status) -> Outcome:
+    failed = status is Status.FAILED
+    return Outcome(
+        scene=f"s{scene:03d}",
+        status=status,
+        time_s=0.0 if failed else 3.0 + 0.1 * scene,
+        metrics={}
+        if failed
+        else {
+            "terminal_distance_m": 0.3 if status is Status.SUCCESS else 2.3,
+            "min_clearance_m": 0.25,
+        },
+        initial_hash=f"i{scene}",
+        disturbance_hash=f"d{scene}",
+        planner_noise_hash=f"n{scene}-{seed}",
+    )
+
+
+# Reading what a page built
+
+
+def tables(page: Page, results: Results) -> dict[str, Table]:
+    return {part.name: part for part in page.build(results) if isinstance(part, Table)}
+
+
+def page(name: str) -> Page:
+    return next(page for page in PAGES if page.name == name)
+
+
+def line(table: Table, label: str, *, below: str = "") -> Line:
+    """Return the first line of a label, after the heading `below`."""
+    labels = [each.label for each in table.lines]
+    start = labels.index(below) if below else 0
+    return table.lines[labels.index(label, start)]
+
+
+def texts(found: Line) -> list[str]:
+    return [entry.text for entry in found.entries]
+
+
+def papers(found: Line) -> list[str]:
+    return [entry.published for entry in found.entries]
+
+
+def entries(table: Table) -> Iterator[Entry]:
+    return (entry for each in table.lines for entry in each.entries)
+
+
+def calibrated(cell: Cell) -> int:
+    """Let repairs win 15 of 20 scenes, models without faults 14, and with faults 2."""
+    return 15 if "dcc" in cell.variant else 2 if cell.faults else 14

@@ -1,0 +1,203 @@
+"""Recorded flights: what is read of them, what it shows, and the sentence for every mistake."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from flown import MAP, flown, write, write_ulog
+from typer.testing import CliRunner
+
+from faultpath.cli.app import build
+from faultpath.core.errors import UserError
+from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
+from faultpath.report.compensation import page, sentences
+
+COLUMNS = flown()
+
+
+def odd(name: str, value: float) -> Any:
+    """Return what puts a value into one cell of a column."""
+
+    def change(columns: dict[str, Any]) -> Any:
+        found = np.array(columns[name], dtype=np.float64)
+        found[100] = value
+        return found
+
+    return change
+
+
+def map_file(folder: Path, text: str = MAP) -> str:
+    path = folder / "map.yaml"
+    path.write_text(text)
+    return str(path)
+
+
+def found(folder: Path, columns: dict[str, Any] = COLUMNS, text: str = MAP) -> Compensation:
+    log = write(folder / "flight.csv", columns)
+    return compensation(read_flight(log, read_columns(map_file(folder, text))))
+
+
+@pytest.fixture(scope="module")
+def known(tmp_path_factory: pytest.TempPathFactory) -> Compensation:
+    return found(tmp_path_factory.mktemp("log"))
+
+
+def median(result: Compensation, observer: float, predictor: float) -> float:
+    return next(
+        each.error_mps2.value
+        for each in result.combinations
+        if (each.observer, each.predictor) == (observer, predictor)
+    )
+
+
+def test_an_isolated_error_adds_and_a_shared_one_cancels(known: Compensation) -> None:
+    """a_0 is a fifth of a weight off; the observer makes up for it where both are."""
+    correct = median(known, 0.0, 0.0)
+    assert correct < 0.1
+    assert median(known, 0.1, 0.0) == pytest.approx(0.2 * 9.81, rel=0.1)
+    assert median(known, 0.0, 0.1) == pytest.approx(0.2 * 9.81 / 1.1, rel=0.1)
+    assert median(known, 0.1, 0.1) < 2 * correct
+    assert [each.decided for each in known.shared] == ["less", "less"]
+
+
+def test_without_delay_and_filter_nothing_of_a_shared_error_is_left(tmp_path: Path) -> None:
+    """Eq. 2: in steady flight the estimate is that of the interval itself."""
+    still = {name: np.full_like(values, values[0]) for name, values in COLUMNS.items()}
+    still |= {"t": COLUMNS["t"], "qw": np.ones(len(COLUMNS["t"]))}
+    still |= dict.fromkeys(("qx", "qy", "qz"), 0 * still["qw"])
+    still["thrust"] = np.full(len(still["t"]), 1.4 * 9.80665)
+    for axis in ("vx", "vy", "vz"):
+        still[axis] = 0.3 * still["t"]
+    text = MAP.replace("drag_kgps: [0.3, 0.3, 0.6]", "")
+    result = found(tmp_path, still, text)
+    assert median(result, 0.1, 0.1) == pytest.approx(0.0, abs=1e-4)
+    assert median(result, 0.1, 0.0) > 1.5
+
+
+def test_a_file_of_any_kind_holds_the_same_flight(tmp_path: Path, known: Compensation) -> None:
+    log = write(tmp_path / "flight.parquet", COLUMNS)
+    assert compensation(read_flight(log, read_columns(map_file(tmp_path)))) == known
+
+
+def test_other_units_frames_and_orders_hold_the_same_flight(
+    tmp_path: Path, known: Compensation
+) -> None:
+    other = dict(COLUMNS)
+    other["t"] = COLUMNS["t"] * 1e6
+    for name in ("vx", "vy", "vz", "qy", "qz"):
+        other[name] = COLUMNS[name] * (1 if name == "vx" else -1)
+    other |= {name: other[name] * 100 for name in ("vx", "vy", "vz")}
+    text = MAP.replace("unit: s", "unit: us").replace("ENU", "NED")
+    text = text.replace("vz]", "vz], unit: cm/s").replace("[qw, qx, qy, qz]", "[qx, qy, qz, qw]")
+    result = found(tmp_path, other, text.replace("wxyz", "xyzw"))
+    for one, two in zip(result.combinations, known.combinations, strict=True):
+        assert one.error_mps2.value == pytest.approx(two.error_mps2.value, rel=1e-6)
+
+
+def test_px4_logs_are_read_with_the_map_that_ships(tmp_path: Path) -> None:
+    pytest.importorskip("pyulog")
+    log = write_ulog(tmp_path / "flight.ulg", COLUMNS)
+    columns = read_columns("px4").model_copy(update={"mass_kg": 1.5})
+    flight = read_flight(log, columns)
+    assert flight.newton_per_unit == pytest.approx(-30.0, rel=0.05)
+    result = compensation(flight)
+    assert median(result, 0.1, 0.0) == pytest.approx(0.2 * 9.81, rel=0.15)
+    assert result.shared[0].decided == "less"
+
+
+def test_a_gap_ends_a_stretch_and_the_rest_counts(tmp_path: Path) -> None:
+    keep = (COLUMNS["t"] < 20) | (COLUMNS["t"] > 24)
+    result = found(tmp_path, {name: values[keep] for name, values in COLUMNS.items()})
+    assert result.gaps == 1
+    assert result.flown_s == pytest.approx(56, abs=0.2)
+    assert median(result, 0.0, 0.0) < 0.1
+
+
+@pytest.mark.parametrize("decided", ["less", "more", "not decided"])
+def test_only_what_is_decided_is_said(known: Compensation, decided: Any) -> None:
+    shared = tuple(each.model_copy(update={"decided": decided}) for each in known.shared)
+    for sentence in sentences(known.model_copy(update={"shared": shared})):
+        assert ("sharing compensates: the error is" in sentence) == (decided == "less")
+        assert ("sharing makes it worse: the error is" in sentence) == (decided == "more")
+        assert ("is not decided" in sentence) == (decided == "not decided")
+
+
+@pytest.mark.parametrize(
+    ("change", "text", "says"),
+    [
+        ({}, MAP.replace("wxyz", "xyzw"), "correct the order of the attitude"),
+        ({}, MAP.replace("unit: s", "unit: ns"), "correct the unit of time"),
+        ({}, MAP.replace("mass_kg: 1.5", "mass_kg: 15"), "times the weight: correct mass_kg"),
+        ({}, MAP.replace("mass_kg: 1.5", ""), "the mass of the vehicle is not given"),
+        ({}, MAP.replace("qw,", "qv,"), "column 'qv'"),
+        ({}, MAP.replace("frame: ENU", "frame: UP"), "frame: is 'UP', and must be 'NED' or 'ENU'"),
+        ({}, MAP.replace("time: {column: t, unit: s}", ""), "the map names no time column"),
+        ({}, "{", "is not plain YAML"),
+        ({"qw": lambda c: 2 * c["qw"]}, MAP, "a unit quaternion has 1"),
+        ({"t": lambda c: c["t"][::-1]}, MAP, "go back at its reading 1: sort the rows"),
+        ({"vx": lambda c: c["vx"] * np.nan}, MAP, "column 'vx' has fewer than two numbers"),
+        ({"vx": lambda c: c["vx"].astype(str)}, MAP.replace("vx", "word"), "column 'word'"),
+        ({"vx": lambda c: c["vx"] > 0}, MAP, "column 'vx' holds bool and no numbers"),
+        *(
+            ({name: odd(name, value)}, MAP, f"column '{name if name != 't' else 'qw'}' reach")
+            for name in ("t", "qw", "vx", "thrust")
+            for value in (np.inf, -1e308)
+        ),
+        ({"qx": odd("qx", 3.0)}, MAP, "at its reading 100, and a unit quaternion has 1"),
+        ({n: odd(n, 0.0) for n in ("qw", "qx", "qy", "qz")}, MAP, "length 0 at its reading 100"),
+        *(
+            ({}, MAP.replace(old, f"{old.split()[0]} {new}"), f"line 7: {says}")
+            for old, new, says in (
+                ("mass_kg: 1.5", "true", "mass_kg: is true, and must be a number"),
+                ("mass_kg: 1.5", "'1.5'", "mass_kg: "),
+                ("mass_kg: 1.5", ".inf", "the number .inf is out of range"),
+                ("mass_kg: 1.5", "1e308", "mass_kg: "),
+                ("mass_kg: 1.5", "[" * 900, "is nested too deeply"),
+            )
+        ),
+        *(
+            ({}, MAP.replace("[0.3, 0.3, 0.6]", f"[{value}, 0.3, 0.6]"), "drag_kgps[0]: ")
+            for value in ("1e-320", "1e-12", "1e308", "true")
+        ),
+        ({}, f"{MAP}motor_time_constant_s: 1e308", "motor_time_constant_s: "),
+        ({}, MAP.replace("thrust}", "thrust, newton_per_unit: 1e308}"), "newton_per_unit: "),
+        ({}, MAP.replace("thrust}", "thrust, newton_per_unit: true}"), "newton_per_unit: "),
+        ({}, f"{MAP}mass_kg: 3", "line 9: key 'mass_kg' appears twice"),
+    ],
+)
+def test_a_mistake_is_one_sentence(
+    tmp_path: Path, change: dict[str, Any], text: str, says: str
+) -> None:
+    columns = COLUMNS | {name: make(COLUMNS) for name, make in change.items()}
+    columns["word"] = np.array(["high"] * len(COLUMNS["t"]))
+    if says == "column 'word'":
+        says = "column 'word' holds string and no numbers"
+    with pytest.raises(UserError) as caught:
+        found(tmp_path, columns, text)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_command_prints_and_writes_what_it_found(tmp_path: Path, known: Compensation) -> None:
+    log = write(tmp_path / "flight.csv", COLUMNS)
+    line = ["log", str(log), "--columns", map_file(tmp_path), "--out", str(tmp_path / "out")]
+    printed = CliRunner().invoke(build(line), line, catch_exceptions=False)
+    assert printed.exit_code == 0
+    assert "sharing compensates: the error is 0." in " ".join(printed.output.split())
+    again = CliRunner().invoke(build(line), [*line, "--json"], catch_exceptions=False)
+    assert Compensation.model_validate_json(again.output) == known
+    assert (
+        json.loads((tmp_path / "out" / "compensation.json").read_text())["blocks"] == known.blocks
+    )
+    html = (tmp_path / "out" / "report.html").read_text()
+    assert html == page(known, "flight.csv")
+    assert "<script>" not in html.replace("<script></script>", "")
+
+
+def test_a_log_with_a_column_twice_is_a_mistake(tmp_path: Path) -> None:
+    log = write(tmp_path / "flight.csv", COLUMNS)
+    log.write_bytes(log.read_bytes().replace(b'"vy"', b'"vx"', 1))
+    with pytest.raises(UserError, match="two columns are called 'vx'"):
+        read_flight(log, read_columns(map_file(tmp_path)))

@@ -1,0 +1,149 @@
+"""A check passes what is sound, and names what is broken and nothing else."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from faultpath.core.errors import UserError
+from faultpath.decisions.question import CheckQuestion
+from faultpath.systems.checks.check import check_system
+from faultpath.trials import SystemSpec, load_system
+
+ROOT = Path(__file__).resolve().parents[2]
+BROKEN = f"{Path(__file__).with_name('broken.py')}:create"
+LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
+
+
+def check(name: str = BROKEN, workers: int = 0, library: str = "any", **options: str):
+    spec = SystemSpec(name=name, options=options)
+    asked = CheckQuestion(workers=workers, library=library)
+    return check_system(load_system(spec), spec, asked, lambda done, known: None)
+
+
+def failed(report) -> dict[str, tuple[str, ...]]:
+    return {check.name: check.failures for check in report.checks if check.status == "failed"}
+
+
+SAID = {
+    "raises": ("trials end", "Variant 'bare': ValueError: no air"),
+    "never repeats": ("determinism", "first at step 1 in tap range -> pilot.approach, scene 'w0'"),
+    "by place": ("scene independence", "Variant 'bare' flown in another order, without"),
+    "crowded": ("scene independence", "without some of the scenes beside it, differs"),
+    "barely crowded": ("scene independence", "differs in"),
+    "unpaired": ("pairing", "their disturbances differ"),
+    "hashless": ("pairing", "All 4 scenes carry the same hashes"),
+    "deaf": ("declared reads", "Variant 'guarded' declares that guard.limit reads 'range'"),
+    "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such consumer"),
+    "of the future": ("declared reads", "the reading is of step 1, which is after step 0"),
+    "another source": ("declared reads", "the reading is of source 'sonar'"),
+    "keeps": ("fault delivery", "Tap range -> guard.limit of variant 'guarded', struck in 4"),
+    "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
+    "shape": ("shape and unit", "'laser' is declared with []"),
+    "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),
+}
+
+
+@pytest.mark.parametrize("broken", SAID)
+def test_a_broken_system_fails_its_check_and_no_other(broken):
+    found = failed(check(broken=broken))
+    name, sentence = SAID[broken]
+    assert set(found) == {name}, found
+    assert any(sentence in said for said in found[name]), found[name]
+    assert all(said.endswith(".") for said in found[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "library"),
+    [(BROKEN, "any"), ("examples/toy.py:create", "carts"), ("examples/dock.py:create", "floors")],
+)
+def test_a_sound_system_passes(name, library):
+    options = {"broken": ""} if name == BROKEN else {}
+    report = check(name if name == BROKEN else f"{ROOT / name}", library=library, **options)
+    assert failed(report) == {}
+    assert {each.status for each in report.checks} == {"passed"}
+
+
+def test_rounding_is_told_from_dependence_by_its_size():
+    """A sum over scenes beside it may change a last digit; that is no shared state."""
+    named = {each.name: each for each in check(broken="rounds").checks}
+    assert (found := named["scene independence"]).status == "passed"
+    assert re.search(r"differs by rounding alone, at most [1-9]e-1[5-7]", found.remarks[0])
+    assert "the same to rounding" in found.says
+
+
+def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
+    report = check(broken="one at a time")
+    assert failed(report) == {}
+    assert report.scenes == ("w0", "w1", "w2", "w3")
+    assert report.checks[0].says.startswith("8 ")
+
+
+def test_a_consumer_that_ignores_its_reading_is_remarked_and_not_failed():
+    report = check(broken="ignores")
+    assert failed(report) == {}
+    (remarks,) = (each.remarks for each in report.checks if each.remarks)
+    assert "Tap mass -> pilot.thrust of variant 'bare'" in remarks[0]
+
+
+@pytest.mark.parametrize(
+    ("broken", "sentence"),
+    [
+        (
+            "undeclared port",
+            "module 'pilot' looked for channel 'place' at 'other', a port that it does not "
+            "declare: add Port('place', 'other') to its reads.",
+        ),
+        (
+            "undeclared truth",
+            "module 'pilot' looked for the plant's truth 'truth', which it does not declare: add "
+            "it to its truths.",
+        ),
+    ],
+)
+def test_a_modules_ports_are_what_it_looks_at(broken, sentence):
+    found = failed(check(LOOPS, broken=broken))
+    assert set(found) == {"declared reads"}
+    assert any(each.endswith(sentence) for each in found["declared reads"]), found
+
+
+def test_what_differs_from_process_to_process_takes_workers_to_see():
+    assert failed(check(broken="hash of a text")) == {}
+    assert set(failed(check(broken="hash of a text", workers=1))) == {"determinism"}
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (
+            CheckQuestion(variants=("bear",), workers=0),
+            "unknown variant 'bear'; did you mean 'bare'?",
+        ),
+        (
+            CheckQuestion(scenes=7, workers=0),
+            "cannot check 7 scenes of library 'selection': choose 1 to 6",
+        ),
+    ],
+)
+def test_what_cannot_be_checked_is_refused(asked, said):
+    spec = SystemSpec(name=BROKEN)
+    with pytest.raises(UserError, match=re.escape(said)):
+        check_system(load_system(spec), spec, asked, lambda done, known: None)
+
+
+def _run(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-c", "from faultpath.cli.main import main; main()", "check"]
+    return subprocess.run([*command, *arguments, "--workers", "0"], capture_output=True, text=True)
+
+
+def test_the_command_says_it_in_lines_and_as_json():
+    sound = _run(BROKEN)
+    assert (sound.returncode, sound.stdout.splitlines()[-1]) == (0, "No check failed.")
+    bad = _run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
+    assert bad.returncode == 1
+    told = json.loads(bad.stdout)
+    assert [len(each["failures"]) for each in told["checks"]] == [0, 0, 0, 0, 1, 0, 0]
+    assert _run(BROKEN, "--variants", "bear").returncode == 2

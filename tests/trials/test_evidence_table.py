@@ -1,0 +1,97 @@
+"""Evidence as data: keys, names, and a table that comes back from its file as it went."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement, Recording
+from faultpath.trials.store.evidence import encode_evidence, read_evidence, write_evidence
+from faultpath.core.streams import generator
+from faultpath.trials import load_measurer
+
+RECORDING = Recording(library="held-out", variant="gru", options={"wind": "L3"})
+
+
+def asked(**changes) -> Measurement:
+    given = {"recording": RECORDING, "quantity": "acceleration-error", "subject": "dob"}
+    return Measurement(**(given | changes))
+
+
+def found(count=30, seed=0) -> Measured:
+    values = generator("test-evidence", "table", seed).random(count).astype(np.float32)
+    return Measured(
+        scenes=tuple(f"held-out/{i // 10:03d}" for i in range(count)),
+        steps=12 + 5 * (np.arange(count) % 10),
+        values=values.astype(np.float64),
+    )
+
+
+def test_a_recording_s_name_says_all_that_makes_it_another_one():
+    assert RECORDING.name == "held-out:gru:0:wind-L3"
+    others = [
+        RECORDING.model_copy(update=change)
+        for change in ({"library": "x"}, {"variant": "dob"}, {"seed": 1}, {"options": {}})
+    ]
+    assert len({RECORDING.name, *(other.name for other in others)}) == 5
+
+
+def test_equal_measurements_are_one_key_and_any_change_is_another():
+    options = {"wind": "L3", "environment": "free-space"}
+    turned = dict(reversed(options.items()))
+    one, other = (
+        asked(recording=RECORDING.model_copy(update={"options": given}))
+        for given in (options, turned)
+    )
+    assert one == other
+    assert one.key() == other.key()
+    assert hash(one) == hash(other)
+    changes = ({"seed": 1}, {"subject": "gru"}, {"faults": ("mass:scale=2",)}, {})
+    assert len({asked(**change).key() for change in changes}) == 4
+
+
+def test_an_unknown_quantity_or_field_is_refused():
+    with pytest.raises(ValidationError):
+        asked(quantity="beauty")
+    with pytest.raises(ValidationError):
+        asked(colour="red")
+
+
+def test_a_table_comes_back_as_it_went_with_the_same_bytes(tmp_path):
+    table = EvidenceTable(
+        {asked(): found(), asked(faults=("calibration=+0.1@predictor",)): found(seed=1)}
+    )
+    path = tmp_path / "evidence.parquet"
+    write_evidence(path, table)
+    back = read_evidence(path)
+    assert list(back) == list(table)
+    for measurement in table:
+        one, two = table.values(measurement), back.values(measurement)
+        assert one.same_windows(two)
+        assert np.array_equal(one.values, two.values)
+    assert encode_evidence(back) == path.read_bytes()
+    with pytest.raises(KeyError):
+        back.values(asked(seed=2))
+
+
+def test_a_hundred_measurements_of_1500_windows_stay_small():
+    table = EvidenceTable({asked(seed=i): found(1500, i) for i in range(100)})
+    assert len(encode_evidence(table)) < 1_500_000
+
+
+def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
+    with pytest.raises(UserError, match="cannot read"):
+        read_evidence(tmp_path / "none.parquet")
+    (tmp_path / "odd.parquet").write_bytes(b"odd")
+    with pytest.raises(UserError, match="damaged"):
+        read_evidence(tmp_path / "odd.parquet")
+
+
+def test_columns_of_different_windows_are_refused():
+    with pytest.raises(ValueError, match="same windows"):
+        Measured(("a",), np.array([12, 13]), np.array([0.1]))
+
+
+def test_a_system_without_measurements_says_so():
+    with pytest.raises(UserError, match="offers no measurements"):
+        load_measurer("examples/toy.py:create")

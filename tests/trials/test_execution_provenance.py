@@ -1,0 +1,73 @@
+"""Where a run comes from."""
+
+import hashlib
+import subprocess
+import sys
+
+from stale_toys import Mine
+from toy_study import UNITS, study
+
+from faultpath.trials.execution import Stopwatch, run_provenance, run_study
+from faultpath.trials.execution.provenance import checkout
+from faultpath.trials.work import Here, local
+
+
+def _git(folder, *arguments):
+    settings = ["-c", "user.name=a", "-c", "user.email=a@b.c", "-c", "commit.gpgsign=false"]
+    command = ["git", "-C", str(folder), *settings, *arguments]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
+    package = tmp_path / "src" / "package"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("a = 1\n")
+    _git(tmp_path, "init", "-q")
+    assert checkout(package) == (None, None)  # inside a repository, but not part of it
+    _git(tmp_path, "add", ".")
+    _git(tmp_path, "commit", "-qm", "one")
+    commit = _git(tmp_path, "rev-parse", "HEAD")
+    assert checkout(package) == (commit, False)
+    (tmp_path / "notes").write_text("beside the package\n")
+    assert checkout(package) == (commit, False)
+    (package / "__init__.py").write_text("a = 2\n")
+    assert checkout(package) == (commit, True)
+
+
+def test_provenance_tells_the_run(tmp_path):
+    stopwatch = Stopwatch()
+    result = run_study(study(), tmp_path, workers=0)
+    told = run_provenance(tmp_path, [], result, stopwatch, ["faultpath", "audit"], Here())
+    assert (told.blocks_computed, told.blocks_kept) == (UNITS, 0)
+    assert told.outcomes_sha256 == result.outcomes_sha256
+    assert told.command == ("faultpath", "audit")
+    assert {"numpy", "pyarrow"} <= told.packages.keys()
+    assert told.processor
+    assert 0 < told.wall_s < 60
+    assert told.started <= told.finished
+
+
+def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    mine = Mine(tmp_path / "mine")
+
+    def told(name: str):
+        result = run_study(mine.study(), tmp_path / name, workers=1)
+        return run_provenance(tmp_path / name, [], result, Stopwatch(), ["faultpath"], local(1))
+
+    assert (told("untracked").system_commit, told("untracked").system_dirty) == (None, None)
+    _git(tmp_path / "mine", "init", "-q")
+    _git(tmp_path / "mine", "add", ".")
+    _git(tmp_path / "mine", "commit", "-qm", "one")
+    clean = told("clean")
+    assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
+    assert clean.system_dirty is False
+    assert {"my.py", mine.helper.name, "faultpath/taps/taps.py"} <= clean.sources.keys()
+    assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
+    assert clean.data.keys() == {"push.txt"}
+    assert "pydantic-core" in clean.packages
+    (tmp_path / "mine" / "notes").write_text("beside what flies")
+    assert told("notes").system_dirty is False
+    mine.data.write_text("1.0")
+    assert told("dirty").system_dirty is True

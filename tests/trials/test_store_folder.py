@@ -1,0 +1,190 @@
+"""A run folder: what it holds, what it refuses, how it heals."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from faultpath.trials.code import CodeState
+from faultpath.core.errors import UserError
+from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
+from faultpath.trials.store.tables import encode_shard
+from faultpath.loop.taps import TapCount
+from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.outcome import Outcome, Status
+
+
+def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:
+    row = Row(variant="v", path="correct", seed=seed, arm=Arm(variant="v", seed=seed))
+    system = SystemSpec(name="quadrotor")
+    study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
+    return Manifest(faultpath_version="1", code=_code(), library_hash="h", study=study)
+
+
+def _code(**files: str) -> CodeState:
+    return CodeState(files={"my.py": "1", **files}, packages={"numpy": "2"}, python="3")
+
+
+def _outcomes() -> tuple[Outcome, ...]:
+    trace = np.arange(12, dtype=np.float32).reshape(4, 3)
+    return (
+        Outcome("s0", Status.SUCCESS, 2.5, "i", "d", "p", {"offset": -0.125}, 3, 2, None, trace),
+        Outcome("s1", Status.FAILED, 0.0, "", "", "", error="ValueError: ä\n"),
+        Outcome("s2", Status.CRASH, 1.0, "i", "d", "p", {"return": 5.0}, trace=trace[:0]),
+    )
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> RunFolder:
+    folder = RunFolder(tmp_path / "run")
+    with folder.open(_manifest(), _unexpected):
+        folder.save_shard("k", Shard(_outcomes(), TAPS))
+    return folder
+
+
+def _unexpected(text: str) -> None:
+    raise AssertionError(text)
+
+
+SCENES = ("s0", "s1", "s2")
+TAPS = (TapCount("mass", "planner.thrust", 36, 9, 8), TapCount("mass", "observer.model", 36, 0, 0))
+
+
+def test_a_shard_reads_back(folder):
+    found = folder.load_shard("k", SCENES, _unexpected)
+    assert found is not None
+    assert found.taps == TAPS
+    for one, two in zip(found.outcomes, _outcomes(), strict=True):
+        for name in Outcome.__dataclass_fields__:
+            np.testing.assert_equal(getattr(one, name), getattr(two, name))
+    assert found.outcomes[0].trace is not None
+    assert found.outcomes[0].trace.dtype == np.float32
+    assert folder.load_shard("another", SCENES, _unexpected) is None
+
+
+def _flip(data: bytes, at: int) -> bytes:
+    return data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :]
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: data[: len(data) // 2],
+        lambda data: b"",
+        lambda data: _flip(data, 40),
+        lambda data: _flip(data, len(data) - 9),
+        lambda data: data + b"\0",
+        lambda data: encode_shard(
+            "k", Shard(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
+        ),
+    ],
+    ids=["truncated", "empty", "flipped in the data", "flipped in the footer", "longer", "edited"],
+)
+def test_a_damaged_shard_is_named_and_removed(folder, damage):
+    (shard,) = folder.shards.iterdir()
+    shard.write_bytes(damage(shard.read_bytes()))
+    notices: list[str] = []
+    assert folder.load_shard("k", SCENES, notices.append) is None
+    assert len(notices) == 1
+    assert str(shard) in notices[0]
+    assert not shard.exists()
+
+
+def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
+    (before,) = folder.shards.iterdir()
+    data = before.read_bytes()
+    hashes = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), "none")
+    ended = {"status": Status.CRASH, "time_s": 1.0, **hashes}
+    sound = Shard(tuple(replace(outcome, **ended) for outcome in _outcomes()), TAPS)
+    folder.save_shard("k", sound)
+    (after,) = folder.shards.iterdir()
+    assert after != before
+    before.write_bytes(data)  # as a process leaves it that was killed before it tidied up
+    found = folder.load_shard("k", SCENES, _unexpected)
+    assert found is not None
+    assert not any(outcome.failed for outcome in found.outcomes)
+
+
+def test_a_shard_of_other_scenes_is_not_taken(folder):
+    notices: list[str] = []
+    assert folder.load_shard("k", SCENES[:2], notices.append) is None
+    assert "other scenes" in notices[0]
+
+
+def test_a_shard_under_the_name_of_another_unit_is_not_taken(folder):
+    (shard,) = folder.shards.iterdir()
+    digest = shard.stem.partition("-")[2]
+    false = shard.with_name(f"other-{digest}.parquet")
+    false.write_bytes(shard.read_bytes())
+    notices: list[str] = []
+    assert folder.load_shard("other", SCENES, notices.append) is None
+    assert "another key" in notices[0]
+    assert folder.load_shard("k", SCENES, _unexpected) is not None
+
+
+@pytest.mark.parametrize(
+    ("other", "what"),
+    [
+        (_manifest(name="b"), "another study"),
+        (_manifest(seed=1), "another set of variants, faults or seeds"),
+        (_manifest().model_copy(update={"code": _code(helper="2")}), r"other code.*: helper\)"),
+        (_manifest().model_copy(update={"library_hash": "g"}), "another state of the library"),
+        (_manifest().model_copy(update={"faultpath_version": "2"}), "version of faultpath"),
+    ],
+)
+def test_another_study_is_refused(folder, other, what):
+    before = folder.manifest.read_bytes()
+    with pytest.raises(UserError, match=what), folder.open(other, _unexpected):
+        pass
+    assert folder.manifest.read_bytes() == before
+
+
+def test_another_selection_of_scenes_goes_on(folder):
+    with folder.open(_manifest(scenes=("s0", "s1")), _unexpected):
+        assert json.loads(folder.manifest.read_text())["study"]["scenes"] == ["s0", "s1"]
+        assert folder.load_shard("k", SCENES, _unexpected) is not None
+
+
+def test_another_format_is_refused(folder):
+    content = json.loads(folder.manifest.read_text())
+    folder.manifest.write_text(json.dumps({**content, "format": FORMAT + 1, "new": 1}))
+    with (
+        pytest.raises(UserError, match=f"format {FORMAT + 1}"),
+        folder.open(_manifest(), _unexpected),
+    ):
+        pass
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{}", json.dumps({"format": FORMAT})])
+def test_a_damaged_manifest_is_refused(folder, text):
+    folder.manifest.write_text(text)
+    with pytest.raises(UserError, match=r"manifest\.json"), folder.open(_manifest(), _unexpected):
+        pass
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
+    file = tmp_path / "file"
+    file.touch()
+    for path in (file, file / "below", Path("/proc/faultpath-run")):
+        with (
+            pytest.raises(UserError, match=str(path)),
+            RunFolder(path).open(_manifest(), _unexpected),
+        ):
+            pass
+
+
+def test_what_a_killed_writer_left_is_swept(folder):
+    leftover = folder.shards / ".partial-abc"
+    leftover.write_bytes(b"half")
+    with folder.open(_manifest(), _unexpected):
+        assert not leftover.exists()
+
+
+def test_tables_that_cannot_be_read_say_so(folder, tmp_path):
+    with pytest.raises(UserError, match=r"outcomes\.parquet"):
+        read_outcomes(folder.outcomes)
+    (tmp_path / "traces.parquet").write_bytes(b"PAR1 nothing PAR1")
+    with pytest.raises(UserError, match="damaged"):
+        read_traces(tmp_path / "traces.parquet")
