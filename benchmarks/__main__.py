@@ -15,13 +15,13 @@ from importlib.metadata import distributions
 from pathlib import Path
 
 import pyperf
+from faultpath_quadrotor import native
 
 import faultpath
 from benchmarks import page
 from benchmarks.results import ROOT, Machine, Record, Results, record, save
 from benchmarks.rows import ROWS, SIDES, Row
 from faultpath.trials.execution.provenance import checkout, processor
-from faultpath_quadrotor import native
 
 ONE_THREAD = {
     "OMP_NUM_THREADS": "1",

@@ -4,9 +4,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import torch
-from torch import Tensor
-
-from benchmarks.side import Side
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.perception import DepthRenderer
 from faultpath_quadrotor.perception.camera import mounted
@@ -16,8 +13,11 @@ from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL, draw
-from faultpath.statistics import Resamples, success_effect
+from torch import Tensor
+
+from benchmarks.side import Side
 from faultpath.core.streams import generator
+from faultpath.statistics import Resamples, success_effect
 
 VEHICLES = 100
 SCENES = 25

@@ -7,9 +7,6 @@ not depend on them.
 from collections.abc import Callable
 
 import torch
-from torch import Tensor
-
-from benchmarks.side import Side
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.models import clearance_model, predictor
 from faultpath_quadrotor.options import QuadrotorOptions
@@ -20,6 +17,9 @@ from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from torch import Tensor
+
+from benchmarks.side import Side
 from faultpath.core.streams import generator
 
 CANDIDATES = 512

@@ -3,8 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from benchmarks.results import Target
 from faultpath_quadrotor.native import library
+
+from benchmarks.results import Target
 
 _PORTABLE = {library.VARIABLE: library.PORTABLE}
 

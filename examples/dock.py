@@ -15,9 +15,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from faultpath.core.errors import UserError
+from faultpath import UserError, generator
 from faultpath.interface import read_interface
-from faultpath.core.streams import generator
 from faultpath.loop.taps import Reading, Taps
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 

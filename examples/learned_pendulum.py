@@ -29,8 +29,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from faultpath.core.errors import UserError
-from faultpath.loop import Module, Port
+from faultpath import UserError, generator
 from faultpath.learning import (
     Learned,
     Schedule,
@@ -41,7 +40,7 @@ from faultpath.learning import (
     matched,
     uncertainty_training,
 )
-from faultpath.core.streams import generator
+from faultpath.loop import Module, Port
 from faultpath.systems import ComposedSystem, Measure, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
 from faultpath.trials import Metric

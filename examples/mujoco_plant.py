@@ -21,10 +21,6 @@ from dataclasses import fields
 import mujoco
 import numpy as np
 import torch
-from mujoco import rollout
-from numpy.typing import ArrayLike, NDArray
-from torch import Tensor
-
 from faultpath_quadrotor.plant.protocol import Plant, PlantState
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
@@ -39,6 +35,9 @@ from faultpath_quadrotor.vehicle import (
     TORQUE_COEFFICIENT_M,
     VehicleParameters,
 )
+from mujoco import rollout
+from numpy.typing import ArrayLike, NDArray
+from torch import Tensor
 
 Array = NDArray[np.float64]
 

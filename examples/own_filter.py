@@ -1,10 +1,10 @@
 """An estimator as a user would bring it: gyroscope, specific force and position fixes, filtered."""
 
 import torch
-
-from faultpath.loop import Port
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.estimators import Estimator
+
+from faultpath.loop import Port
 
 GYROSCOPE, FORCE, FIX = (
     Port(channel, "filter") for channel in ("gyroscope", "specific_force", "position_fix")

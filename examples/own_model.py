@@ -13,10 +13,6 @@ import time
 from pathlib import Path
 
 import torch
-from safetensors.torch import load_file, save_file
-from torch import Tensor, nn
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.kinematic import Residual
 from faultpath_quadrotor.predictors.network import Affine, draw_weights
@@ -25,6 +21,10 @@ from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.predictor_task import error, scales
 from faultpath_quadrotor.training.replay import correct, predict
 from faultpath_quadrotor.training.windows import windows_of
+from safetensors.torch import load_file, save_file
+from torch import Tensor, nn
+
+from faultpath import UserError
 
 FOLDER = Path("runs/own-model").absolute()
 BATCH, LEARNING_RATE, HIDDEN = 256, 3e-3, 48

@@ -18,9 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from faultpath.core.errors import UserError
+from faultpath import UserError, generator
 from faultpath.loop import Module, Plant, Port, Progress, interface_of
-from faultpath.core.streams import generator
 from faultpath.trials import (
     ErrorSum,
     ErrorTerm,

@@ -16,11 +16,11 @@ from pydantic import BaseModel, ValidationError
 from rich.console import Console
 
 from faultpath.decisions import DecisionRecord, RunProvenance, wording
+from faultpath.decisions.tables import MISSING, Entry, Table, line
+from faultpath.decisions.tables.markdown import grid
 from faultpath.report.tables import DIFFERENCE, by_quantity
 from faultpath.report.terminal import decision
 from faultpath.statistics import IN_FORCE, unconditional
-from faultpath.decisions.tables import MISSING, Entry, Table, line
-from faultpath.decisions.tables.markdown import grid
 
 REFERENCE = ROOT / "docs" / "reference"
 

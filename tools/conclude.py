@@ -6,23 +6,23 @@ from pathlib import Path
 
 import map_blocks
 from blocks import REFERENCE, ROOT
+from faultpath_quadrotor.paper.claims import again
+from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_quadrotor.paper.reproduction import write_pages
+from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
-from faultpath_quadrotor.paper.reproducing import write_pages
 from faultpath.api.saved import MAP, RECORD, SYSTEM, TRACES, as_text
-from faultpath.faults import parse_fault
 from faultpath.decisions import DecisionRecord, Question, RunProvenance, decide
 from faultpath.decisions import Path as FaultPath
+from faultpath.decisions.tables import Table
+from faultpath.faults import parse_fault
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
+from faultpath.trials import SystemSpec, load_system, system_shown
 from faultpath.trials.store import read_outcomes, read_traces
 from faultpath.trials.store.sealed import seal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
-from faultpath_quadrotor.paper.claims import again
-from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.run import CONCLUSIONS, read_results
-from faultpath.decisions.tables import Table
-from faultpath.trials import SystemSpec, load_system, system_shown
 
 
 def conclude_all(tell: Callable[[str], None]) -> None:

@@ -5,9 +5,9 @@ from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
-from faultpath.trials.code import CodeState
 from faultpath.decisions import RunProvenance
 from faultpath.trials import SystemSpec, load_system
+from faultpath.trials.code import CodeState
 from faultpath.trials.state import system_code
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -5,18 +5,19 @@ from functools import cache
 from pathlib import Path
 
 from blocks import REFERENCE, TAKE_AGAIN, Wrong, copied, parsed
+from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath_quadrotor.paper.cells import SYSTEM, Setting
+from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
+from faultpath_quadrotor.paper.report.sweep import sweep_plot
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown
+from faultpath_quadrotor.paper.shipped import RUN
 from flown_code import flown_by
 from pictures import IMAGES, standing
 
-from faultpath.decisions import CORRECT, SHARED, Reproduction, RunProvenance
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown
-from faultpath.report.sweep import sweep_plot
-from faultpath.trials.store import read_outcomes
-from faultpath_quadrotor.paper.cells import SYSTEM, Setting
-from faultpath_quadrotor.paper.central import ELSEWHERE, central, of_run, state
-from faultpath_quadrotor.paper.shipped import RUN
+from faultpath.decisions import CORRECT, SHARED, RunProvenance
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.markdown import block
+from faultpath.trials.store import read_outcomes
 
 PLACE = REFERENCE / "paper"
 FILES = ("reproduction.json", "provenance.json", "outcomes.parquet", "evidence.parquet")

@@ -4,14 +4,14 @@ from collections.abc import Iterable
 
 import mujoco
 import numpy as np
-
-from benchmarks import physics
-from benchmarks.side import Side, check_same
-from examples.mujoco_plant import MujocoPlant
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.perception.camera import RANGE_M
 from faultpath_quadrotor.perception.camera import rays as camera_rays
 from faultpath_quadrotor.scenes.scene import Scene
+
+from benchmarks import physics
+from benchmarks.side import Side, check_same
+from examples.mujoco_plant import MujocoPlant
 
 
 def steps() -> Side:

@@ -5,12 +5,12 @@ speed is compared. The step is ours, 2 ms; `rk4` is the faster of its integrator
 """
 
 import torch
+from faultpath_quadrotor.vehicle import PLANT_DT_S, STEPS_PER_CONTROL
 from rotorpy.vehicles.hummingbird_params import quad_params
 from rotorpy.vehicles.multirotor import BatchedMultirotor, BatchedMultirotorParams
 
 from benchmarks.physics import VEHICLES
 from benchmarks.side import Side
-from faultpath_quadrotor.vehicle import PLANT_DT_S, STEPS_PER_CONTROL
 
 
 def hummingbirds() -> Side:

@@ -7,9 +7,6 @@ standardisation is folded into the first layers, so that no time goes into it.
 import math
 
 import torch
-from torch import Tensor, nn
-
-from benchmarks import planning
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.predictors import anchored
 from faultpath_quadrotor.predictors.kinematic import RATE_LAG_S
@@ -19,6 +16,9 @@ from faultpath_quadrotor.vehicle import (
     GRAVITY_MPS2,
     RATE_LIMIT_RADPS,
 )
+from torch import Tensor, nn
+
+from benchmarks import planning
 
 STATE = 18 + LATENT
 POSITION, VELOCITY, ROTATION, RATE, CODE = (

@@ -5,13 +5,12 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
-
 from faultpath.quadrotor.scenes.field import Lattice, exact_on_lattice
 from faultpath.quadrotor.scenes.scene import Point, Scene
 from faultpath.quadrotor.vehicle import COLLISION_RADIUS_M
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
 
 MARGIN_M = 0.1
 """On lattice points 0.1 m apart this keeps every straight step between two of them clear of

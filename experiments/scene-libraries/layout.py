@@ -6,7 +6,6 @@ from itertools import pairwise
 from math import pi
 
 import numpy as np
-
 from faultpath.quadrotor.scenes.prisms import Plan, Prism, prism
 from faultpath.quadrotor.scenes.scene import Bounds, Box, Cylinder, Point
 

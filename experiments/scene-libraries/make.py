@@ -4,9 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from generate import generate_scene
-
 from faultpath.quadrotor.scenes.library import FROZEN, Library, as_text, load_library
+from generate import generate_scene
 
 FROZEN_SEEDS = {"training": 101, "selection": 202, "held-out": 303}
 """What made the libraries of the package, 100 scenes each."""

@@ -15,15 +15,13 @@ if TYPE_CHECKING:
     from faultpath.api.comparing import compare
     from faultpath.api.mapping import reversal_map
     from faultpath.api.planned import plan
-    from faultpath_quadrotor.paper.reproduced import ReproductionRun
-    from faultpath_quadrotor.paper.reproduction import reproduce
     from faultpath.api.run import Run, open_run
     from faultpath.api.systems import load_system
     from faultpath.core.errors import Stopped, UserError
+    from faultpath.core.streams import generator
     from faultpath.trials.system import System
 
 __all__ = [
-    "ReproductionRun",
     "Run",
     "Stopped",
     "System",
@@ -32,15 +30,14 @@ __all__ = [
     "audit",
     "audits",
     "compare",
+    "generator",
     "load_system",
     "open_run",
     "plan",
-    "reproduce",
     "reversal_map",
 ]
 
 _HOMES = {
-    "ReproductionRun": "faultpath_quadrotor.paper.reproduced",
     "Run": "faultpath.api.run",
     "Stopped": "faultpath.core.errors",
     "System": "faultpath.trials.system",
@@ -48,10 +45,10 @@ _HOMES = {
     "audit": "faultpath.api.audit",
     "audits": "faultpath.api.audit",
     "compare": "faultpath.api.comparing",
+    "generator": "faultpath.core.streams",
     "load_system": "faultpath.api.systems",
     "open_run": "faultpath.api.run",
     "plan": "faultpath.api.planned",
-    "reproduce": "faultpath_quadrotor.paper.reproduction",
     "reversal_map": "faultpath.api.mapping",
 }
 

@@ -4,8 +4,8 @@ import pytest
 from audit_toys import INTERFACE, Paper, planned
 
 from faultpath.core.errors import UserError
-from faultpath.interface import interface_yaml, read_interface
 from faultpath.decisions.planning import Audit
+from faultpath.interface import interface_yaml, read_interface
 from faultpath.trials import Status, Variant
 
 

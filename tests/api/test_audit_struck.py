@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from faultpath.trials.execution import run_study
+from faultpath.decisions import DecisionRecord, StruckTap
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import AuditQuestion
-from faultpath.decisions import DecisionRecord, StruckTap
-from faultpath.trials.store import read_outcomes
 from faultpath.trials import Deliveries, SystemSpec, load_system
+from faultpath.trials.execution import run_study
+from faultpath.trials.store import read_outcomes
 
 TOY = f"{Path(__file__).resolve().parents[2] / 'examples' / 'toy.py'}:create"
 STEPS = 100

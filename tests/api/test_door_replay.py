@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import faultpath
-from faultpath.cli.replay import command
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay
 from faultpath.api.saved import read_run
+from faultpath.cli.replay import command
 from faultpath.core.errors import UserError
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, SIGNALS, Signal

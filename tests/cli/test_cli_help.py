@@ -7,7 +7,9 @@ import typer
 from cli_runs import faultpath
 
 import faultpath as package
-from faultpath.cli.app import VERBS, build
+from faultpath.cli.app import build, panels
+
+VERBS = {entry.name: entry for entries in panels().values() for entry in entries}
 
 
 def test_every_verb_stands_in_a_group_with_an_example() -> None:

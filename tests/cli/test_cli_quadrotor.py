@@ -4,10 +4,10 @@ import json
 from pathlib import Path
 
 from cli_runs import audit, faultpath
-
-from faultpath.api.run import open_run
 from faultpath_quadrotor import native
 from faultpath_quadrotor.scenes.library import Library, as_text, load_library
+
+from faultpath.api.run import open_run
 from faultpath.trials import SystemSpec, load_system
 
 

@@ -4,18 +4,17 @@ import shutil
 from pathlib import Path
 
 import pytest
-
-import faultpath
-from faultpath.cli import report
-from faultpath_quadrotor.verbs.reproduce import tell
-from faultpath.api.display import Display
-from faultpath.api.job import Job
-from faultpath_quadrotor.paper.reproducing import carry_out
-from faultpath_quadrotor.paper.reproduction import ReproductionRun
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.paper.cells import QUICK
 from faultpath_quadrotor.paper.pages import table_4
+from faultpath_quadrotor.paper.reproduction import ReproductionRun, carry_out
 from faultpath_quadrotor.paper.run import Plan
+from faultpath_quadrotor.verbs.reproduce import tell
+
+import faultpath
+from faultpath.api.display import Display
+from faultpath.api.job import Job
+from faultpath.cli import report
+from faultpath.core.errors import UserError
 from faultpath.decisions.tables import MISSING
 from faultpath.trials.work import Here
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 from cli_runs import faultpath
-
 from faultpath_quadrotor.paper.published import published_claims
 
 MISTAKES = {

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 from cli_runs import ROOT, faultpath
-
-from faultpath.cli.main import INTERRUPTED
 from faultpath_quadrotor import checkpoint
 from faultpath_quadrotor.training import catalogue, job_pools
+
+from faultpath.cli.main import INTERRUPTED
 from faultpath.learning.model_card import read_card
 
 sys.path.insert(0, str(ROOT / "tests" / "quadrotor"))

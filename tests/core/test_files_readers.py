@@ -8,21 +8,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from faultpath_quadrotor.paper.run import read_results
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
-from faultpath.systems.flightlog import read_columns, read_flight
-from faultpath.interface import read_interface
 from faultpath.decisions.plan.study import read_study
+from faultpath.interface import read_interface
 from faultpath.learning.model_card import read_card
 from faultpath.learning.record import FitRecord
+from faultpath.systems.flightlog import read_columns, read_flight
 from faultpath.trials.store import RunFolder, read_evidence, read_outcomes, read_traces
 from faultpath.trials.store.lock import locked
 from faultpath.trials.store.manifest import read_manifest
 from faultpath.trials.store.parquet import Unreadable, rows_in
 from faultpath.trials.store.sealed import read_regular
-from faultpath_quadrotor.paper.run import read_results
 
 Read = Callable[[Path], object]
 

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 from plane_toys import alike, grown, question, record, reversal
 
+from faultpath.decisions import RunProvenance
 from faultpath.decisions.map.decide import decided
 from faultpath.decisions.map.joint import Errors, Expected
 from faultpath.decisions.map.lattice import SHOWN, UNITS, lattice
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.surface import Differences
-from faultpath.decisions import RunProvenance
 from faultpath.report.map import tables
 
 REFERENCE = Path(__file__).resolve().parents[2] / "docs" / "reference"

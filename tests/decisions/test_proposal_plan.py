@@ -8,12 +8,12 @@ from declared_toy import Declared
 import faultpath
 from faultpath.api.planned import Planned
 from faultpath.core.errors import UserError
-from faultpath.faults import Coupled, Fault
-from faultpath.faults.values import Scale
-from faultpath.interface import read_interface
 from faultpath.decisions.plan.order import makers, placed, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.words import sentences
+from faultpath.faults import Coupled, Fault
+from faultpath.faults.values import Scale
+from faultpath.interface import read_interface
 from faultpath.trials import Library, SceneRef, System, Variant
 
 HERE = Path(__file__).resolve().parent

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from declared_toy import Declared
 
+from faultpath.decisions.plan.probing import command_responses
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch
-from faultpath.decisions.plan.probing import command_responses
 from faultpath.loop.taps import Taps
 
 SYSTEM = Declared()

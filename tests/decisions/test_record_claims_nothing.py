@@ -7,7 +7,7 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, arms, paths, question, rows
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.question import StopWhen
+from faultpath.core.streams import generator
 from faultpath.decisions import (
     CORRECT,
     SHARED,
@@ -18,8 +18,8 @@ from faultpath.decisions import (
     wording,
 )
 from faultpath.decisions.model import Change, Effect
+from faultpath.decisions.question import StopWhen
 from faultpath.decisions.summary import MOST_WORDS, answers, in_short
-from faultpath.core.streams import generator
 from faultpath.trials import OutcomeTable, Status
 
 SIDES = ((REPAIR, 1), (BASELINE, -1))

@@ -3,9 +3,9 @@
 import pytest
 from outcome_tables import question
 
+from faultpath.decisions.fault_words import fault_words
 from faultpath.faults import INTERVENTIONS, Coupled, Fault, Noise, Scale, Sequence, parse_fault
 from faultpath.interface import read_interface
-from faultpath.decisions.fault_words import fault_words
 
 INTERFACE = read_interface("""
 name: made_up

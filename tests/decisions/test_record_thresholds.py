@@ -6,9 +6,9 @@ import pytest
 from outcome_tables import paths, question, record, table
 
 from faultpath.core.errors import UserError
+from faultpath.decisions import decide
 from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.question import AuditQuestion, ask
-from faultpath.decisions import decide
 from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
 
 CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}

@@ -3,9 +3,9 @@
 import re
 
 import pytest
-
 from faultpath_quadrotor.paper.pages import PAGES
 from faultpath_quadrotor.paper.results import Results
+
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.decisions.tables.latex import booktabs
 from faultpath.decisions.tables.markdown import block as markdown

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from faultpath.faults import Draws
 from faultpath.core.streams import generator, generators
+from faultpath.faults import Draws
 
 
 def test_rows_are_the_keyed_streams() -> None:

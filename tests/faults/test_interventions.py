@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import torch
 
+from faultpath.core.streams import generator
 from faultpath.faults import (
     Bias,
     Delay,
@@ -27,7 +28,6 @@ from faultpath.faults import (
     UniformScale,
 )
 from faultpath.interface import Channel
-from faultpath.core.streams import generator
 
 SCENES = ("a", "b")
 DT_S = 0.05

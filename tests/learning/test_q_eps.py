@@ -11,9 +11,9 @@ from faultpath.faults import (
     Coupled,
     Fault,
 )
-from faultpath.loop import Port
 from faultpath.learning import errors, uncertainty_training, withholding
 from faultpath.learning.windows import delivered
+from faultpath.loop import Port
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 

@@ -8,8 +8,8 @@ import numpy as np
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Graph, Loop, Module, Plant, Port, Progress, graph
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.flights import TraceEnded
 from faultpath.loop.taps import Query, Taps
+from faultpath.systems.checks.flights import TraceEnded
 
 DT_S = 0.1
 SCENES = ("a", "b")

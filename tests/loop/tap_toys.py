@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from faultpath.core.streams import generator
 from faultpath.faults import (
     Bias,
     Coupled,
@@ -26,7 +27,6 @@ from faultpath.faults import (
 )
 from faultpath.faults import Sequence as InTurn
 from faultpath.interface import Channel, Interface, Provenance, Source
-from faultpath.core.streams import generator
 from faultpath.loop.taps import Reading, Taps
 
 DT_S = 0.05

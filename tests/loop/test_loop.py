@@ -9,8 +9,8 @@ from faultpath.faults import Fault, Scale, parse_fault
 from faultpath.interface import interface_yaml, read_interface, transitive_consumers
 from faultpath.loop import Batch, Loop, Module, Port, consumers, graph
 from faultpath.loop import interface_of as derived
-from faultpath.systems.checks.flights import Trace
 from faultpath.loop.taps import IllegalRead, MalformedReading, Taps
+from faultpath.systems.checks.flights import Trace
 
 
 def fault(text):

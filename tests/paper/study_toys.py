@@ -4,13 +4,21 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.pages import (
+    figure_3,
+    in_text,
+    table_1,
+    table_2,
+    table_3,
+    table_4,
+    table_6,
+)
+from faultpath_quadrotor.paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import figure_3, in_text, table_1, table_2, table_3, table_4, table_6
-from faultpath_quadrotor.paper.results import Results
 from faultpath.trials import OutcomeTable, Status
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 
 SCENES = 100
 WINDOWS = 2

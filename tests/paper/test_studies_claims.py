@@ -1,12 +1,7 @@
 """The claims over whole runs: as published, mirrored, in part, and not at all."""
 
 import pytest
-from study_toys import SCENES, as_published, mirrored, outcomes, whole, windows, without
-from toy_runs import EMPTY, trials
-
-from faultpath.trials.evidence import EvidenceTable, Measured
-from faultpath.decisions import ClaimVerdict
-from faultpath.statistics.contrast import MIN_SCENES
+from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
 from faultpath_quadrotor.paper.claims.rules import ABOVE, BELOW
@@ -16,7 +11,12 @@ from faultpath_quadrotor.paper.pages import table_1, table_4
 from faultpath_quadrotor.paper.published import published_claims
 from faultpath_quadrotor.paper.quantities.differences import together
 from faultpath_quadrotor.paper.results import Results
+from study_toys import SCENES, as_published, mirrored, outcomes, whole, windows, without
+from toy_runs import EMPTY, trials
+
+from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.trials import OutcomeTable, Status
+from faultpath.trials.evidence import EvidenceTable, Measured
 
 Answers = dict[str, ClaimVerdict]
 

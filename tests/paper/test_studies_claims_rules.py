@@ -2,17 +2,6 @@
 
 import numpy as np
 import pytest
-
-from faultpath.statistics import (
-    Contrast,
-    Resamples,
-    change,
-    mean_effect,
-    success_effect,
-    weighted_sum,
-    with_test,
-)
-from faultpath.statistics.estimate import PairedTest
 from faultpath_quadrotor.paper.claims.paying import Crossing
 from faultpath_quadrotor.paper.claims.rules import (
     ABOVE,
@@ -33,6 +22,17 @@ from faultpath_quadrotor.paper.claims.rules import (
 )
 from faultpath_quadrotor.paper.claims.turning import Turned
 from faultpath_quadrotor.paper.results import decisive
+
+from faultpath.statistics import (
+    Contrast,
+    Resamples,
+    change,
+    mean_effect,
+    success_effect,
+    weighted_sum,
+    with_test,
+)
+from faultpath.statistics.estimate import PairedTest
 
 
 def more_than(limit: float) -> Rule:

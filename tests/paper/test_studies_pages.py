@@ -5,6 +5,10 @@ from functools import cache
 from typing import Any
 
 import pytest
+from faultpath_quadrotor.paper.answers import Sweep
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.pages import PAGES
+from faultpath_quadrotor.paper.published import published
 from toy_runs import (
     CELLS,
     EMPTY,
@@ -20,13 +24,9 @@ from toy_runs import (
     won,
 )
 
-from faultpath.trials.evidence import EvidenceTable
-from faultpath.decisions import Sweep
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES
-from faultpath_quadrotor.paper.published import published
 from faultpath.decisions.tables import MISSING, Table
 from faultpath.trials import OutcomeTable
+from faultpath.trials.evidence import EvidenceTable
 
 NAMES = tuple(page.name for page in PAGES)
 

@@ -3,13 +3,8 @@
 from pathlib import Path
 
 import pytest
-
-from faultpath.api.display import Display
-from faultpath.api.job import Job
-from faultpath.core.errors import UserError
-from faultpath.trials.evidence import EvidenceTable
-from faultpath.decisions import Reproduction
 from faultpath_quadrotor.paper import flights
+from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
 from faultpath_quadrotor.paper.entries import Group, centimetres, success
 from faultpath_quadrotor.paper.flights import Flown
@@ -17,6 +12,11 @@ from faultpath_quadrotor.paper.page import Page, Row, TableSpec
 from faultpath_quadrotor.paper.pages import PAGES, table_1, table_2
 from faultpath_quadrotor.paper.results import Results
 from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, read_results, save
+
+from faultpath.api.display import Display
+from faultpath.api.job import Job
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import EvidenceTable
 from faultpath.trials.work import Here, Progress
 
 SILENT = Display(command=("faultpath", "reproduce"))

@@ -3,13 +3,12 @@
 from dataclasses import replace
 
 import pytest
-from study_toys import as_published, outcomes, whole
-
-from faultpath.decisions import ClaimVerdict
+from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate
 from faultpath_quadrotor.paper.claims.statement import Statement, size
 from faultpath_quadrotor.paper.published import Printed
 from faultpath_quadrotor.paper.results import Results
+from study_toys import as_published, outcomes, whole
 
 EXACT, MEASURED = Printed(10.0), Printed(10.0, (4.0, 16.0))
 UNPRINTED = {

@@ -1,5 +1,8 @@
 """Tables of the studies: known figures from runs with known results."""
 
+from faultpath_quadrotor.paper.answers import Sweep
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
 from toy_runs import (
     EMPTY,
     MEASUREMENTS,
@@ -15,11 +18,8 @@ from toy_runs import (
     won,
 )
 
-from faultpath.trials.evidence import Measurement
-from faultpath.decisions import Sweep
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
 from faultpath.trials import Status
+from faultpath.trials.evidence import Measurement
 
 
 def test_table_1_counts_how_trials_end_and_when() -> None:

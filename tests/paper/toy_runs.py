@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.page import Page
 from faultpath_quadrotor.paper.pages import PAGES
 from faultpath_quadrotor.paper.results import Results
+
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 
 SCENES = 20
 Ends = Callable[[Cell, int, int], Status]

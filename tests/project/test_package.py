@@ -62,7 +62,10 @@ def test_every_package_but_the_quadrotor_is_checked_strictly(
         for path in (root / "src" / "faultpath").glob("*/__init__.py")
     }
     strict = set(declared["tool"]["pyright"]["strict"])
-    assert packages - strict == {"quadrotor/src/faultpath_quadrotor", "src/faultpath/learning"} & packages
+    assert (
+        packages - strict
+        == {"quadrotor/src/faultpath_quadrotor", "src/faultpath/learning"} & packages
+    )
     assert "src/faultpath/*.py" in strict
 
 

@@ -4,8 +4,7 @@ import hashlib
 from pathlib import Path
 
 import pytest
-
-from faultpath.decisions import Reproduction, RunProvenance
+from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.cells import PAPER
 from faultpath_quadrotor.paper.claims import again
 from faultpath_quadrotor.paper.pages import PAGES
@@ -13,6 +12,8 @@ from faultpath_quadrotor.paper.published import published_claims
 from faultpath_quadrotor.paper.results import Results
 from faultpath_quadrotor.paper.run import read_results
 from faultpath_quadrotor.paper.shipped import RUN
+
+from faultpath.decisions import RunProvenance
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference" / "paper"

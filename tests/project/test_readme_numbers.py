@@ -9,14 +9,14 @@ from subprocess import CompletedProcess
 
 import pytest
 
-from faultpath.trials.execution import run_study
-from faultpath.trials.execution.provenance import packages, processor
+from faultpath.decisions import DecisionRecord, RunProvenance, decide
 from faultpath.decisions.planning import Audit, plan_audit
 from faultpath.decisions.question import AuditQuestion
-from faultpath.decisions import DecisionRecord, RunProvenance, decide
+from faultpath.trials import OutcomeTable, SystemSpec, load_system
+from faultpath.trials.execution import run_study
+from faultpath.trials.execution.provenance import packages, processor
 from faultpath.trials.store import read_outcomes
 from faultpath.trials.store.tables import encode_outcomes
-from faultpath.trials import OutcomeTable, SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
 REFERENCE = ROOT / "docs" / "reference"

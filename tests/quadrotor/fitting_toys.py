@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from faultpath_quadrotor.training.catalogue import Entry
+from faultpath_quadrotor.training.fitting import ModelTask
 from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 
 from faultpath.core.errors import UserError
-from faultpath_quadrotor.training.catalogue import Entry
-from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath.learning.model_card import Schedule
 from faultpath.core.streams import generator
+from faultpath.learning.model_card import Schedule
 
 
 def draw(purpose: str, seed: int, *shape: int, step: int = 0) -> Tensor:

@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from faultpath.core.arrays import Array
-from faultpath.faults import AnyFault, parse_fault
 from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath_quadrotor.scenes.scene import Bounds, Box, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.vehicle import VehicleParameters
+
+from faultpath.core.arrays import Array
+from faultpath.faults import AnyFault, parse_fault
 from faultpath.loop.taps import Observer, Query, Reading, Taps
 from faultpath.loop.taps.tap import Tap
 from faultpath.trials import Outcome, SystemSpec, load_system

@@ -1,8 +1,6 @@
 """Parts as a user would bring them: what the tests of bringing share."""
 
 import torch
-from torch import Tensor
-
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import (
     MPPI,
@@ -13,6 +11,7 @@ from faultpath_quadrotor.planners import (
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import KinematicIntegrator
 from faultpath_quadrotor.reconstruction import Reconstruction
+from torch import Tensor
 
 OPTIONS = QuadrotorOptions()
 

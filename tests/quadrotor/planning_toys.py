@@ -3,12 +3,11 @@
 from collections.abc import Callable, Sequence
 
 import torch
-from torch import Tensor
-
 from faultpath_quadrotor.planners import Planner, Scored
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS
+from torch import Tensor
 
 
 def replan(

@@ -6,11 +6,11 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
+from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
 from flights import HELD_OUT, bits, fly, quadrotor
 
 from faultpath.api.systems import with_parts
 from faultpath.core.errors import UserError
-from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
 from faultpath.systems.checks.check import chosen_variants
 from faultpath.trials import SystemSpec
 from faultpath.trials.state import system_code

@@ -8,8 +8,6 @@ hidden.
 
 import pytest
 import torch
-from planning_toys import replan
-
 from faultpath_quadrotor.planners import (
     MPPI,
     AutoregressiveSampler,
@@ -22,6 +20,7 @@ from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.predictors import Calibration, PredictorInputs
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL
+from planning_toys import replan
 
 ERRORS = (0.0, 0.1, -0.1)
 SECONDS = 4.0

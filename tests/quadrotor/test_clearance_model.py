@@ -4,7 +4,6 @@ import copy
 
 import pytest
 import torch
-
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel

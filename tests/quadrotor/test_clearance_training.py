@@ -5,8 +5,6 @@ from pathlib import Path
 
 import pytest
 import torch
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.checkpoint import checkpoint_path, load_checkpoint
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import (
@@ -24,6 +22,8 @@ from faultpath_quadrotor.training.clearance_task import (
     censored_loss,
     predict,
 )
+
+from faultpath.core.errors import UserError
 
 SMALL = Recipe(images=1, in_view=16, near_surface=16, around=8)
 

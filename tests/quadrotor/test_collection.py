@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training import collection, flight
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.pool import episodes_path, read_pool
 from faultpath_quadrotor.training.provenance import provenance_path
 from faultpath_quadrotor.training.recorded import COMPONENTS
+
+from faultpath.core.errors import UserError
 
 SMALL = {"nominal": 5, "wind": 7}
 

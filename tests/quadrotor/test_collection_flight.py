@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 import torch
-
 from faultpath_quadrotor.flight_settings import (
     ControllerSettings,
     FlightSettings,

@@ -9,6 +9,11 @@ from typing import Any
 
 import pytest
 import torch
+from faultpath_quadrotor import device as devices
+from faultpath_quadrotor import models, native, system
+from faultpath_quadrotor.options import QuadrotorOptions
+from faultpath_quadrotor.plant.module import ACTION
+from faultpath_quadrotor.system import Quadrotor
 from flights import HELD_OUT, STEPS, fault, fly, quadrotor, trace
 from simulated_gpu import GPU, HostWaited, SimulatedGPU, simulated_gpu
 from torch import Tensor
@@ -17,11 +22,6 @@ from torch._subclasses.fake_tensor import DataDependentOutputException, DynamicO
 from faultpath.core import arrays
 from faultpath.core.errors import UserError
 from faultpath.loop import Batch
-from faultpath_quadrotor import device as devices
-from faultpath_quadrotor import models, native, system
-from faultpath_quadrotor.options import QuadrotorOptions
-from faultpath_quadrotor.plant.module import ACTION
-from faultpath_quadrotor.system import Quadrotor
 from faultpath.loop.taps import Observer, Query, Reading, Taps
 from faultpath.loop.taps.tap import Tap
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 import torch
+from faultpath_quadrotor.evidence import measure, recording
+from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import Measurement, Recording
-from faultpath_quadrotor.evidence import measure, recording
-from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath.trials import load_measurer
+from faultpath.trials.evidence import Measurement, Recording
 
 torch.set_num_threads(1)
 

@@ -5,9 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-
-from faultpath.core.errors import UserError
-from faultpath.trials.evidence import Measurement, Recording
 from faultpath_quadrotor.evidence import quantities
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.quantities import check, measured
@@ -18,6 +15,9 @@ from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
 from faultpath_quadrotor.training.windows import HISTORY, cut, places
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
+
+from faultpath.core.errors import UserError
+from faultpath.trials.evidence import Measurement, Recording
 
 torch.set_num_threads(1)
 

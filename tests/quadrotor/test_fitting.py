@@ -5,14 +5,14 @@ from pathlib import Path
 
 import pytest
 import torch
+from faultpath_quadrotor.checkpoint import ModelCard
+from faultpath_quadrotor.training.fitting import fit, journal_path
 from fitting_toys import Net, Toy
 from safetensors.torch import load_file
 
-from faultpath_quadrotor.checkpoint import ModelCard
-from faultpath_quadrotor.training.fitting import fit, journal_path
+from faultpath.learning.loop import Diverged, minibatches
 from faultpath.learning.model_card import Schedule
 from faultpath.learning.model_card import read_card as read
-from faultpath.learning.loop import Diverged, minibatches
 from faultpath.trials.store.atomic import write
 
 

@@ -6,9 +6,6 @@ from pathlib import Path
 
 import pytest
 import torch
-from fitting_toys import Net, Toy
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor import checkpoint
 from faultpath_quadrotor.checkpoint import (
     ModelCard,
@@ -18,6 +15,9 @@ from faultpath_quadrotor.checkpoint import (
     shipped_folder,
 )
 from faultpath_quadrotor.training.fitting import fit
+from fitting_toys import Net, Toy
+
+from faultpath.core.errors import UserError
 from faultpath.learning.model_card import read_card
 
 

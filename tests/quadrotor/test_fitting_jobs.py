@@ -7,9 +7,6 @@ import time
 from pathlib import Path
 
 import pytest
-from fitting_toys import Toy, entry
-
-from faultpath.core.errors import Stopped, UserError
 from faultpath_quadrotor.training import catalogue, job_pools, jobs, trajectories
 from faultpath_quadrotor.training.catalogue import ALL, GROUPS, Job, choose, stages
 from faultpath_quadrotor.training.collection import EPISODES, recipe
@@ -17,6 +14,9 @@ from faultpath_quadrotor.training.fitting import fit, journal_path
 from faultpath_quadrotor.training.job_pools import missing_pools
 from faultpath_quadrotor.training.jobs import Failure, Overview, run_jobs
 from faultpath_quadrotor.training.provenance import Provenance
+from fitting_toys import Toy, entry
+
+from faultpath.core.errors import Stopped, UserError
 from faultpath.trials.work import processes as processes_of_work
 
 HERE = Path(__file__).resolve().parent

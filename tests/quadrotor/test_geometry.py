@@ -5,12 +5,11 @@ import math
 import numpy as np
 import pytest
 import torch
-from scipy.spatial import cKDTree
-
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Bounds, Box, Cylinder, Scene
 from faultpath_quadrotor.vehicle import VehicleParameters
+from scipy.spatial import cKDTree
 
 BOUNDS = Bounds(low_m=(-4.0, -3.0, 0.0), high_m=(4.0, 3.0, 3.0))
 

@@ -1,14 +1,14 @@
 """What a heard flight of the quadrotor says: it is the flight, and its errors are the paper's."""
 
 import numpy as np
-
-from faultpath.trials.execution.again import difference
-from faultpath.faults import parse_fault
 from faultpath_quadrotor.evidence.signals import quadrotor_signals
+
+from faultpath.faults import parse_fault
 from faultpath.systems.checks.hearing import fly_heard, signals
-from faultpath.trials.store.signals import TOGETHER
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
+from faultpath.trials.execution.again import difference
+from faultpath.trials.store.signals import TOGETHER
 
 SCENE = ("selection/002",)
 

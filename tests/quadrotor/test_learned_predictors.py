@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import pytest
 import torch
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,

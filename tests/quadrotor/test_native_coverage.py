@@ -5,10 +5,6 @@ from types import MethodType
 
 import pytest
 import torch
-from test_native_planner import scored
-from test_native_rollout import commands_of, inputs_of, predictor, random_weights
-from torch import Tensor, nn
-
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.lending import PortableNotice, tell_portable
 from faultpath_quadrotor.perception import ClearanceModel, DepthClearance
@@ -28,6 +24,9 @@ from faultpath_quadrotor.predictors.drag import LinearDrag
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling, rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
+from test_native_planner import scored
+from test_native_rollout import commands_of, inputs_of, predictor, random_weights
+from torch import Tensor, nn
 
 SHIFT_M = 100.0
 """No shipped predictor leads so far."""

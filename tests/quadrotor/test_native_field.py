@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 import torch
-from kernel_sets import COMPILED, PORTABLE
-from torch import Tensor
-
 from faultpath_quadrotor import native
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
+from kernel_sets import COMPILED, PORTABLE
+from torch import Tensor
 
 SCENES = list(load_library("selection").scenes[:6])
 

@@ -6,12 +6,11 @@ from functools import partial
 
 import pytest
 import torch
-from test_native_rollout import commands_of, inputs_of, predictor
-from torch import Tensor
-
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.lending import lend
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling
+from test_native_rollout import commands_of, inputs_of, predictor
+from torch import Tensor
 
 pytestmark = pytest.mark.skipif(not native.available(), reason="nothing was compiled")
 

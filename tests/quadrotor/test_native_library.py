@@ -1,10 +1,10 @@
 """Which kernels run, and what is said about it."""
 
 import pytest
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native import library
+
+from faultpath.core.errors import UserError
 
 
 def test_the_fastest_set_runs_by_itself(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,6 @@ from typing import ParamSpec, TypeVar
 
 import pytest
 import torch
-
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.models import clearance_model
 from faultpath_quadrotor.perception import DepthClearance

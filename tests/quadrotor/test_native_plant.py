@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from kernel_sets import COMPILED, FUSED, PORTABLE
-from torch import Tensor
-
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
@@ -19,6 +16,8 @@ from faultpath_quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
+from kernel_sets import COMPILED, FUSED, PORTABLE
+from torch import Tensor
 
 F64 = torch.float64
 LANES = 37

@@ -2,7 +2,6 @@
 
 import pytest
 import torch
-
 from faultpath_quadrotor import native
 from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
 from faultpath_quadrotor.predictors.recurrent import recur

@@ -5,15 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
-from kernel_sets import COMPILED, FUSED, PORTABLE
-from test_perception_render import flown
-
 from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, mounted
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.state import State
+from kernel_sets import COMPILED, FUSED, PORTABLE
+from test_perception_render import flown
 
 SCENES = [*load_library("selection").scenes[:40], *load_library("training").scenes[:40]]
 ROUNDING_M = 1e-6

@@ -2,7 +2,6 @@
 
 import pytest
 import torch
-
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,

@@ -3,7 +3,6 @@
 import math
 
 import torch
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.perception.camera import (
     FIELD_OF_VIEW_DEG,

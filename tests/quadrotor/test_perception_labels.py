@@ -2,13 +2,12 @@
 
 import numpy as np
 import torch
-from test_perception_render import flown
-
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, rays
 from faultpath_quadrotor.perception.labels import between_pixels, visible_distance
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.library import load_library
+from test_perception_render import flown
 
 WALL = torch.full((HEIGHT, WIDTH), 3.0)
 

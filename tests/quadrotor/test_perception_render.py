@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 import torch
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.perception.camera import RANGE_M, rays
 from faultpath_quadrotor.perception.render import DepthRenderer

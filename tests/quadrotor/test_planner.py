@@ -3,9 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from planning_toys import replan
-from scipy import stats
-
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import (
     AutoregressiveSampler,
@@ -21,6 +18,9 @@ from faultpath_quadrotor.predictors import Calibration, PredictorInputs
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, RATE_LIMIT_RADPS
+from planning_toys import replan
+from scipy import stats
+
 from faultpath.core.streams import generator
 
 SCENES = ["s/0", "s/1", "s/2", "s/3"]

@@ -3,8 +3,6 @@
 import numpy as np
 import pytest
 import torch
-from torch import Tensor
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
@@ -17,6 +15,7 @@ from faultpath_quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
+from torch import Tensor
 
 F64 = torch.float64
 

@@ -4,7 +4,6 @@ import math
 
 import pytest
 import torch
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant, rigid_body
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle

@@ -6,11 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from flights import STEPS, quadrotor
-from flights import bits as outcome_bits
-from flights import fly as fly_trials
-from torch import Tensor
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant import Plant, PlantState, TorchPlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
@@ -22,6 +17,10 @@ from faultpath_quadrotor.vehicle import (
     STEPS_PER_CONTROL,
     draw,
 )
+from flights import STEPS, quadrotor
+from flights import bits as outcome_bits
+from flights import fly as fly_trials
+from torch import Tensor
 
 pytest.importorskip("mujoco")
 EXAMPLE = Path(__file__).parents[2] / "examples" / "mujoco_plant.py"

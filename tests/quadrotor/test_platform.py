@@ -4,13 +4,13 @@ import json
 
 import pytest
 import torch
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor import models
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.platform import PLATFORM, Platform
 from faultpath_quadrotor.scenes.library import load_library
+
+from faultpath.core.errors import UserError
 
 MODELS = ("wm-a", "wm-u", "wm-a-wind", "gru", "gru-trajectory", "clearance")
 

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import pytest
 import torch
-
 from faultpath_quadrotor.predictors import KinematicIntegrator, TrueParameter
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.predictor_task import RECIPES, PredictorTask
 from faultpath_quadrotor.training.replay import correct, predict
 from faultpath_quadrotor.training.windows import windows_of
+
 from faultpath.learning.model_card import Schedule
 
 EPISODES = {"nominal": 70, "wind": 70}

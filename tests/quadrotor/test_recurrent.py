@@ -2,7 +2,6 @@
 
 import pytest
 import torch
-
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
 

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 import torch
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.training import corruption
 from faultpath_quadrotor.training.corruption import dcc
 from faultpath_quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
 from faultpath_quadrotor.training.windows import Windows
+
+from faultpath.core.errors import UserError
 
 COUNT = 96
 

@@ -4,7 +4,6 @@ from dataclasses import fields
 
 import pytest
 import torch
-
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.predictors import PredictorInputs

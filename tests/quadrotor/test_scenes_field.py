@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 import torch
-
 from faultpath_quadrotor.scenes.field import SPACING_M, DistanceField, Lattice, exact_on_lattice
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library

@@ -8,8 +8,6 @@ from collections import Counter
 from itertools import pairwise
 
 import pytest
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.scenes.draw import floor_plan
 from faultpath_quadrotor.scenes.library import (
     FROZEN,
@@ -19,6 +17,8 @@ from faultpath_quadrotor.scenes.library import (
 )
 from faultpath_quadrotor.scenes.prisms import prism
 from faultpath_quadrotor.scenes.scene import Scene, Topology
+
+from faultpath.core.errors import UserError
 
 NAMES = list(FROZEN)
 

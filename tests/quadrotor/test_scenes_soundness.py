@@ -7,8 +7,6 @@ from typing import Any
 
 import pytest
 import torch
-
-from faultpath.core.errors import UserError
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import (
     FROZEN,
@@ -19,6 +17,8 @@ from faultpath_quadrotor.scenes.library import (
 )
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
+
+from faultpath.core.errors import UserError
 
 BASE = load_library("selection").scenes
 

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 import scipy.linalg
 import torch
+from faultpath_quadrotor import so3
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from torch import Tensor
-
-from faultpath_quadrotor import so3
 
 F64 = torch.float64
 axis_component = st.floats(-1, 1)

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 import pytest
+from faultpath_quadrotor import native, system
 from flights import HELD_OUT, STEPS, bits, fault, fly, hall, quadrotor, with_halls
 
 from faultpath.faults import AnyFault
-from faultpath_quadrotor import native, system
 
 STRONG_WIND = {"wind": "L3"}
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from faultpath_quadrotor.predictors import module as prediction
 from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
 from faultpath.faults import Fault
 from faultpath.faults.values import Erase
-from faultpath_quadrotor.predictors import module as prediction
 from faultpath.loop.taps import Receipts
 from faultpath.trials import Outcome
 

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 import torch
-from flights import HELD_OUT, STEPS, fault, fly, quadrotor
-
-from faultpath.interface import Provenance
-from faultpath.loop import Batch, Graph, consumers
 from faultpath_quadrotor.estimators.exact import ExactEstimator
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
 from faultpath_quadrotor.system import Quadrotor
+from flights import HELD_OUT, STEPS, fault, fly, quadrotor
+
+from faultpath.interface import Provenance
+from faultpath.loop import Batch, Graph, consumers
 from faultpath.systems.checks.flights import Trace
 from faultpath.trials import Arm
 from faultpath.trials.attempt import taps_of

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import torch
+from faultpath_quadrotor.plant.module import VehiclePlant
 from flights import HELD_OUT, STEPS, bits, fly, quadrotor, trace, wire
 
-from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath.loop.taps import IllegalRead
 
 VARIANTS = ("zero-wind", "dob", "true-wind")

@@ -5,12 +5,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-
-from faultpath.trials.code import Root, read_code
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import clearance_data, closed_loop, flight
 from faultpath_quadrotor.training.pool import encode_episodes, encode_rows, write_flights
+
+from faultpath.trials.code import Root, read_code
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 

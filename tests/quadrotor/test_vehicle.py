@@ -1,11 +1,10 @@
 import numpy as np
 import pytest
 import torch
-from pydantic import ValidationError
-
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import padded_lanes
 from faultpath_quadrotor.vehicle import VehicleParameters, VehicleRanges, draw
+from pydantic import ValidationError
 
 DRAWS = [draw(np.random.default_rng(seed)) for seed in range(400)]
 

@@ -1,6 +1,5 @@
 import numpy as np
 import pytest
-
 from faultpath_quadrotor.plant import wind
 from faultpath_quadrotor.plant.wind import Winds
 

@@ -6,7 +6,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import torch
-
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.pool import read_pool

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, sync_playwright
 
-from faultpath.interface import Interface, read_interface
 from faultpath.decisions import Path, Question, StruckTap, decide
-from faultpath.trials.provenance import RunProvenance
+from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
+from faultpath.trials.provenance import RunProvenance
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"

@@ -1,6 +1,6 @@
 """A reproduction small enough to read: claims, tables and a sweep."""
 
-from faultpath.decisions import (
+from faultpath_quadrotor.paper.answers import (
     ClaimVerdict,
     Ledger,
     Part,
@@ -9,6 +9,7 @@ from faultpath.decisions import (
     Series,
     Sweep,
 )
+
 from faultpath.decisions.tables import Entry, Line, Table
 
 NASTY = '<script>alert("x")</script> & co'

@@ -5,19 +5,19 @@ import re
 from xml.etree import ElementTree
 
 import pytest
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown
 from hypothesis import given
 from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
 
+from faultpath.decisions.tables import Entry, Line, Table, escapes
+from faultpath.decisions.tables.markdown import block as table_markdown
 from faultpath.report.frame import render
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown
 from faultpath.report.svg import Svg
 from faultpath.report.tables import markdown_table
-from faultpath.decisions.tables import Entry, Line, Table, escapes
-from faultpath.decisions.tables.markdown import block as table_markdown
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 PARSER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])

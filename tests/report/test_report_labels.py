@@ -5,10 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from faultpath_quadrotor.paper.reproduction import ReproductionRun
 from playwright.sync_api import Browser
 
 from faultpath import compare, open_run
-from faultpath_quadrotor.paper.reproduced import ReproductionRun
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import FloorPlan

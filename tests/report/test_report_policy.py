@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from faultpath_quadrotor.paper.report.page import reproduction_page
 from playwright.sync_api import Browser
 from reproduction_toys import reproduction
 
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath_quadrotor.paper.report.page import reproduction_page
 
 PAGES = ("report", "reproduction")
 

@@ -4,16 +4,16 @@ import re
 from html.parser import HTMLParser
 
 import pytest
+from faultpath_quadrotor.paper.report import words
+from faultpath_quadrotor.paper.report.page import reproduction_page
+from faultpath_quadrotor.paper.report.sweep import sweep_plot
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
 from faultpath.decisions import RunProvenance
-from faultpath.report.inputs import ReportInput
-from faultpath_quadrotor.paper.report import words
-from faultpath_quadrotor.paper.report.page import reproduction_page
-from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
-from faultpath.report.sweep import sweep_plot
 from faultpath.decisions.tables import Entry, Line, Table
+from faultpath.report.inputs import ReportInput
 
 CENTRAL = Table(
     columns=("Isolated", "Shared"),

@@ -3,13 +3,12 @@
 import re
 
 import pytest
-from reproduction_toys import claim, ledger, part, reproduction
-from rich.console import Console
-
-from faultpath.decisions import ClaimVerdict
+from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.report import words
 from faultpath_quadrotor.paper.report.page import reproduction_page
 from faultpath_quadrotor.paper.report.terminal import ledger_markdown, ledger_view
+from reproduction_toys import claim, ledger, part, reproduction
+from rich.console import Console
 
 
 def said_in(html: str) -> str:

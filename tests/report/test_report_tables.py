@@ -8,9 +8,9 @@ import pytest
 from rich.console import Console
 
 from faultpath.core.errors import UserError
-from faultpath.interface import Interface
 from faultpath.decisions import DecisionRecord, wording
 from faultpath.decisions.model import Effect
+from faultpath.interface import Interface
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import by_path, decided_for, latex_table, markdown_table

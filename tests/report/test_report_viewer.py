@@ -12,9 +12,9 @@ from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import parting_step
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import pack, unpack
+from faultpath.trials import FloorPlan, Pillar, Prism
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, Signal, decode_signals, encode_signals
-from faultpath.trials import FloorPlan, Pillar, Prism
 
 
 def _unpacked(source: ReportInput, **more: Any) -> tuple[dict[str, Any], list[Any]]:

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import multinomial
 
+from faultpath.core.streams import generator
 from faultpath.decisions.family import ALPHA, CORRECT, SHARED, Arms, alpha_shares, decide_paths
 from faultpath.statistics import IN_FORCE, Resamples, detectable, success_effect
 from faultpath.statistics.betting import log_capitals
 from faultpath.statistics.estimate import RULES
 from faultpath.statistics.power import detected
 from faultpath.statistics.score import quantile, reach, rejects
-from faultpath.core.streams import generator
 
 Floats = NDArray[np.float64]
 Z = quantile(0.95)

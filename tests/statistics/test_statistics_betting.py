@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from faultpath.core.streams import generator
 from faultpath.statistics import (
     Resamples,
     change,
@@ -15,7 +16,6 @@ from faultpath.statistics import (
     with_test,
 )
 from faultpath.statistics.betting import log_capital, log_capitals
-from faultpath.core.streams import generator
 
 
 def effect(first, second):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from faultpath.statistics import WindowQuantiles, change
 from faultpath.core.streams import generator
+from faultpath.statistics import WindowQuantiles, change
 
 FEW = {"n_resamples": 400}
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from faultpath_quadrotor.paper.quantities.summaries import spearman
 
 from faultpath.statistics import (
     Resamples,
@@ -15,7 +16,6 @@ from faultpath.statistics import (
     with_test,
 )
 from faultpath.statistics.distributions import sign_p_value
-from faultpath_quadrotor.paper.quantities.summaries import spearman
 
 PUBLISHED = yaml.safe_load((Path(__file__).parent / "published.yaml").read_text())
 SCENES = PUBLISHED["scenes"]

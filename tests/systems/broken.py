@@ -5,8 +5,8 @@ import itertools
 
 import numpy as np
 
-from faultpath.interface import read_interface
 from faultpath.core.streams import generator
+from faultpath.interface import read_interface
 from faultpath.loop.taps import Reading
 from faultpath.trials import Library, Metric, Outcome, SceneRef, Status, System, Variant
 

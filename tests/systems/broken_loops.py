@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.core.streams import generator
+from faultpath.loop import Module, Plant, Port, Progress, interface_of
 from faultpath.trials import Library, LoopSystem, SceneRef, System, Wiring
 
 FACTS = """

@@ -5,9 +5,9 @@ import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
 from faultpath.loop import Module, Port
+from faultpath.loop.taps import Taps
 from faultpath.systems import ComposedSystem, Parts
 from faultpath.systems.gymnasium import GymnasiumPlant
-from faultpath.loop.taps import Taps
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
 SCENES = tuple(f"seed/{i}" for i in range(6))

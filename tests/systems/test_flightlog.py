@@ -11,8 +11,8 @@ from typer.testing import CliRunner
 
 from faultpath.cli.app import build
 from faultpath.core.errors import UserError
-from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
 from faultpath.report.compensation import page, sentences
+from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
 
 COLUMNS = flown()
 

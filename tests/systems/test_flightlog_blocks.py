@@ -5,10 +5,10 @@ import pytest
 from flown import MAP, flown, write
 from scipy.signal import lfilter
 
+from faultpath.report.compensation import sentences
 from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
 from faultpath.systems.flightlog.blocks import LEAST, LEAST_S, Medians, correlation_time
 from faultpath.systems.flightlog.flight import INTERVAL_S
-from faultpath.report.compensation import sentences
 
 
 def drifting(rng: np.random.Generator, seconds: float, alike_s: float) -> np.ndarray:

@@ -5,10 +5,10 @@ import pytest
 from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement, Recording
-from faultpath.trials.store.evidence import encode_evidence, read_evidence, write_evidence
 from faultpath.core.streams import generator
 from faultpath.trials import load_measurer
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement, Recording
+from faultpath.trials.store.evidence import encode_evidence, read_evidence, write_evidence
 
 RECORDING = Recording(library="held-out", variant="gru", options={"wind": "L3"})
 

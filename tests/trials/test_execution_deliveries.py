@@ -4,10 +4,10 @@ import pytest
 from toy_study import FAULT, SCENES, study
 from toy_system import STEPS
 
-from faultpath.trials.execution import run_study
-from faultpath.trials.store import parquet, tables
 from faultpath.loop.taps import TapCount
 from faultpath.trials import Deliveries
+from faultpath.trials.execution import run_study
+from faultpath.trials.store import parquet, tables
 
 STRUCK = (STEPS - FAULT.onset_step) * len(SCENES)
 EACH = STEPS * len(SCENES)

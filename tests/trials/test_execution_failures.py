@@ -12,8 +12,8 @@ import pytest
 from toy_study import UNITS, study
 
 from faultpath.core.errors import Stopped
-from faultpath.trials.execution import run_study
 from faultpath.trials.arm import Study
+from faultpath.trials.execution import run_study
 
 _RUN = """
 import sys

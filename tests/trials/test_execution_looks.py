@@ -6,8 +6,8 @@ import pytest
 from toy_study import SCENES, study
 
 from faultpath.core.errors import Stopped, UserError
-from faultpath.trials.execution import RunResult, run_study
 from faultpath.trials.arm import Study
+from faultpath.trials.execution import RunResult, run_study
 from faultpath.trials.table import OutcomeTable
 from faultpath.trials.work import Progress
 

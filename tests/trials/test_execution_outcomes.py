@@ -9,9 +9,9 @@ import pytest
 from toy_study import SCENES, study
 from toy_system import ToySystem
 
-from faultpath.trials.execution import WrongOutcomes, run_study
 from faultpath.loop.taps import Reading
 from faultpath.trials import Status, load_system
+from faultpath.trials.execution import WrongOutcomes, run_study
 
 HERE = Path(__file__)
 

@@ -18,8 +18,8 @@ from toy_study import SYSTEM, UNITS, study
 import faultpath
 from faultpath.cli.main import INTERRUPTED
 from faultpath.core.errors import UserError
-from faultpath.trials.execution import run_study
 from faultpath.trials import SystemSpec
+from faultpath.trials.execution import run_study
 from faultpath.trials.work import Failed, Lost, Returned, elsewhere
 from faultpath.trials.work.executor import tell
 from faultpath.trials.work.ray_cluster import RayWorkers

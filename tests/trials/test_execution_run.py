@@ -8,10 +8,10 @@ import pytest
 from toy_study import FAULT, SCENES, UNITS, rows, study
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution import RunResult, run_study
-from faultpath.trials.store import read_outcomes, read_traces
 from faultpath.loop.taps import NotDelivered, UndeclaredReader
 from faultpath.trials.arm import Arm, Row, Study
+from faultpath.trials.execution import RunResult, run_study
+from faultpath.trials.store import read_outcomes, read_traces
 from faultpath.trials.table import TrialRow
 from faultpath.trials.work import Progress
 

@@ -1,8 +1,8 @@
 """Who does what next."""
 
-from faultpath.trials.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
+from faultpath.trials.execution.schedule import Schedule, Task, Unit, plan
 
 SCENES = tuple(SceneRef(f"s{i}", i) for i in range(10))
 LIBRARY = Library("ten", SCENES, "hash")

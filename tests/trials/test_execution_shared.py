@@ -4,8 +4,8 @@ from pathlib import Path
 
 from toy_study import SCENES, study
 
-from faultpath.trials.execution import RunResult, run_study
 from faultpath.trials.arm import Study
+from faultpath.trials.execution import RunResult, run_study
 
 
 def run(asked: Study, folder: Path, store: Path, told: list[str] | None = None) -> RunResult:

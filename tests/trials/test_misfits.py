@@ -7,10 +7,10 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.error_source import described
-from faultpath.faults import Fault, Scale
-from faultpath.systems.flightlog.reading import ColumnMap
 from faultpath.core.misfits import Misfit, misfit_of
 from faultpath.decisions.plan.study import StudyFile
+from faultpath.faults import Fault, Scale
+from faultpath.systems.flightlog.reading import ColumnMap
 
 SRC = Path(__file__).resolve().parents[2] / "src" / "faultpath"
 MAP = {

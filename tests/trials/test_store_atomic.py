@@ -34,7 +34,8 @@ def test_a_file_gets_the_permissions_of_any_other(tmp_path):
 
 def test_the_lock_of_a_killed_process_is_free(tmp_path):
     code = (
-        "import sys, time; from pathlib import Path; from faultpath.trials.store.lock import locked\n"
+        "import sys, time; from pathlib import Path\n"
+        "from faultpath.trials.store.lock import locked\n"
         "with locked(Path(sys.argv[1]), print):\n    print('held', flush=True); time.sleep(60)"
     )
     command = [sys.executable, "-c", code, str(tmp_path)]

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faultpath.trials.code import CodeState
 from faultpath.core.errors import UserError
-from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
-from faultpath.trials.store.tables import encode_shard
 from faultpath.loop.taps import TapCount
 from faultpath.trials.arm import Arm, Row, Study, SystemSpec
+from faultpath.trials.code import CodeState
 from faultpath.trials.outcome import Outcome, Status
+from faultpath.trials.store import FORMAT, Manifest, RunFolder, Shard, read_outcomes, read_traces
+from faultpath.trials.store.tables import encode_shard
 
 
 def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",)) -> Manifest:

@@ -13,7 +13,16 @@ import calls
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.trials.work import Failed, Here, Lost, Processes, Returned, WorkerLost, local, run_all
+from faultpath.trials.work import (
+    Failed,
+    Here,
+    Lost,
+    Processes,
+    Returned,
+    WorkerLost,
+    local,
+    run_all,
+)
 
 BOTH = pytest.mark.parametrize("workers", [0, 2])
 

@@ -1,1 +1,20 @@
-"""The reference application: a quadrotor that plans with a world model (extra `[quadrotor]`)."""
+"""The reference application: a quadrotor that plans with a world model, and the paper about it."""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from faultpath_quadrotor.paper.reproduction import (
+        ReproductionRun,
+        read_reproduction,
+        reproduce,
+    )
+
+__all__ = ["ReproductionRun", "read_reproduction", "reproduce"]
+
+
+def __getattr__(name: str) -> object:
+    """Load a public name when it is first used, so that naming the package loads no torch."""
+    if name not in __all__:
+        raise AttributeError(f"module 'faultpath_quadrotor' has no attribute {name!r}")
+    return getattr(import_module("faultpath_quadrotor.paper.reproduction"), name)

@@ -8,8 +8,8 @@ import torch
 from torch import Tensor
 
 from faultpath.core.errors import UserError
-from faultpath_quadrotor.choices import DeviceName
 from faultpath.trials.work import one_thread
+from faultpath_quadrotor.choices import DeviceName
 
 CPU = torch.device("cpu")
 

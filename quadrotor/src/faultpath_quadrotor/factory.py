@@ -1,7 +1,7 @@
 """What builds the quadrotor. Torch loads when it is built, not when its options are asked for."""
 
-from faultpath_quadrotor.choices import QuadrotorChoices
 from faultpath.trials import System
+from faultpath_quadrotor.choices import QuadrotorChoices
 
 MEASURE = "faultpath_quadrotor.evidence:measure"
 """What measures on recorded windows: a name, since whatever is imported here counts as flown."""

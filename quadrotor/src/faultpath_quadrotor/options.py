@@ -5,6 +5,7 @@ from typing import Self
 import torch
 
 from faultpath.core.errors import UserError
+from faultpath.trials.options import call
 from faultpath_quadrotor.choices import (
     ClearanceName,
     DeviceName,
@@ -22,7 +23,6 @@ from faultpath_quadrotor.planners import (
     SamplerSettings,
 )
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath.trials.options import call
 
 
 class QuadrotorOptions(QuadrotorChoices):

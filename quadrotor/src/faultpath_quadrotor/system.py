@@ -13,8 +13,9 @@ from faultpath.core.errors import UserError
 from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Plant
+from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
+from faultpath.trials.metrics import VEHICLE
 from faultpath_quadrotor import native
-from faultpath_quadrotor.user_parts import bring
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import ClearanceName, DeviceName
 from faultpath_quadrotor.device import arithmetic, describe
@@ -35,10 +36,9 @@ from faultpath_quadrotor.scenes.draw import floor_plan
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.user_parts import bring
 from faultpath_quadrotor.variants import modelled, setups
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
-from faultpath.trials import FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
-from faultpath.trials.metrics import VEHICLE
 
 
 class Quadrotor(LoopSystem):

@@ -18,6 +18,9 @@ from torch import Tensor, nn
 
 from faultpath.core.error_source import explained, located
 from faultpath.core.errors import SystemMistake
+from faultpath.core.text import listed
+from faultpath.trials import SystemSpec
+from faultpath.trials.registry import factory_root, load_parts
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SOURCES
@@ -30,9 +33,6 @@ from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import LANE_MULTIPLE, State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
-from faultpath.core.text import listed
-from faultpath.trials import SystemSpec
-from faultpath.trials.registry import factory_root, load_parts
 
 Part = Predictor | Reconstruction | Planner | Estimator | type[Plant]
 KINDS = (Predictor, Reconstruction, Planner, Estimator)

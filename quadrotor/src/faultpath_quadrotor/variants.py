@@ -14,7 +14,7 @@ from typing import Any
 import torch
 
 from faultpath.loop import Module
-from faultpath_quadrotor.user_parts import Brought
+from faultpath.trials import Wiring
 from faultpath_quadrotor.choices import ClearanceName
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator, ExactEstimator
@@ -32,7 +32,7 @@ from faultpath_quadrotor.predictors.history import HistoryEncoder
 from faultpath_quadrotor.predictors.module import Prediction
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.reconstruction.module import WindReconstruction
-from faultpath.trials import Wiring
+from faultpath_quadrotor.user_parts import Brought
 
 ZERO_WIND = "zero-wind"
 TRUE_WIND = "true-wind"

@@ -12,9 +12,9 @@ from faultpath.api.asking import asked_for, asks, begin
 from faultpath.api.display import Display
 from faultpath.api.systems import Chosen, hands
 from faultpath.core.errors import UserError
-from faultpath.faults import each_size
 from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.question import AuditQuestion, Running
+from faultpath.faults import each_size
 from faultpath.statistics import IN_FORCE
 from faultpath.trials import System
 from faultpath.trials.state import system_code

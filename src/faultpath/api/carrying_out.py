@@ -7,20 +7,20 @@ from faultpath.api.job import Job
 from faultpath.api.replaying import Replayed, as_flown, fly_again, shown_first
 from faultpath.api.saved import MADE_FROM, RECORD, SYSTEM, as_text, parsed, read_provenance
 from faultpath.core.errors import UserError
-from faultpath.trials.execution import RunResult
-from faultpath.decisions.planning import Audit
 from faultpath.decisions import DecisionRecord, Question, RunProvenance
 from faultpath.decisions.decide import after_looks
 from faultpath.decisions.phrases import counted
+from faultpath.decisions.planning import Audit
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.statistics import RULES
+from faultpath.trials import System, system_shown
+from faultpath.trials.execution import RunResult
 from faultpath.trials.store import TrialAddress, write_text
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.manifest import kin
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.sealed import read_regular, seal
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
-from faultpath.trials import System, system_shown
 from faultpath.trials.work import Progress
 
 _SCENES_FOR_ONE = 20

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.api.display import Display, Show
-from faultpath.trials.execution import Failure, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.decisions import RunProvenance
 from faultpath.trials import Study, System
+from faultpath.trials.execution import Failure, RunResult, Stopwatch, run_provenance, run_study
 from faultpath.trials.work import Executor
 
 _SHOWN = 5

@@ -11,14 +11,14 @@ from faultpath.api.display import Display
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.plan.plan import Plan, Proposal
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.plan.words import sentences
+from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.question import PlanQuestion, Question
+from faultpath.trials import System, library_of
 from faultpath.trials.store import write_text
 from faultpath.trials.store.atomic import check_writable
-from faultpath.trials import System, library_of
 from faultpath.trials.work import Progress
 
 if TYPE_CHECKING:
@@ -60,8 +60,8 @@ class Planned:
         return f"<Plan of {names}: {self.sentences[0]}>"
 
     def _repr_html_(self) -> str:
-        from faultpath.report.plan import by_audit, by_rank
         from faultpath.decisions.tables.html import html
+        from faultpath.report.plan import by_audit, by_rank
 
         return "".join(html(table) for table in (by_rank(self.plan), by_audit(self.plan)))
 

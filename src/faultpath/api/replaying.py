@@ -8,25 +8,25 @@ from pathlib import Path
 from faultpath.api.saved import read_run
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
-from faultpath.trials.execution.again import difference
-from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
-from faultpath.trials.execution.provenance import amend
-from faultpath.trials.execution.worker import Job
+from faultpath.core.text import unknown
+from faultpath.decisions import DecisionRecord
 from faultpath.decisions.planning import plan_audit
 from faultpath.decisions.question import AuditQuestion
-from faultpath.decisions import DecisionRecord
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
 from faultpath.systems.checks.hearing import Listening, Overheard, listen, listen_here
+from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
+from faultpath.trials.attempt import Died, Done, Wrong
+from faultpath.trials.execution.again import difference
+from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
+from faultpath.trials.execution.provenance import amend
+from faultpath.trials.execution.worker import Job
+from faultpath.trials.state import system_code
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.core.text import unknown
-from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
-from faultpath.trials.attempt import Died, Done, Wrong
-from faultpath.trials.state import system_code
 from faultpath.trials.work import Executor, local
 
 

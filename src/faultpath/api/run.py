@@ -4,26 +4,26 @@
 # pyright: reportMissingTypeStubs=false, reportUnknownMemberType=false
 
 from dataclasses import dataclass
+from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import pyarrow as pa
 
 from faultpath.api.saved import MAP, RECORD, parsed, read_provenance, read_run
 from faultpath.core.errors import UserError
+from faultpath.core.text import extra
 from faultpath.decisions import DecisionRecord, RunProvenance
 from faultpath.report.html import notebook_view, write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.trials import Status
 from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.sealed import AGAIN, unseal
-from faultpath.core.text import extra
-from faultpath.trials import Status
 
 if TYPE_CHECKING:
     import pandas
 
-    from faultpath_quadrotor.paper.reproduced import ReproductionRun
     from faultpath.decisions.map.model import MapRecord
 
 MAP_MADE_FROM = (MAP, OUTCOMES)
@@ -125,21 +125,23 @@ class MapRun:
         return self.record._repr_html_()  # pyright: ignore[reportPrivateUsage]
 
 
-def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ReproductionRun":
-    """Open the folder of a finished audit, map or reproduction, one's own or anybody's.
+def open_run(folder: str | PathLike[str]) -> "Run | MapRun | Any":
+    """Open the folder of a finished audit or map, one's own or anybody's.
 
     It is taken for data: no code that it names is run, and every file is compared with its digest.
-    Raises `UserError` for a folder that holds none of them, or a damaged or changed one.
+    What an installed distribution leaves behind is opened by it: an entry point in the group
+    `faultpath.runs` names a file of such a folder, and what reads the folder. Raises `UserError`
+    for a folder that holds none of them, or a damaged or changed one.
     """
     place = Path(folder)
     files = read_provenance(place).files
     if MAP in files:
         return read_map(place)
-    if RECORD in files or not (place / "reproduction.json").exists():
-        return Run(place, *read_run(place))
-    from faultpath_quadrotor.paper.reproduced import read_reproduction
-
-    return read_reproduction(place)
+    if RECORD not in files:
+        for point in entry_points(group="faultpath.runs"):
+            if point.name in files:
+                return point.load()(place)
+    return Run(place, *read_run(place))
 
 
 def read_map(folder: Path) -> MapRun:

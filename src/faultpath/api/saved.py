@@ -11,16 +11,16 @@ from pydantic import BaseModel
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions.planning import struck_taps
 from faultpath.decisions import DecisionRecord, RunProvenance
+from faultpath.decisions.planning import struck_taps
 from faultpath.report.inputs import ReportInput, Traces
+from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 from faultpath.trials.store import read_table
 from faultpath.trials.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.sealed import AGAIN, read_regular, unseal
 from faultpath.trials.store.signals import SIGNALS, decode_signals
 from faultpath.trials.store.tables import decode_outcomes, decode_traces
-from faultpath.trials import Deliveries, OutcomeTable, SystemShown
 
 RECORD, SYSTEM, MAP = "record.json", "system.json", "map.json"
 MADE_FROM = (RECORD, SYSTEM, OUTCOMES, TRACES, DELIVERIES)

@@ -6,7 +6,9 @@ Nothing heavy is imported here: torch and the statistics load when a verb needs 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
 from inspect import getdoc
 from typing import Annotated, Any
 
@@ -33,8 +35,8 @@ class Entry:
     """Whether it takes the flags of the system that its line names."""
 
 
-def _entry(name: str, example: str, of_a_system: bool = False, attribute: str = "command") -> Entry:
-    home = f"faultpath.cli.{name}:{attribute}"
+def _entry(name: str, example: str, of_a_system: bool = False) -> Entry:
+    home = f"faultpath.cli.{name}:command"
     return Entry(name, f"faultpath {name} {example}".rstrip(), home, of_a_system)
 
 
@@ -59,12 +61,22 @@ _PANELS = {
         _entry("report", "runs/one runs/two --out comparison.html"),
         _entry("replay", "runs/mine --scene cart/003 --signals"),
     ),
-    "The paper and its quadrotor": (
-        _entry("reproduce", "table-4"),
-        _entry("train", "quadrotor gru gru+dcc --seed 0", attribute="app"),
-    ),
 }
-VERBS = {entry.name: entry for entries in _PANELS.values() for entry in entries}
+"""The engine's verbs, by the heading under which the help shows them."""
+
+
+@cache
+def panels() -> dict[str, tuple[Entry, ...]]:
+    """Return all verbs: the engine's, and what installed distributions add.
+
+    An entry point in the group `faultpath.verbs` is a verb's name, and a function with options or a
+    `Verbs` as its value; the module holds an `EXAMPLE` of a call.
+    """
+    added = tuple(
+        Entry(point.name, import_module(point.module).EXAMPLE, point.value)
+        for point in sorted(entry_points(group="faultpath.verbs"), key=lambda each: each.name)
+    )
+    return _PANELS | ({"Installed with a system": added} if added else {})
 
 
 def build(arguments: Sequence[str] = ()) -> typer.Typer:
@@ -80,7 +92,7 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
     )
     app.callback()(everywhere)
     verb, *rest = arguments or ("",)
-    for panel, entries in _PANELS.items():
+    for panel, entries in panels().items():
         for entry in entries:
             command = _command(entry, rest if entry.name == verb else None)
             shown: dict[str, Any] = {
@@ -99,10 +111,10 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
 def _command(entry: Entry, rest: Sequence[str] | None) -> Callable[..., int | None] | typer.Typer:
     module, attribute = entry.home.split(":")
     if entry.name == "audit" and any(part.partition("=")[0] == "--study" for part in rest or ()):
-        return import_module(
-            "faultpath.cli.audit"
-        ).study  # the file says all that the verb takes otherwise
+        module, attribute = "faultpath.cli.audit", "study"  # the file says all that flags would
     found = getattr(import_module(module), attribute)
+    if attribute == "study":
+        return found
     if rest is not None and entry.of_a_system:
         return with_system_flags(entry.name, found, rest)
     return found

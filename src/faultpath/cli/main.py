@@ -106,9 +106,9 @@ def _run(arguments: list[str]) -> int:
     """Run a verb; typer would catch some errors by itself, so it only parses and calls."""
     import typer
 
-    from faultpath.core.error_source import place
     from faultpath.cli.app import build
     from faultpath.cli.options import check_arguments
+    from faultpath.core.error_source import place
 
     check_arguments(arguments)
     try:

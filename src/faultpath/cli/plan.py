@@ -30,8 +30,8 @@ def command(
     found = plan(system, **given, progress=display)
     written = found.write(out)
 
-    from faultpath.report.plan import by_audit, by_rank, by_response
     from faultpath.decisions.tables.terminal import drawn
+    from faultpath.report.plan import by_audit, by_rank, by_response
 
     if as_json:
         typer.echo(found.plan.model_dump_json(indent=2))

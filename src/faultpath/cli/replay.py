@@ -60,8 +60,8 @@ def fly_again(
     With `signals` what was heard is kept in the run's folder.
     """
     from faultpath.api.replaying import keep_signals, replay
-    from faultpath.decisions.wording import counted
     from faultpath.decisions.tables.terminal import STYLES
+    from faultpath.decisions.wording import counted
 
     found = replay(held, scenes, paths, lambda said: console.print(said, markup=False))
     unlike = [each for each in found if each.differs]

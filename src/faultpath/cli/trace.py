@@ -24,9 +24,9 @@ def command(
     from faultpath.api.asking import begin
     from faultpath.api.display import Display, SafeConsole
     from faultpath.api.reviewing import traced
+    from faultpath.decisions.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table
     from faultpath.report.trace import trace_table
-    from faultpath.decisions.tables.terminal import STYLES, Parted
 
     asked = ask(TraceQuestion, given, command=True)
     display = Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))

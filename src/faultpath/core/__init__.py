@@ -1,1 +1,1 @@
-"""TODO."""
+"""What every room stands on: errors and whose they are, arrays, streams, readers of files."""

@@ -10,14 +10,12 @@ import sys
 import sysconfig
 import traceback
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.misfits import misfit_of
 from faultpath.core.text import one_line
 
-_OURS = str(Path(__file__).resolve().parent) + os.sep
 _STANDARD = tuple(
     os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
 )
@@ -28,6 +26,13 @@ _systems: set[str] = set()
 
 _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
 """What comes of handing a function something that it does not take."""
+
+
+def ours(module: str) -> bool:
+    """Whether a module is the engine's, or of a distribution that carries its name, as
+    `faultpath_quadrotor` does: such a one answers for its own mistakes."""
+    top = module.partition(".")[0]
+    return top == "faultpath" or top.startswith("faultpath_")
 
 
 def note_system(file: str) -> None:
@@ -96,7 +101,7 @@ def _frames(error: BaseException) -> Iterator[str]:
         yield _said(error.filename, error.lineno or 1)
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = os.path.realpath(frame.f_code.co_filename)
-        if file.startswith(_OURS):
+        if file.startswith(_our_folders()):
             yield ""
         elif not _passed_over(frame.f_code.co_filename):
             yield _said(file, line)
@@ -108,7 +113,13 @@ def _passed_over(name: str) -> bool:
     file = os.path.realpath(name)
     if file.startswith(tuple(_systems)):
         return False
-    return file.startswith((_OURS, *_STANDARD)) or any(part in file for part in _PACKAGES)
+    return file.startswith((*_our_folders(), *_STANDARD)) or any(part in file for part in _PACKAGES)
+
+
+def _our_folders() -> tuple[str, ...]:
+    loaded = ((name, module) for name, module in tuple(sys.modules.items()) if "." not in name)
+    files = (getattr(module, "__file__", None) for name, module in loaded if ours(name))
+    return tuple(os.path.dirname(os.path.realpath(file)) + os.sep for file in files if file)
 
 
 def _said(file: str, line: int) -> str:

@@ -2,36 +2,18 @@
 
 from faultpath.decisions.decide import decide, primary_path, stops
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path, StruckTap
-from faultpath.trials.provenance import RunProvenance
 from faultpath.decisions.recorded_question import Question, StopRule
-from faultpath.decisions.reproduction import (
-    Answer,
-    ClaimVerdict,
-    Ledger,
-    Part,
-    Point,
-    Reproduction,
-    Series,
-    Sweep,
-)
+from faultpath.trials.provenance import RunProvenance
 
 __all__ = [
     "CORRECT",
     "SHARED",
-    "Answer",
-    "ClaimVerdict",
     "DecisionRecord",
-    "Ledger",
-    "Part",
     "Path",
-    "Point",
     "Question",
-    "Reproduction",
     "RunProvenance",
-    "Series",
     "StopRule",
     "StruckTap",
-    "Sweep",
     "decide",
     "primary_path",
     "stops",

@@ -4,11 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.wording import MINUS, capital
 from faultpath.faults import Fault
 from faultpath.faults.base import number as plain_number
 from faultpath.interface import Interface
-from faultpath.decisions.recorded_question import Question
-from faultpath.decisions.wording import MINUS, capital
 
 
 @dataclass(frozen=True)

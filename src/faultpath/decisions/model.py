@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from faultpath.decisions.recorded_question import EarlierLook, Question
 from faultpath.core.results import Result
+from faultpath.decisions.recorded_question import EarlierLook, Question
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 
 CORRECT = "correct"

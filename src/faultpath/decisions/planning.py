@@ -3,11 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from faultpath.decisions import question as asking
 from faultpath.core.errors import UserError
-from faultpath.faults import AnyFault, Fault
-from faultpath.interface import module_of
-from faultpath.decisions.question import AuditQuestion, StopWhen
+from faultpath.core.streams import generator
+from faultpath.core.text import unknown
 from faultpath.decisions import (
     CORRECT,
     SHARED,
@@ -20,9 +18,11 @@ from faultpath.decisions import (
     primary_path,
     stops,
 )
-from faultpath.core.streams import generator
+from faultpath.decisions import question as asking
+from faultpath.decisions.question import AuditQuestion, StopWhen
+from faultpath.faults import AnyFault, Fault
+from faultpath.interface import module_of
 from faultpath.loop.taps import TapCount
-from faultpath.core.text import unknown
 from faultpath.trials import (
     Arm,
     Deliveries,

@@ -2,9 +2,9 @@
 
 from pydantic import Field
 
-from faultpath.faults import Fault
-from faultpath.decisions.question import Generalise, StopWhen
 from faultpath.core.results import Result
+from faultpath.decisions.question import Generalise, StopWhen
+from faultpath.faults import Fault
 from faultpath.statistics import RULES, RuleName
 from faultpath.trials.metrics import VEHICLE, Metric, MetricName
 

@@ -7,12 +7,12 @@ from typing import Annotated, Literal, Self, TypeAlias
 from pydantic import Field, model_validator
 
 from faultpath.core.errors import UserError
+from faultpath.core.frozen import Frozen
+from faultpath.core.text import listed, unknown
 from faultpath.faults.draws import Draws
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import AnyIntervention
-from faultpath.core.frozen import Frozen
 from faultpath.interface import Interface, module_of, modules
-from faultpath.core.text import listed, unknown
 
 ALL = "*"
 """Every consumer of the channel: the fault is shared."""

@@ -20,13 +20,13 @@ from typing import Any, TypeAlias
 from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
+from faultpath.core.misfits import misfit_of
+from faultpath.core.text import listed, unknown
 from faultpath.faults.fault import Coupled, Fault
 from faultpath.faults.intermittence import Intermittence
 from faultpath.faults.registry import INTERVENTIONS, AnyIntervention
 from faultpath.faults.text import FaultText
 from faultpath.interface import Interface, groups
-from faultpath.core.misfits import misfit_of
-from faultpath.core.text import listed, unknown
 
 FaultPreset: TypeAlias = Callable[[float], Coupled]
 """A system's named fault: its size in, the faults out; raises `UserError` for a wrong size."""

@@ -7,9 +7,9 @@ from pydantic import model_validator
 from pydantic_core import PydanticCustomError
 
 from faultpath.core.arrays import misfit
+from faultpath.core.text import listed, unknown
 from faultpath.interface.graph import readers
 from faultpath.interface.model import Channel, Declared, Source
-from faultpath.core.text import listed, unknown
 
 Where = tuple[str | int, ...]
 

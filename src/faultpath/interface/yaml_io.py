@@ -10,8 +10,8 @@ from pydantic import ValidationError
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml, yaml_text
-from faultpath.interface.checks import Interface
 from faultpath.core.misfits import misfit_of
+from faultpath.interface.checks import Interface
 
 
 def read_interface(

@@ -4,10 +4,10 @@ A fit gets its inputs through the taps of the system's interface, and what pertu
 faults of an audit. Nothing here loads torch before a module is fitted.
 """
 
-from faultpath.learning.model_card import Schedule
 from faultpath.learning.fitting import Fit, evaluate, fit, load, mean_squared_error
 from faultpath.learning.flying import Learned, withheld
 from faultpath.learning.matched import Comparison, matched
+from faultpath.learning.model_card import Schedule
 from faultpath.learning.record import FitRecord
 from faultpath.learning.repair import (
     Repair,

@@ -17,16 +17,16 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
+from faultpath.core.streams import key
+from faultpath.core.version import __version__
 from faultpath.faults import AnyFault
-from faultpath.learning.model_card import Schedule, fill, parameter_count, save, weights_sha256
 from faultpath.learning.loop import Task, minibatches, run
+from faultpath.learning.model_card import Schedule, fill, parameter_count, save, weights_sha256
 from faultpath.learning.record import Architecture, FitRecord, Machine
 from faultpath.learning.repair import Repair, kept, understood
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
-from faultpath.trials.store import make_folder
-from faultpath.core.streams import key
 from faultpath.loop.taps import TapCount, added
-from faultpath.core.version import __version__
+from faultpath.trials.store import make_folder
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

@@ -12,8 +12,8 @@ from faultpath.core.arrays import Array, HostArray, is_array, namespace, place, 
 from faultpath.core.errors import UserError
 from faultpath.faults import ALL, Erase, Fault
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.learning.repair import Repair
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 
 if TYPE_CHECKING:
     from torch import nn

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import opened
+from faultpath.core.streams import generator
 from faultpath.learning.model_card import Schedule, safetensors, tensors
 from faultpath.trials.store.atomic import write_file
-from faultpath.core.streams import generator
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

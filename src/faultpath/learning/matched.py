@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import TypeAlias
 
 from faultpath.core.frozen import Frozen
-from faultpath.learning.model_card import read_card
-from faultpath.learning.fitting import Fit
-from faultpath.learning.record import FitRecord
 from faultpath.core.text import listed
+from faultpath.learning.fitting import Fit
+from faultpath.learning.model_card import read_card
+from faultpath.learning.record import FitRecord
 
 _SAME_LOSS = 1e-4
 """Relative difference of a first loss that machines may cause and another computation does not."""

@@ -16,8 +16,8 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.frozen import Frozen
-from faultpath.trials.store.atomic import write_file, write_text
 from faultpath.core.text import extra
+from faultpath.trials.store.atomic import write_file, write_text
 
 if TYPE_CHECKING:
     from torch import Tensor, nn

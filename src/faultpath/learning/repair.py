@@ -8,10 +8,10 @@ import numpy as np
 
 from faultpath.core.arrays import Constant
 from faultpath.core.errors import UserError
-from faultpath.faults import ALL, AnyFault, Bias, Coupled, Erase, Fault, Noise, parse_fault
 from faultpath.core.frozen import Frozen
-from faultpath.interface import Interface
 from faultpath.core.text import listed
+from faultpath.faults import ALL, AnyFault, Bias, Coupled, Erase, Fault, Noise, parse_fault
+from faultpath.interface import Interface
 
 Persistence: TypeAlias = Literal["window", "step"] | float
 """How long a drawn error lasts: one draw a window, one a step, or a time constant in seconds."""

@@ -10,13 +10,13 @@ import numpy as np
 
 from faultpath.core.arrays import Array, HostArray, namespace
 from faultpath.core.errors import UserError
+from faultpath.core.text import listed, unknown
 from faultpath.faults import AnyFault
 from faultpath.interface import Interface, Provenance, module_of
-from faultpath.loop import Port
 from faultpath.learning.record import Data
 from faultpath.learning.repair import Repair
+from faultpath.loop import Port
 from faultpath.loop.taps import Reading, TapCount, Taps
-from faultpath.core.text import listed, unknown
 
 _EPOCHS = 100_000
 """Seeds of the faults' random numbers lie this far apart from one seed of a fit to the next."""

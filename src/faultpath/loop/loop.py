@@ -8,11 +8,11 @@ from typing import Any, Protocol
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import SystemMistake
+from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
 from faultpath.loop.module import Batch, Graph, Memory, Module, Outputs, Part, State
 from faultpath.loop.ports import Inputs, Port
 from faultpath.loop.taps import Reading
-from faultpath.core.text import listed
 
 _SLACK = 1e-6
 """Of a step: what rounding of rates and latencies may take away."""

@@ -15,7 +15,7 @@ State: TypeAlias = Any
 """What a plant carries from step to step; opaque to everybody else."""
 
 Outputs: TypeAlias = Mapping[str, Any]
-"""By source: an array `[B, ...]`, or a `faultpath.loop.taps.Query` that is asked within the step."""
+"""By source: an array `[B, ...]`, or a `faultpath.loop.Query` that is asked within the step."""
 
 
 @dataclass(frozen=True)

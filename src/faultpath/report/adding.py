@@ -21,9 +21,9 @@ from faultpath.report.svg import (
     tick_label,
 )
 from faultpath.report.viewer_choice import choose
+from faultpath.trials import Outcome, Status
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import TOGETHER, Signal
-from faultpath.trials import Outcome, Status
 
 _SQUEEZED = 2.5
 _MOST_PATHS = 4

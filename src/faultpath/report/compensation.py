@@ -4,12 +4,12 @@ from math import exp
 
 from markupsafe import Markup
 
-from faultpath.systems.flightlog import Combination, Compensation
+from faultpath.decisions.tables import MISSING, Table, line
+from faultpath.decisions.tables.html import html
 from faultpath.decisions.wording import counted, interval, plain
 from faultpath.report.frame import render
 from faultpath.statistics import Estimate
-from faultpath.decisions.tables import MISSING, Table, line
-from faultpath.decisions.tables.html import html
+from faultpath.systems.flightlog import Combination, Compensation
 
 CAVEAT = (
     "This is about the acceleration one control interval ahead on this flight. It says where "

@@ -13,9 +13,9 @@ from functools import cache
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from faultpath.report.svg import template
-from faultpath.decisions.tables.escapes import visible
 from faultpath.core.version import __version__
+from faultpath.decisions.tables.escapes import visible
+from faultpath.report.svg import template
 
 
 def render(page: str, styles: Sequence[str], scripts: Sequence[str], **content: object) -> str:

@@ -10,6 +10,8 @@ from faultpath.decisions.fault_words import fault_words
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
+from faultpath.decisions.tables import Table
+from faultpath.decisions.tables.html import html
 from faultpath.report.adding import adding, adding_panels, line_key
 from faultpath.report.effects import forest, frequency_panels
 from faultpath.report.frame import fragment, render
@@ -29,8 +31,6 @@ from faultpath.report.taps import fork_panels, forks, tap_table
 from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
 from faultpath.report.viewer import viewer_data
 from faultpath.trials.store import make_folder, write_text
-from faultpath.decisions.tables import Table
-from faultpath.decisions.tables.html import html
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
 _SCRIPTS = ("page.js", *VIEWER_SCRIPTS)

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.interface import Interface
 from faultpath.decisions.model import DecisionRecord
+from faultpath.interface import Interface
+from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import Signal, Signals
-from faultpath.trials import FloorPlan, OutcomeTable, VariantShown
 
 
 @dataclass(frozen=True)

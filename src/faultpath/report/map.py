@@ -7,19 +7,19 @@ from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from faultpath.decisions import RunProvenance, wording
 from faultpath.decisions.map.asked import MapQuestion
 from faultpath.decisions.map.lattice import SHARED
 from faultpath.decisions.map.model import Flip, MapPoint, MapRecord
 from faultpath.decisions.map.words import cut
-from faultpath.decisions import RunProvenance, wording
-from faultpath.report.frame import render
-from faultpath.report.map_pictures import correlation_picture, map_picture
-from faultpath.statistics.contrast import MIN_SCENES
-from faultpath.trials.store import make_folder, write_text
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.html import html
 from faultpath.decisions.tables.markdown import block
 from faultpath.decisions.tables.terminal import drawn
+from faultpath.report.frame import render
+from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.statistics.contrast import MIN_SCENES
+from faultpath.trials.store import make_folder, write_text
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:

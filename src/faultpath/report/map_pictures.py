@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import pairwise, product
 
+from faultpath.decisions import wording
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.words import at_point
-from faultpath.decisions import wording
 from faultpath.report.svg import (
     Axis,
     Svg,

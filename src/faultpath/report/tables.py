@@ -6,10 +6,10 @@ from faultpath.decisions import wording
 from faultpath.decisions.model import DecisionRecord, Effect
 from faultpath.decisions.phrases import adjusted, only_alone
 from faultpath.decisions.summary import not_standing
-from faultpath.statistics import Estimate
 from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
 from faultpath.decisions.tables.latex import booktabs
 from faultpath.decisions.tables.markdown import block
+from faultpath.statistics import Estimate
 
 _ARMS = ("baseline", "repair")
 DIFFERENCE = ("difference", "interval", "won")

@@ -5,13 +5,13 @@ Which taps had the fault in force comes from receipts, who reads from the wiring
 
 from dataclasses import dataclass
 
-from faultpath.interface import Channel, module_of
 from faultpath.decisions import CORRECT
 from faultpath.decisions.model import DecisionRecord, Path
+from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.decisions.wording import series
+from faultpath.interface import Channel, module_of
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg, shortened
-from faultpath.decisions.tables import Entry, Line, Table, line
 from faultpath.trials import VariantShown
 
 Tap = tuple[str, str]

@@ -4,12 +4,12 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.summary import not_standing
-from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.decisions.tables.terminal import Parted, drawn
+from faultpath.interface import Channel, Gap, Interface, rank, transitive_consumers
+from faultpath.report.tables import DIFFERENCE, by_path, by_quantity, by_threshold
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 

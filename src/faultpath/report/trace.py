@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from faultpath.systems.checks.tracing import TracedRead, TraceReport
 from faultpath.decisions.tables import Line, Table, line
+from faultpath.systems.checks.tracing import TracedRead, TraceReport
 
 
 def trace_table(trace: TraceReport) -> Table:

@@ -21,9 +21,9 @@ from faultpath.report.viewer_choice import (
 from faultpath.report.viewer_hits import hit
 from faultpath.report.viewer_packing import Whole, pack
 from faultpath.report.viewer_signals import Plot, drawn, in_force, plots
+from faultpath.trials import FloorPlan, Outcome, Status
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import Signal, Signals
-from faultpath.trials import FloorPlan, Outcome, Status
 
 SCRIPTS = ("flights.js", "viewer.js")
 """Of a page with the viewer, in this order."""

@@ -10,12 +10,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.core.streams import generator
 from faultpath.statistics import signflip, unconditional
 from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, clopper_pearson_upper
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.score import quantile, reach, rejects
-from faultpath.core.streams import generator
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""

@@ -6,8 +6,8 @@ from typing import Self
 
 import numpy as np
 
-from faultpath.statistics.inputs import Floats
 from faultpath.core.streams import generator
+from faultpath.statistics.inputs import Floats
 
 _BLOCK = 50_000
 """Counts worked on at a time: with what comes between, they fit into a core's own cache."""

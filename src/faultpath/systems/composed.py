@@ -9,11 +9,11 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.errors import SystemMistake, UserError
+from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, graph, interface_of
-from faultpath.systems.episodes import SCENE, EpisodePlant, scene
 from faultpath.loop.taps import Reading
-from faultpath.core.text import unknown
+from faultpath.systems.episodes import SCENE, EpisodePlant, scene
 from faultpath.trials import Library, LoopSystem, Wiring
 
 SCENES: Mapping[str, Sequence[int]] = {

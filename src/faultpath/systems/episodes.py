@@ -11,8 +11,8 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
-from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.core.text import unknown
+from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.trials import Metric, SceneRef
 
 SCENE = "seed/"

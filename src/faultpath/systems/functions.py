@@ -7,8 +7,8 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
-from faultpath.loop import Batch
 from faultpath.core.streams import generator
+from faultpath.loop import Batch
 from faultpath.systems.episodes import (
     Episode,
     EpisodePlant,

@@ -12,8 +12,8 @@ from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
-from faultpath.loop import Batch
 from faultpath.core.streams import generator
+from faultpath.loop import Batch
 from faultpath.systems.environments import code, identity
 from faultpath.systems.episodes import (
     RETURN,

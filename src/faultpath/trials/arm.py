@@ -5,8 +5,8 @@ import json
 
 from pydantic import Field
 
-from faultpath.faults import AnyFault
 from faultpath.core.frozen import Frozen
+from faultpath.faults import AnyFault
 
 _OBJECT = " object"
 

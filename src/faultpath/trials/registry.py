@@ -20,13 +20,13 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import TYPE_CHECKING, Any
 
-from faultpath.core.error_source import described, note_system
+from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
-from faultpath.trials.code import Graph, Kind, Root, file_of, kind_of, locate
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import check_system
+from faultpath.trials.code import Graph, Kind, Root, file_of, kind_of, locate
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
 
@@ -36,16 +36,13 @@ if TYPE_CHECKING:
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
 
-_CHECKOUT = {"quadrotor": "faultpath_quadrotor.factory:create"}
-"""For a checkout that was installed before it declared entry points; goes with the next one."""
-
 _EXTRAS = frozenset({"torch", "mujoco", "gymnasium"})
 
 
 @cache
 def installed_systems() -> dict[str, str]:
     """Return the factories that distributions declare, by the name of their system."""
-    return _CHECKOUT | {each.name: each.value for each in entry_points(group=GROUP)}
+    return {each.name: each.value for each in entry_points(group=GROUP)}
 
 
 def load_system(spec: SystemSpec) -> System:
@@ -102,7 +99,7 @@ def load_parts(names: Iterable[str]) -> dict[str, Factory]:
 
 def _module(place: str, name: str) -> ModuleType:
     module = _load_file(place) if place.endswith(".py") else _load_module(place, name)
-    if (file := getattr(module, "__file__", None)) and module.__name__.split(".")[0] != "faultpath":
+    if (file := getattr(module, "__file__", None)) and not ours(module.__name__):
         note_system(file)
     return module
 
@@ -241,7 +238,7 @@ def _check_own(root: Root, folder: Path) -> None:
         place, found = folder.joinpath(*name.split(".")), file_of(locate(name))
         files = (place / "__init__.py", place.with_name(f"{place.name}.py"))
         own = next((file for file in files if os.path.isfile(file)), None)
-        if own is None or found is None or name.partition(".")[0] == "faultpath":
+        if own is None or found is None or ours(name):
             continue
         if os.path.realpath(own) != os.path.realpath(found) and kind_of(found) is Kind.LOCAL:
             raise UserError(
@@ -262,7 +259,7 @@ def _undone_on_failure() -> Generator[None]:
         sys.path[:] = path
         for name, module in tuple(sys.modules.items()):
             file = getattr(module, "__file__", None)
-            if module is modules.get(name) or not file or name.partition(".")[0] == "faultpath":
+            if module is modules.get(name) or not file or ours(name):
                 continue
             if kind_of(Path(file)) is Kind.LOCAL:
                 del sys.modules[name]

@@ -8,8 +8,8 @@ from pydantic import Field, ValidationError, model_validator
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.frozen import Frozen
-from faultpath.interface import Interface
 from faultpath.core.misfits import misfit_of
+from faultpath.interface import Interface
 from faultpath.trials.declared import FloorPlan, Variant, shown
 from faultpath.trials.system import System
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
-from faultpath.trials.code import Code, CodeState, Root, read_code
 from faultpath.trials.arm import SystemSpec
 from faultpath.trials.checks import fingerprint_of, paths_of
+from faultpath.trials.code import Code, CodeState, Root, read_code
 from faultpath.trials.registry import factory_root
 from faultpath.trials.system import System
 

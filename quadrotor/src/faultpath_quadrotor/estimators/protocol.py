@@ -9,9 +9,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.core.streams import generator
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.loop import Module
-from faultpath.core.streams import generator
 
 STATE_SOURCES = {
     "position": "position_estimate",

@@ -10,13 +10,13 @@ from torch import Tensor
 
 from faultpath.core.errors import UserError
 from faultpath.faults import AnyFault, Coupled, Delay, Drift, Dropout, Freeze, Hold
+from faultpath.loop.taps import Reading, Taps
+from faultpath.trials import Variant
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.playback import CODE, HELD, Present, at_present
 from faultpath_quadrotor.training.windows import Windows
-from faultpath.loop.taps import Reading, Taps
-from faultpath.trials import Variant
 
 _BY_WINDOW = HELD | {"wind"}
 _BY_RECORDING = frozenset({CODE[0]})

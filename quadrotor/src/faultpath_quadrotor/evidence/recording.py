@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
+from faultpath.trials import SystemSpec, load_system
 from faultpath.trials.evidence import Recording
+from faultpath.trials.state import system_code
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.closed_loop import record_flights
 from faultpath_quadrotor.training.pool import FlightData, join_flights, write_flights
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
-from faultpath.trials import SystemSpec, load_system
-from faultpath.trials.state import system_code
 
 BLOCK = 25
 """Scenes flown together and stored together."""

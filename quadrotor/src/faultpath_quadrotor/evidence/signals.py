@@ -7,14 +7,14 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.systems.checks.hearing import Heard, Values, added, laid_out, steps_of
+from faultpath.trials.attempt import Done
+from faultpath.trials.store.signals import Signal
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.drag import LinearDrag
 from faultpath_quadrotor.system import Quadrotor
-from faultpath.systems.checks.hearing import Heard, Values, added, laid_out, steps_of
-from faultpath.trials.store.signals import Signal
-from faultpath.trials.attempt import Done
 
 _CANDIDATES = 8
 """Equal ones, for the compiled rollout, which works along them."""

@@ -6,11 +6,12 @@ What was decided of it besides in a run itself stands in a file that comes with 
 from collections.abc import Iterable
 from pathlib import Path
 
-from faultpath.decisions import Ledger, Reproduction, wording
-from faultpath_quadrotor.paper.report import words
+from faultpath.decisions import wording
+from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath_quadrotor.paper.answers import Ledger, Reproduction
 from faultpath_quadrotor.paper.entries import bracket
 from faultpath_quadrotor.paper.pages.table_4 import NAMES, PAGE, paper_contrast
-from faultpath.decisions.tables import Entry, Line, Table, line
+from faultpath_quadrotor.paper.report import words
 
 CLAIM = "C26"
 BASELINE, REPAIR = "gru", "gru+dcc"

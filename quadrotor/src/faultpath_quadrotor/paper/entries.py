@@ -3,15 +3,15 @@
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import astuple, dataclass
 
-from faultpath.trials.evidence import Measurement
 from faultpath.decisions import wording
+from faultpath.decisions.tables import MISSING, Entry
 from faultpath.statistics import Contrast
+from faultpath.trials import Status
+from faultpath.trials.evidence import Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.quantities.differences import contrast
 from faultpath_quadrotor.paper.quantities.windows import mean_of_medians
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable
-from faultpath.decisions.tables import MISSING, Entry
-from faultpath.trials import Status
 
 Made = Sequence[Entry | str]
 Figure = float | str

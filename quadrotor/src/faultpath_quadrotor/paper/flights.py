@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faultpath.trials.execution import RunResult
-from faultpath_quadrotor.paper.cells import SYSTEM, Cell, Profile, Setting
 from faultpath.trials import Arm, OutcomeTable, Row, Study, System, SystemSpec, load_system
+from faultpath.trials.execution import RunResult
 from faultpath.trials.work import Progress
+from faultpath_quadrotor.paper.cells import SYSTEM, Cell, Profile, Setting
 
 FLIGHTS = "flights"
 """Folder, inside that of a run, with one folder a setting."""

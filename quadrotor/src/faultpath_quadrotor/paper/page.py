@@ -5,12 +5,13 @@ from contextlib import suppress
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
+from faultpath.decisions import wording
+from faultpath.decisions.tables import Line, Table
 from faultpath.trials.evidence import Measured, Measurement
-from faultpath.decisions import Sweep, wording
+from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.entries import Figure, Group, PublishedContrast, difference, success
 from faultpath_quadrotor.paper.results import NotRun, Results
-from faultpath.decisions.tables import Line, Table
 
 INTERVALS = (
     "Intervals, 95 %, for these trained models and recorded executions: score intervals for "

@@ -1,13 +1,87 @@
-"""`faultpath.reproduce`: the paper's tables, figures and claims, flown again."""
+"""The paper's tables, figures and claims: run anew, or read from a folder."""
 
+import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import ClassVar, NoReturn
 
 from faultpath.api.display import Display, display
-from faultpath_quadrotor.paper.reproduced import ReproductionRun
+from faultpath.api.job import Job
+from faultpath.api.saved import read_provenance
 from faultpath.api.systems import LOCAL, check_executor, hands
-from faultpath_quadrotor.paper.run import plan
+from faultpath.core.errors import Stopped, UserError
+from faultpath.decisions import RunProvenance
+from faultpath.decisions.tables import latex, markdown
+from faultpath.trials.evidence import EvidenceTable
+from faultpath.trials.store import write_text
+from faultpath.trials.store.folder import DELIVERIES
+from faultpath.trials.store.sealed import AGAIN, unseal
+from faultpath.trials.work import Progress
+from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath_quadrotor.paper.central import of_page
+from faultpath_quadrotor.paper.flights import fly
+from faultpath_quadrotor.paper.report.page import reproduction_page
+from faultpath_quadrotor.paper.report.terminal import ledger_markdown
+from faultpath_quadrotor.paper.report.words import headline
+from faultpath_quadrotor.paper.run import (
+    RESULTS,
+    Plan,
+    conclude,
+    measure_all,
+    plan,
+    read_results,
+    save,
+)
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class ReproductionRun:
+    """A finished reproduction: what was found, and where its files are.
+
+    A notebook shows the tables, with the paper's numbers beside our own.
+    """
+
+    kind: ClassVar[str] = "reproduction"
+    folder: Path
+    record: Reproduction
+    """Tables, figures, and in `ledger` the claims of the paper with what became of each."""
+    provenance: RunProvenance
+
+    @property
+    def headline(self) -> str:
+        """How many claims are confirmed, in one sentence."""
+        return f"{headline(self.record.ledger, self.record.profile)}."
+
+    def report(self) -> NoReturn:
+        """Raise `UserError`: the pages of a reproduction are written when it is carried out."""
+        raise UserError(f"the pages of the reproduction in {self.folder} stand there already.")
+
+    def __repr__(self) -> str:
+        """Return folder and size."""
+        return f"<ReproductionRun in {self.folder}: {self.record.trials} trials>"
+
+    def _repr_markdown_(self) -> str:
+        return "\n\n".join(map(markdown.block, self.record.tables))
+
+
+def read_reproduction(folder: Path) -> ReproductionRun:
+    """Read a finished reproduction, every file compared with its digest in `provenance.json`.
+
+    `UserError` for a file that is missing, damaged or changed, and for files that do not belong
+    together.
+    """
+    provenance = read_provenance(folder)
+    unseal(folder, provenance.files, RESULTS)
+    results, found = read_results(folder)
+    rows = results.outcomes.rows
+    if (found.trials, found.failed_trials) != (len(rows), sum(row.outcome.failed for row in rows)):
+        raise UserError(
+            f"the files of {folder} do not belong together (reproduction.json counts other trials "
+            f"than outcomes.parquet holds): {AGAIN}."
+        )
+    return ReproductionRun(folder, found, provenance)
 
 
 def reproduce(
@@ -44,9 +118,47 @@ def reproduce(
     place = Path(folder) if folder else asked.folder(f"reproduction-{asked.profile.name}")
     told = display(progress, "reproduce", given | {"pages": named})
 
-    # What flies, stores and draws takes a while to load, and no mistake so far waits for it.
-    from faultpath.api.job import Job
-    from faultpath_quadrotor.paper.reproducing import carry_out
-
     with hands(asked.system, workers, executor) as workforce:
         return carry_out(asked, Job(place, workforce, told, time_limit_s))
+
+
+def carry_out(plan: Plan, job: Job) -> ReproductionRun:
+    """Run, measure, conclude and write the files of a plan.
+
+    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.
+    """
+    display, folder, executor = job.display, job.folder, job.executor
+    legs = plan.legs()
+    with display.progress("Running") as show:
+        flown = fly(legs, folder, job.run, show)
+    evidence = EvidenceTable({})
+    if plan.measurements():
+        workers = (os.cpu_count() or 1) if executor.name else executor.count
+        try:
+            with display.progress("Measuring") as show:
+
+                def measuring(done: float, total: float) -> None:
+                    show(Progress(done, total, f"{done:.0f} of {total:.0f} flights"))
+
+                evidence = measure_all(plan, folder, workers, measuring)
+        except KeyboardInterrupt:
+            raise Stopped(
+                f"interrupted; what is finished is kept in {folder}, and the same "
+                f"{display.called} resumes."
+            ) from None
+    results = plan.results(flown.outcomes, evidence)
+    place = folder / plan.place
+    found = conclude(plan, results)
+    result = save(place, flown, results, evidence, found)
+    provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
+    write_pages(place, found, provenance)
+    return ReproductionRun(place, found, provenance)
+
+
+def write_pages(place: Path, found: Reproduction, provenance: RunProvenance) -> None:
+    """Write the page, the tables and the ledger of a reproduction into a folder."""
+    page = reproduction_page(found, provenance, of_page(found))
+    write_text(place / "reproduction.html", page, place)
+    write_text(place / "tables.tex", latex.document(found.tables), place)
+    write_text(place / "tables.md", "\n\n".join(map(markdown.block, found.tables)) + "\n", place)
+    write_text(place / "ledger.md", ledger_markdown(found.ledger, found.profile), place)

@@ -6,10 +6,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 from faultpath.statistics import Contrast, Estimate, Resamples, success_rate
-from faultpath_quadrotor.paper.cells import Cell
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
+from faultpath_quadrotor.paper.cells import Cell
 
 
 class NotRun(Exception):

@@ -6,11 +6,21 @@ from functools import cached_property
 from pathlib import Path
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import EvidenceTable, Measurement
-from faultpath.trials.execution import RunResult
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
-from faultpath.decisions import Reproduction, RunProvenance, Sweep
+from faultpath.decisions import RunProvenance
+from faultpath.decisions.tables import Table
+from faultpath.trials import (
+    Deliveries,
+    OutcomeTable,
+    System,
+    SystemSpec,
+    load_measurer,
+    load_system,
+)
+from faultpath.trials.evidence import EvidenceTable, Measurement
+from faultpath.trials.execution import RunResult
+from faultpath.trials.state import system_code
 from faultpath.trials.store import (
     RunFolder,
     read_evidence,
@@ -21,22 +31,13 @@ from faultpath.trials.store import (
 from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.manifest import keyed
 from faultpath.trials.store.sealed import read_regular, unseal
+from faultpath_quadrotor.paper.answers import Reproduction, Sweep
 from faultpath_quadrotor.paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath_quadrotor.paper.claims import ledger
 from faultpath_quadrotor.paper.flights import Flown, Leg, plan_legs
 from faultpath_quadrotor.paper.page import Page
 from faultpath_quadrotor.paper.pages import PAGES
 from faultpath_quadrotor.paper.results import Results
-from faultpath.decisions.tables import Table
-from faultpath.trials import (
-    Deliveries,
-    OutcomeTable,
-    System,
-    SystemSpec,
-    load_measurer,
-    load_system,
-)
-from faultpath.trials.state import system_code
 
 EVIDENCE = "evidence.parquet"
 CONCLUSIONS = "reproduction.json"

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from faultpath.decisions import Ledger, Reproduction
+from faultpath_quadrotor.paper.answers import Ledger, Reproduction
 
 RUN = Path(__file__).parent / "paper" / "run"
 

@@ -9,11 +9,11 @@ from functools import lru_cache
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
+from faultpath.loop.taps import Query
 from faultpath_quadrotor.lanes import Chunk
 from faultpath_quadrotor.perception import DepthClearance, mounted
 from faultpath_quadrotor.predictors.candidates import Predicted
 from faultpath_quadrotor.scenes.field import DistanceField
-from faultpath.loop.taps import Query
 
 Measure = Callable[[Tensor, Chunk], Tensor]
 """The clearance `[S, N]`, metres, at points `[3, S, N]` (world frame) of a chunk's scenes."""

@@ -9,6 +9,8 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Inputs, Outputs, Plant, Port, Progress
+from faultpath.loop.taps import Query
+from faultpath.trials.metrics import VEHICLE
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.estimators.protocol import Errors, raw
@@ -18,8 +20,6 @@ from faultpath_quadrotor.perception.module import geometric_clearance
 from faultpath_quadrotor.plant.world import CONTROL_STEPS, World
 from faultpath_quadrotor.predictors import Physics
 from faultpath_quadrotor.scenes.field import DistanceField
-from faultpath.loop.taps import Query
-from faultpath.trials.metrics import VEHICLE
 
 LOOK_EVERY = 10
 """Control steps between two looks at whether any trial still runs, where a look waits for the

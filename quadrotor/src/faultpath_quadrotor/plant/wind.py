@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
-from faultpath_quadrotor.vehicle import PLANT_RATE_HZ
 from faultpath.core.streams import generator
+from faultpath_quadrotor.vehicle import PLANT_RATE_HZ
 
 Array = NDArray[np.float64]
 

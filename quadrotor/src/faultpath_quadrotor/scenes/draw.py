@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from faultpath_quadrotor.scenes.prisms import prism
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
+from faultpath_quadrotor.scenes.prisms import prism
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.scenes.scene import Scene

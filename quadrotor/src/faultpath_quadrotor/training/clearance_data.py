@@ -24,6 +24,9 @@ from torch import Tensor
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_json
+from faultpath.core.streams import generator
+from faultpath.trials.store import atomic
+from faultpath.trials.store.lock import locked
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath_quadrotor.perception.labels import visible_distance
@@ -35,9 +38,6 @@ from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.parts import Part, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
-from faultpath.trials.store import atomic
-from faultpath.trials.store.lock import locked
-from faultpath.core.streams import generator
 
 FORMAT = 2
 PER_METRE = 10_000

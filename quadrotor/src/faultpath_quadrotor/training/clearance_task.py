@@ -10,14 +10,14 @@ from torch import LongTensor, Tensor, nn
 from torch.nn import functional
 from typing_extensions import override
 
+from faultpath.core.streams import generator
+from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.training import clearance_data
 from faultpath_quadrotor.training.clearance_data import Recipe, Samples
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath.learning.model_card import Schedule
-from faultpath.core.streams import generator
 
 VALIDATION_FROM = 90
 """Scenes of the training library from here on are never trained on: two of each topology."""

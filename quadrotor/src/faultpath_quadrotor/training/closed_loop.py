@@ -6,13 +6,13 @@ import numpy as np
 import torch
 
 from faultpath.loop import Batch
+from faultpath.loop.taps import Taps
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
 from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.recorded import Flights, blank_values, record
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
-from faultpath.loop.taps import Taps
 
 
 @torch.inference_mode()

@@ -14,7 +14,10 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.core.errors import UserError
+from faultpath.core.version import __version__
 from faultpath.trials.execution.provenance import packages
+from faultpath.trials.store import atomic
+from faultpath.trials.store.lock import locked
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.parts import Part, Progress, make_missing
 from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights
@@ -26,9 +29,6 @@ from faultpath_quadrotor.training.provenance import (
     read_provenance,
 )
 from faultpath_quadrotor.training.recorded import Flights
-from faultpath.trials.store import atomic
-from faultpath.trials.store.lock import locked
-from faultpath.core.version import __version__
 
 EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
 BATCH = 1024

@@ -5,11 +5,11 @@ from collections.abc import Collection, Iterable, Mapping
 from torch import Tensor
 
 from faultpath.faults import AnyFault, Coupled, Fault, UniformScale
+from faultpath.learning.windows import window_taps
+from faultpath.loop.taps import Reading
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.training.replay import DeliveredInputs
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
-from faultpath.learning.windows import window_taps
-from faultpath.loop.taps import Reading
 
 CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B

@@ -18,11 +18,11 @@ from torch import nn
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
-from faultpath_quadrotor.checkpoint import ModelCard
-from faultpath.learning.model_card import parameter_count, read_card, save, weights_sha256
-from faultpath.learning.loop import Journal, Moment, Task, minibatches, run
-from faultpath.trials.store import make_folder
 from faultpath.core.version import __version__
+from faultpath.learning.loop import Journal, Moment, Task, minibatches, run
+from faultpath.learning.model_card import parameter_count, read_card, save, weights_sha256
+from faultpath.trials.store import make_folder
+from faultpath_quadrotor.checkpoint import ModelCard
 
 _SAME_LOSS = 1e-3
 """Relative difference of a first loss that machines may cause and a change of code does not."""

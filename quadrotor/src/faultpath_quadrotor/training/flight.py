@@ -9,6 +9,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.core.streams import generator
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.flight_settings import FlightSettings
 from faultpath_quadrotor.plant import TorchPlant
@@ -25,7 +26,6 @@ from faultpath_quadrotor.vehicle import (
     VehicleParameters,
     draw,
 )
-from faultpath.core.streams import generator
 
 EPISODE_S = 6.0  # paper, Section IV-A
 EPISODE_STEPS = round(EPISODE_S * CONTROL_RATE_HZ)

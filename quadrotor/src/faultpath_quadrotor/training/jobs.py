@@ -12,17 +12,17 @@ from functools import partial
 from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
+from faultpath.learning.loop import Moment
+from faultpath.learning.model_card import read_card
+from faultpath.trials.store import make_folder
+from faultpath.trials.store.atomic import sweep
+from faultpath.trials.store.lock import locked
+from faultpath.trials.work import Lost, Returned, local, run_each, tell
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import ModelCard, ship
 from faultpath_quadrotor.training.catalogue import Job
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.job_pools import check_pools
-from faultpath.learning.model_card import read_card
-from faultpath.learning.loop import Moment
-from faultpath.trials.store import make_folder
-from faultpath.trials.store.atomic import sweep
-from faultpath.trials.store.lock import locked
-from faultpath.trials.work import Lost, Returned, local, run_each, tell
 
 _TELL_EVERY_S = 0.2
 

@@ -26,6 +26,7 @@ from faultpath.loop import (
     consumers,
     graph,
 )
+from faultpath.loop.taps import Reading, Taps
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.lanes import Chunk
@@ -37,7 +38,6 @@ from faultpath_quadrotor.state import padded_lanes
 from faultpath_quadrotor.training.windows import HISTORY, HORIZON, Windows
 from faultpath_quadrotor.variants import modelled
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
-from faultpath.loop.taps import Reading, Taps
 
 CODE = ("history_code", "predictor.latent")
 HELD = frozenset({"mass", "thrust_scale"})

@@ -10,6 +10,8 @@ from torch import LongTensor, Tensor, nn
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
+from faultpath.core.streams import generator
+from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.models import PREDICTORS
 from faultpath_quadrotor.platform import PLATFORM
@@ -28,8 +30,6 @@ from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.provenance import rows_sha256
 from faultpath_quadrotor.training.replay import DeliveredInputs, correct, predict
 from faultpath_quadrotor.training.windows import HISTORY, HORIZON, Windows, windows_of
-from faultpath.learning.model_card import Schedule
-from faultpath.core.streams import generator
 
 DCC = "+dcc"
 BATCH_SIZE = 256  # paper, Section IV-A

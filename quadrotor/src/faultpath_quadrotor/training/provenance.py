@@ -9,10 +9,10 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict
 
-from faultpath.trials.code import Root, read_code
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.trials.code import Root, read_code
 
 FORMAT = 2
 

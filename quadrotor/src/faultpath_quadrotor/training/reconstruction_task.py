@@ -15,14 +15,14 @@ from torch.nn import functional
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
+from faultpath.core.streams import generator
+from faultpath.learning.model_card import Schedule
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction.network import INTERVALS, WindNetwork
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.provenance import rows_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, windows_of
-from faultpath.learning.model_card import Schedule
-from faultpath.core.streams import generator
 
 HEAD = "reconstruction.head"
 SHORT_HISTORIES = 0.14

@@ -9,6 +9,8 @@ import hashlib
 from functools import partial
 from pathlib import Path
 
+from faultpath.trials import SystemSpec
+from faultpath.trials.state import system_code
 from faultpath_quadrotor import native
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
@@ -17,8 +19,6 @@ from faultpath_quadrotor.training.collection import Batch, make_pool
 from faultpath_quadrotor.training.parts import Progress
 from faultpath_quadrotor.training.provenance import Recipe, code_of
 from faultpath_quadrotor.training.recorded import Flights
-from faultpath.trials import SystemSpec
-from faultpath.trials.state import system_code
 
 POOL = "trajectory"
 LIBRARY = "selection"

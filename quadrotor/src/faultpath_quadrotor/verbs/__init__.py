@@ -1,1 +1,1 @@
-"""TODO."""
+"""The verbs that the quadrotor adds to the command line."""

@@ -59,10 +59,10 @@ def train(request: TrainRequest) -> int:
     `Stopped` on Ctrl-C and `UserError` for names that are not known, folders that cannot be used,
     and data that cannot be collected.
     """
+    from faultpath.trials.store import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
     from faultpath_quadrotor.training.job_pools import check_pilots
     from faultpath_quadrotor.training.jobs import Failure
-    from faultpath.trials.store import make_folder
 
     console = SafeConsole()
     failed = 0

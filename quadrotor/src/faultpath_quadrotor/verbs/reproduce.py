@@ -10,8 +10,10 @@ import typer
 from faultpath.cli.options import FAILED_TRIALS, Executor, TimeLimit, path, refuse_with
 
 if TYPE_CHECKING:
+    from faultpath_quadrotor.paper.answers import Ledger
     from faultpath_quadrotor.paper.reproduction import ReproductionRun
-    from faultpath.decisions import Ledger
+
+EXAMPLE = "faultpath reproduce table-4"
 
 
 def command(
@@ -103,9 +105,9 @@ def _judged(folder: Path) -> "tuple[Ledger, str]":
 def tell(run: "ReproductionRun", whole: bool) -> None:
     """Print what came out: the ledger of the whole paper, or the tables of its pages."""
     from faultpath.api.display import SafeConsole
+    from faultpath.decisions.tables.terminal import drawn
     from faultpath_quadrotor.paper.report import words
     from faultpath_quadrotor.paper.report.terminal import ledger_view
-    from faultpath.decisions.tables.terminal import drawn
 
     console = SafeConsole()
     profile = run.record.profile

@@ -10,6 +10,7 @@ from faultpath.cli.options import path, refuse_with
 from faultpath.cli.verbs import Verbs
 from faultpath.decisions.question import LARGEST
 
+EXAMPLE = "faultpath train quadrotor gru gru+dcc --seed 0"
 FAILED_MODELS = 1
 
 app = Verbs(help="Fit the learned models of the quadrotor.", no_args_is_help=True)

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from pydantic import Field
 
 from faultpath.core.errors import UserError
-from faultpath.faults import AnyFault, FaultText
 from faultpath.core.frozen import Frozen
-from faultpath.interface import Interface, module_of
 from faultpath.decisions.wording import MINUS
+from faultpath.faults import AnyFault, FaultText
+from faultpath.interface import Interface, module_of
 from faultpath.trials import System, Variant
 
 _BOTH_SIGNS = ("scale", "offset")

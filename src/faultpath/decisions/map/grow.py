@@ -5,7 +5,17 @@ from itertools import pairwise
 
 import numpy as np
 
-from faultpath.decisions.map.lattice import COARSE, FINE, Point, along, corners, cut, lattice, rays, sizes
+from faultpath.decisions.map.lattice import (
+    COARSE,
+    FINE,
+    Point,
+    along,
+    corners,
+    cut,
+    lattice,
+    rays,
+    sizes,
+)
 from faultpath.decisions.map.surface import Combined, Differences, simultaneous
 
 

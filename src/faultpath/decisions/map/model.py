@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from faultpath.decisions.map.asked import MapQuestion
 from faultpath.core.results import Result
+from faultpath.decisions.map.asked import MapQuestion
 from faultpath.statistics import Sign
 
 

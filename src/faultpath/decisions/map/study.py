@@ -5,15 +5,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from faultpath.decisions import question as asking
 from faultpath.core.errors import UserError
-from faultpath.faults import Fault
+from faultpath.decisions import CORRECT
+from faultpath.decisions import question as asking
+from faultpath.decisions.compared import Compared, compared
 from faultpath.decisions.map.asked import MapQuestion, SizedFault, check_up_to, places, sized_fault
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
 from faultpath.decisions.map.surface import Differences
 from faultpath.decisions.planning import scenes_of, two_variants
-from faultpath.decisions import CORRECT
-from faultpath.decisions.compared import Compared, compared
+from faultpath.faults import Fault
 from faultpath.trials import (
     Arm,
     Library,

@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.planning import Audit, plan_audit, two_variants
+from faultpath.core.results import Result
 from faultpath.decisions.plan.order import makers, ranked, recursion, repaired_modules
 from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
+from faultpath.decisions.planning import Audit, plan_audit, two_variants
 from faultpath.decisions.question import PlanQuestion
-from faultpath.core.results import Result
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
 
 PROBED_SCENES = 5

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pydantic import Field
 
 from faultpath.core.errors import UserError
-from faultpath.faults import AnyFault, FaultText
 from faultpath.core.frozen import Frozen
+from faultpath.faults import AnyFault, FaultText
 from faultpath.interface import Interface, Provenance, Source
 from faultpath.trials import System, Variant
 

@@ -11,9 +11,9 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.frozen import Frozen
+from faultpath.decisions import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
 from faultpath.decisions.question import Question
-from faultpath.decisions import CORRECT, SHARED
 
 _MOST = 200
 """Audits of a file. Each is a finding of its own, and a file of more asks no one question."""

@@ -6,7 +6,15 @@ from typing import Any, cast
 
 import numpy as np
 
-from faultpath.core.arrays import Array, HostArray, device_kind, differs, is_array, namespace, to_numpy
+from faultpath.core.arrays import (
+    Array,
+    HostArray,
+    device_kind,
+    differs,
+    is_array,
+    namespace,
+    to_numpy,
+)
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault
 from faultpath.loop.taps.errors import MalformedReading, NotFinite

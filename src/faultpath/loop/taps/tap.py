@@ -5,12 +5,12 @@ from dataclasses import dataclass, field
 
 from faultpath.core.arrays import Array
 from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
 from faultpath.interface import Interface, Provenance
 from faultpath.loop.taps.guard import Guard
 from faultpath.loop.taps.receipts import Receipt, StrikeReceipt
 from faultpath.loop.taps.strike import Strike
 from faultpath.loop.taps.tally import Tally
-from faultpath.core.text import unknown
 
 
 @dataclass(slots=True, eq=False)

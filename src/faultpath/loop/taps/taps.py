@@ -11,9 +11,16 @@ from numpy.typing import NDArray
 
 from faultpath.core.arrays import Array, differs, read_only
 from faultpath.core.errors import UserError
+from faultpath.core.text import listed, unknown
 from faultpath.faults import Coupled, Draws, Fault
 from faultpath.interface import Interface, modules
-from faultpath.loop.taps.checks import check_draws, check_finite, check_first, check_same, check_shape
+from faultpath.loop.taps.checks import (
+    check_draws,
+    check_finite,
+    check_first,
+    check_same,
+    check_shape,
+)
 from faultpath.loop.taps.errors import (
     IllegalRead,
     MalformedReading,
@@ -28,7 +35,6 @@ from faultpath.loop.taps.receipts import Receipts, check_delivered
 from faultpath.loop.taps.strike import Strike
 from faultpath.loop.taps.tally import Running, Tally
 from faultpath.loop.taps.tap import Tap, wire
-from faultpath.core.text import listed, unknown
 
 
 @dataclass(frozen=True, slots=True)

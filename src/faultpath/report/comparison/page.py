@@ -9,6 +9,11 @@ from rich.text import Text
 
 from faultpath.decisions import wording
 from faultpath.decisions.model import Effect
+from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
+from faultpath.decisions.tables.escapes import markdown as escaped
+from faultpath.decisions.tables.html import html
+from faultpath.decisions.tables.markdown import block
+from faultpath.decisions.tables.terminal import drawn
 from faultpath.report.comparison import sweep
 from faultpath.report.comparison.runs import (
     Compared,
@@ -21,11 +26,6 @@ from faultpath.report.comparison.runs import (
 from faultpath.report.effects import Rows, effect_row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.tables import decided_for
-from faultpath.decisions.tables import MISSING, Entry, Line, Table, line
-from faultpath.decisions.tables.escapes import markdown as escaped
-from faultpath.decisions.tables.html import html
-from faultpath.decisions.tables.markdown import block
-from faultpath.decisions.tables.terminal import drawn
 
 _NO_TEST = (
     "Setting verdicts side by side is no test between the audits: where one detects a difference "

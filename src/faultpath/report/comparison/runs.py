@@ -7,10 +7,10 @@ from pathlib import Path
 from faultpath.decisions import wording
 from faultpath.decisions.family import CORRECT, SHARED
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.trials.provenance import RunProvenance
 from faultpath.decisions.recorded_question import Question
-from faultpath.statistics import Sign
 from faultpath.decisions.tables import Line, Table, line
+from faultpath.statistics import Sign
+from faultpath.trials.provenance import RunProvenance
 
 _DIGITS = 8
 

@@ -5,18 +5,18 @@ from functools import partial
 from typing import Literal
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
-from faultpath.trials.execution.worker import Job
+from faultpath.core.results import Result
+from faultpath.core.text import unknown
+from faultpath.decisions.question import CheckQuestion
 from faultpath.faults import Fault, Offset, Replace, Scale
 from faultpath.faults import Sequence as InTurn
-from faultpath.decisions.question import CheckQuestion
-from faultpath.core.results import Result
 from faultpath.systems.checks import judging
 from faultpath.systems.checks.flights import Flight, Flown, Read, fly, fly_here, unflown
 from faultpath.systems.checks.judging import Check, Seen
-from faultpath.core.text import unknown
 from faultpath.trials import Arm, Library, System, SystemSpec, Variant, library_of
 from faultpath.trials.attempt import Died, Wrong
+from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
+from faultpath.trials.execution.worker import Job
 from faultpath.trials.state import system_code
 from faultpath.trials.work import Executor, local
 

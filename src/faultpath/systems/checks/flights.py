@@ -12,7 +12,6 @@ from typing_extensions import override
 from faultpath.core.arrays import to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import UserError
-from faultpath.trials.execution.worker import Job, building
 from faultpath.loop.taps import (
     IllegalRead,
     MalformedReading,
@@ -28,6 +27,7 @@ from faultpath.loop.taps import (
 from faultpath.loop.taps.tap import Tap
 from faultpath.trials import Arm, Outcome, System
 from faultpath.trials.attempt import Died, Done, Raised, Wrong, attempt
+from faultpath.trials.execution.worker import Job, building
 
 MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),

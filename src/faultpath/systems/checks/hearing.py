@@ -18,15 +18,15 @@ from typing_extensions import override
 from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
-from faultpath.trials.execution.worker import Job, building
 from faultpath.interface import Interface, Provenance
 from faultpath.loop import Loop
-from faultpath.trials.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.loop.taps import Observer, Query, Reading
 from faultpath.loop.taps.tap import Tap
 from faultpath.trials import Arm, LoopSystem, Outcome, System
 from faultpath.trials.attempt import Done, Raised, Wrong, attempt
+from faultpath.trials.execution.worker import Job, building
 from faultpath.trials.registry import named
+from faultpath.trials.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.trials.terms import Recorded
 
 Values: TypeAlias = NDArray[np.float64]

@@ -7,12 +7,12 @@ from typing import Literal
 
 import numpy as np
 
-from faultpath.trials.execution.again import difference
 from faultpath.core.results import Result
 from faultpath.systems.checks.flights import MISTAKES, TRIALS, Flight, Flown
 from faultpath.trials import Outcome, System, Variant
 from faultpath.trials.attempt import Done
 from faultpath.trials.deliveries import unproven, unread
+from faultpath.trials.execution.again import difference
 from faultpath.trials.pairing import Mismatch, Side, mismatch_words, unlike
 
 _FEW = 1e-12
@@ -110,7 +110,7 @@ def _determinism(seen: Seen) -> Check:
     """The same scenes twice give the same bits."""
     failures = tuple(
         f"Variant '{name}' flown twice over the same scenes {differs}; take random numbers from "
-        "faultpath.core.streams, and look for threads, hash(), clocks and what is kept between calls."
+        "faultpath.generator, and look for threads, hash(), clocks and what is kept between calls."
         for name, _ in seen.firsts()
         if (differs := _differs(seen, name, "again"))
     )

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from typing import Literal
 
 from faultpath.core.errors import UserError
+from faultpath.core.results import Result
+from faultpath.core.text import unknown
 from faultpath.faults import AnyFault
 from faultpath.interface import Provenance
-from faultpath.core.results import Result
 from faultpath.systems.checks.flights import Flight, Flown, fly_here
-from faultpath.core.text import unknown
 from faultpath.trials import Arm, LoopSystem, System, SystemSpec, library_of
 
 

@@ -11,11 +11,11 @@ from itertools import combinations, pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.systems.flightlog.flight import INTERVAL_S
-from faultpath.systems.flightlog.reading import Floats
 from faultpath.statistics import Contrast, Estimate, WindowQuantiles
 from faultpath.statistics.clustered import N_RESAMPLES
 from faultpath.statistics.distributions import t_quantile
+from faultpath.systems.flightlog.flight import INTERVAL_S
+from faultpath.systems.flightlog.reading import Floats
 
 LEAST_S = 2.0
 """No block is shorter."""

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from faultpath.core.errors import UserError
+from faultpath.statistics import Estimate
 from faultpath.systems.flightlog.blocks import LEAST, Medians
 from faultpath.systems.flightlog.flight import INTERVAL_S, Flight, nominal, through_air
 from faultpath.systems.flightlog.reading import Floats
-from faultpath.statistics import Estimate
 
 LOW_PASS = 0.5  # paper, appendix
 WARM_UP_S = 1.0

@@ -15,6 +15,8 @@ from pathlib import Path
 from types import ModuleType
 from weakref import WeakKeyDictionary
 
+from faultpath.core.error_source import ours
+
 _OURS = "faultpath"
 _BY_NAME = frozenset({"import_module", "__import__"})
 _BY_PATH = frozenset({"spec_from_file_location", "SourceFileLoader", "exec_module"}) | frozenset(
@@ -96,7 +98,7 @@ class Graph:
             path = file_of(spec)
             if spec is None or path is None:
                 continue
-            if parts[0] != _OURS:
+            if not ours(each):
                 kind = kind_of(path)
                 if kind is Kind.STANDARD:
                     continue
@@ -124,7 +126,7 @@ class Graph:
                 self._module(base)
                 for each in names:
                     self._module(f"{base}.{each}")
-        if found.computed and not name.startswith(f"{_OURS}."):
+        if found.computed and not ours(name):
             for beside in _sources(path.parent):
                 parts = beside.relative_to(path.parent).with_suffix("").parts
                 inside = ".".join(part for part in (package, *parts[:-1]) if part)

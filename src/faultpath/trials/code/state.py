@@ -11,10 +11,10 @@ from pathlib import Path
 
 from pydantic import Field
 
-from faultpath.trials.code.graph import Graph, Root
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import opened
 from faultpath.core.frozen import Frozen
+from faultpath.trials.code.graph import Graph, Root
 
 _NAMED = 3
 

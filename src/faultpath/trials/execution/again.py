@@ -11,15 +11,15 @@ from typing import Literal
 
 import numpy as np
 
-from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.frozen import Frozen
-from faultpath.trials.provenance import FlownAgain
-from faultpath.trials.store.folder import RunFolder
 from faultpath.loop.taps import WrittenTo
 from faultpath.trials.attempt import Died, Done, Reply, Wrong
+from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome
+from faultpath.trials.provenance import FlownAgain
+from faultpath.trials.store.folder import RunFolder
 
 Outcomes = Mapping[tuple[str, str], Outcome]
 """By arm key and scene."""
@@ -164,7 +164,7 @@ class Rechecks:
                 yield (
                     f"Results do not repeat: {count} scene{'s' * (count != 1)} of {where}, run "
                     f"again {how}, {shown.differs}. Effects may be chance: look for random numbers "
-                    "that are not of faultpath.core.streams, for threads, for what scenes of one call "
+                    "that are not of faultpath.generator, for threads, for what scenes of one call "
                     "of run() share or one call leaves for the next, and for what is written into "
                     "an array after it was delivered."
                 )

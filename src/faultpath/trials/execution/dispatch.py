@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution.worker import Started
 from faultpath.trials.attempt import Died, Wrong
+from faultpath.trials.execution.worker import Started
 from faultpath.trials.system import System
 from faultpath.trials.work import Call, Executor, Failed, Lost, WorkerLost
 

@@ -8,13 +8,13 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from faultpath.core.version import __version__
 from faultpath.trials.code import Code
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store import write_text
 from faultpath.trials.store.sealed import seal
 from faultpath.trials.store.shared import processor
-from faultpath.core.version import __version__
 from faultpath.trials.work import Executor
 
 PROVENANCE = "provenance.json"

@@ -8,27 +8,27 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from faultpath.trials.code import Code
 from faultpath.core.errors import Stopped, UserError
+from faultpath.core.version import __version__
+from faultpath.trials.arm import Arm, Study
+from faultpath.trials.attempt import Reply
+from faultpath.trials.checks import library_of
+from faultpath.trials.code import Code
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.execution.again import Rechecks
 from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.schedule import Schedule, Task, Unit, plan
 from faultpath.trials.execution.state import Looks, RunState, Stop
 from faultpath.trials.execution.worker import Job, run_here, run_task
 from faultpath.trials.provenance import FlownAgain
+from faultpath.trials.registry import load_system
+from faultpath.trials.state import system_code
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.manifest import Manifest
 from faultpath.trials.store.shared import SharedTrials
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
-from faultpath.trials.arm import Arm, Study
-from faultpath.trials.attempt import Reply
-from faultpath.trials.checks import library_of
-from faultpath.trials.deliveries import Deliveries
-from faultpath.trials.registry import load_system
-from faultpath.trials.state import system_code
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
-from faultpath.core.version import __version__
 from faultpath.trials.work import Call, Executor, Progress, local
 
 _log = logging.getLogger("faultpath")

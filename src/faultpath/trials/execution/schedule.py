@@ -7,9 +7,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from faultpath.core.version import __version__
 from faultpath.trials.arm import Arm
 from faultpath.trials.declared import Library, SceneRef
-from faultpath.core.version import __version__
 
 
 @dataclass(frozen=True)

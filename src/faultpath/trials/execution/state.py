@@ -5,14 +5,14 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from faultpath.core.errors import UserError
-from faultpath.trials.execution.schedule import Task, Unit
-from faultpath.trials.store.folder import RunFolder
-from faultpath.trials.store.tables import Shard
 from faultpath.loop.taps import TapCount, added
 from faultpath.trials.arm import Study
 from faultpath.trials.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.trials.declared import Library
+from faultpath.trials.execution.schedule import Task, Unit
 from faultpath.trials.outcome import Outcome, failed_outcome
+from faultpath.trials.store.folder import RunFolder
+from faultpath.trials.store.tables import Shard
 from faultpath.trials.table import OutcomeTable, assemble
 from faultpath.trials.work import Progress
 

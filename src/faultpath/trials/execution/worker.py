@@ -5,10 +5,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from faultpath.core.error_source import explained
-from faultpath.trials.code import CodeState, Watch, named
 from faultpath.core.errors import UserError
 from faultpath.trials.arm import Arm, SystemSpec
 from faultpath.trials.attempt import Reply, Wrong, attempt
+from faultpath.trials.code import CodeState, Watch, named
 from faultpath.trials.registry import load_system
 from faultpath.trials.state import source_state, system_code
 from faultpath.trials.system import System

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 from faultpath.core.files.opening import contents
+from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 from faultpath.trials.store.atomic import write_file
 from faultpath.trials.store.parquet import INTEGER, NUMBER, TEXT, Row, Unreadable, decode, encode
 

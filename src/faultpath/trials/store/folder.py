@@ -9,6 +9,7 @@ from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.store import atomic
 from faultpath.trials.store.lock import Say, locked
 from faultpath.trials.store.manifest import Manifest, check_same, read_manifest
@@ -20,7 +21,6 @@ from faultpath.trials.store.tables import (
     encode_shard,
     encode_traces,
 )
-from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.table import OutcomeTable
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"

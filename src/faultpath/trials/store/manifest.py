@@ -4,12 +4,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-from faultpath.trials.code import CodeState, named
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.frozen import Frozen
 from faultpath.trials.arm import Study
+from faultpath.trials.code import CodeState, named
 
 FORMAT = 2
 """Version of the folder's layout and of its columns."""

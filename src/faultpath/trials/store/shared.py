@@ -12,10 +12,10 @@ from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.trials.arm import SystemSpec
 from faultpath.trials.store import atomic
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.lock import Say, locked
-from faultpath.trials.arm import SystemSpec
 
 _THREADS = ("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "OPENBLAS_CORETYPE")
 

@@ -11,6 +11,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
+from faultpath.loop.taps import TapCount
+from faultpath.trials.metrics import VEHICLE
+from faultpath.trials.outcome import Outcome, Status, checked
 from faultpath.trials.store.parquet import (
     INTEGER,
     NUMBER,
@@ -23,9 +26,6 @@ from faultpath.trials.store.parquet import (
     encode,
     numbers_in,
 )
-from faultpath.loop.taps import TapCount
-from faultpath.trials.metrics import VEHICLE
-from faultpath.trials.outcome import Outcome, Status, checked
 from faultpath.trials.table import OutcomeTable, TrialRow
 
 Trace = NDArray[np.float32]

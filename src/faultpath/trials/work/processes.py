@@ -38,7 +38,8 @@ _MOST = 4096
 """Processes of one machine; more is a slip of the keyboard."""
 
 _BOOT = (
-    "import sys; from faultpath.trials.work.process import main; main(int(sys.argv[1]), int(sys.argv[2]))"
+    "import sys; from faultpath.trials.work.process import main; "
+    "main(int(sys.argv[1]), int(sys.argv[2]))"
 )
 
 

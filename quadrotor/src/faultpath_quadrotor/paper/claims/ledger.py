@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from faultpath.decisions import ClaimVerdict, Ledger
+from faultpath_quadrotor.paper.answers import ClaimVerdict, Ledger
 from faultpath_quadrotor.paper.claims import (
     calibration,
     compensation,

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from faultpath.decisions import Part
 from faultpath.statistics import BreakEven, break_even
 from faultpath.statistics.contrast import MIN_SCENES
+from faultpath_quadrotor.paper.answers import Part
 from faultpath_quadrotor.paper.claims.rules import (
     CONFIRMED,
     FEW_FOR_POINTS,

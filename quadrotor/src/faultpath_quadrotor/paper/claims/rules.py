@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from faultpath.decisions import Answer
 from faultpath.statistics import Contrast
 from faultpath.statistics.contrast import ROUNDING
+from faultpath_quadrotor.paper.answers import Answer
 
 POINT_SCENES = 50
 """From so many scenes on an estimate decides where the paper's own does: half of the paper's

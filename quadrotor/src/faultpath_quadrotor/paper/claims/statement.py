@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, Protocol, TypeAlias
 
-from faultpath.decisions import Answer, ClaimVerdict, Part
-from faultpath.decisions.reproduction import Size
 from faultpath.statistics import Contrast
 from faultpath.statistics.contrast import ROUNDING
+from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Part, Size
 from faultpath_quadrotor.paper.claims.rules import Ends, Judged, Rule, points_decide
 from faultpath_quadrotor.paper.published import Printed, PublishedClaim
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable

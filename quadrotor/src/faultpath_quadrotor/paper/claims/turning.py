@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from faultpath.decisions import Part
 from faultpath.statistics import Contrast, change, decide_family, turn, with_test
+from faultpath_quadrotor.paper.answers import Part
 from faultpath_quadrotor.paper.claims.rules import CONFIRMED, FEW_SCENES, REFUTED, Judged
 from faultpath_quadrotor.paper.claims.statement import shown
 from faultpath_quadrotor.paper.published import Printed

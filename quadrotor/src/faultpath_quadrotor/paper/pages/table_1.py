@@ -1,5 +1,6 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
+from faultpath.trials import Status
 from faultpath.trials.evidence import Measurement, Recording
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting
 from faultpath_quadrotor.paper.entries import (
@@ -9,7 +10,6 @@ from faultpath_quadrotor.paper.entries import (
 )
 from faultpath_quadrotor.paper.page import WINDOWS, Page, Row, TableSpec
 from faultpath_quadrotor.paper.published import published
-from faultpath.trials import Status
 
 STILL = Setting()
 SEEN_THROUGH = Setting(others=(("clearance", "true"),))

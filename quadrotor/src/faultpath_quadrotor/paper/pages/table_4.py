@@ -25,7 +25,12 @@ from faultpath_quadrotor.paper.page import (
     rates,
 )
 from faultpath_quadrotor.paper.published import Printed, published
-from faultpath_quadrotor.paper.quantities.differences import Effect, combined, succeeded, terminal_distance
+from faultpath_quadrotor.paper.quantities.differences import (
+    Effect,
+    combined,
+    succeeded,
+    terminal_distance,
+)
 from faultpath_quadrotor.paper.results import Quantity
 
 WINDY = Setting(wind="L3")

@@ -16,10 +16,10 @@ from faultpath.statistics import (
     weighted_sum,
     with_test,
 )
-from faultpath_quadrotor.paper.cells import Cell
-from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, decisive
 from faultpath.trials import Pairs
 from faultpath.trials.pairing import Trials
+from faultpath_quadrotor.paper.cells import Cell
+from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, decisive
 
 Pair: TypeAlias = tuple[Cell, Cell]
 Bools: TypeAlias = NDArray[np.bool_]

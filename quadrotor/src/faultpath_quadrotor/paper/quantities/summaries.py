@@ -8,7 +8,11 @@ from numpy.typing import NDArray
 from faultpath.statistics import Contrast, success_rate
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.quantities.differences import contrast, joint
-from faultpath_quadrotor.paper.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
+from faultpath_quadrotor.paper.quantities.windows import (
+    Subject,
+    difference_of_quantiles,
+    mean_of_medians,
+)
 from faultpath_quadrotor.paper.results import Quantity, Results, Undecidable, decisive
 
 Bools = NDArray[np.bool_]

@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.trials.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
+from faultpath.trials.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 Subject: TypeAlias = tuple[Measurement, ...]

@@ -3,12 +3,12 @@
 from markupsafe import Markup
 
 from faultpath.decisions import RunProvenance, wording
-from faultpath.decisions.reproduction import Reproduction
-from faultpath.report.frame import render
-from faultpath_quadrotor.paper.report import words
-from faultpath.report.sweep import sweep_plot
 from faultpath.decisions.tables import Table
 from faultpath.decisions.tables.html import html
+from faultpath.report.frame import render
+from faultpath_quadrotor.paper.answers import Reproduction
+from faultpath_quadrotor.paper.report import words
+from faultpath_quadrotor.paper.report.sweep import sweep_plot
 
 
 def reproduction_page(

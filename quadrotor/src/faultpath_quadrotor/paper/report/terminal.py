@@ -8,13 +8,13 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.decisions import wording
-from faultpath.decisions.reproduction import Answer, ClaimVerdict, Ledger, Size
-from faultpath_quadrotor.paper.report import words
 from faultpath.decisions.tables import MISSING, Entry, Table, line
 from faultpath.decisions.tables.escapes import markdown
 from faultpath.decisions.tables.markdown import grid
 from faultpath.decisions.tables.model import Tone
 from faultpath.decisions.tables.terminal import STYLES
+from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Ledger, Size
+from faultpath_quadrotor.paper.report import words
 
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
 _SHOWN: dict[str, AlignMethod] = {

@@ -3,7 +3,7 @@
 import re
 
 from faultpath.decisions import wording
-from faultpath.decisions.reproduction import Answer, ClaimVerdict, Ledger, Part, Size
+from faultpath_quadrotor.paper.answers import Answer, ClaimVerdict, Ledger, Part, Size
 
 QUICK = "quick"
 """The profile whose runs are too small to be held against the paper."""

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from faultpath.decisions import wording
-from faultpath.decisions.reproduction import Point, Series, Sweep
 from faultpath.report.svg import Axis, Svg, draw_levels, draw_tick, text_width, tick_label
+from faultpath_quadrotor.paper.answers import Point, Series, Sweep
 
 LOOKS = 4
 """Looks that lines take in turn: colour, dashes and mark differ together."""
