@@ -19,11 +19,11 @@ from faultpath.decisions.map.decide import conclude as decide
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.question import MapQuestion
 from faultpath.decisions.tables.markdown import grid
 from faultpath.report.map import shown, table_markdown, tables
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.trials import SystemSpec, library_of, load_system
+from faultpath.trials.question import MapQuestion
 from faultpath.trials.store import read_outcomes
 from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.sealed import seal

@@ -1,11 +1,11 @@
 """A system with three modules that only lays out arms and never runs."""
 
 from faultpath.decisions.planning import Audit, plan_audit
-from faultpath.decisions.question import AuditQuestion
 from faultpath.faults import Coupled, Fault
 from faultpath.faults.values import Scale
 from faultpath.interface import Channel, Interface, Provenance, Source
 from faultpath.trials import Library, SceneRef, System, SystemSpec, Variant
+from faultpath.trials.question import AuditQuestion
 
 INTERFACE = Interface(
     name="paper",

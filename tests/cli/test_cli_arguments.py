@@ -3,7 +3,7 @@
 import pytest
 from cli_runs import TOY, audit, faultpath
 
-from faultpath.decisions.question import names
+from faultpath.trials.question import names
 
 
 @pytest.mark.parametrize("option", ["primary", "metric", "library", "thresholds", "out", "seeds"])

@@ -8,8 +8,8 @@ from faultpath.decisions.map.decide import conclude
 from faultpath.decisions.map.lattice import UNITS
 from faultpath.decisions.map.model import MapRecord
 from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.question import MapQuestion
 from faultpath.trials import SystemSpec, library_of, load_system
+from faultpath.trials.question import MapQuestion
 from faultpath.trials.store import read_outcomes
 
 ROOT = Path(__file__).resolve().parents[2]

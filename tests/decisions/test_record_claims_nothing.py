@@ -18,9 +18,9 @@ from faultpath.decisions import (
     wording,
 )
 from faultpath.decisions.model import Change, Effect
-from faultpath.decisions.question import StopWhen
 from faultpath.decisions.summary import MOST_WORDS, answers, in_short
 from faultpath.trials import OutcomeTable, Status
+from faultpath.trials.question import StopWhen
 
 SIDES = ((REPAIR, 1), (BASELINE, -1))
 Statuses = dict[str, list[Status]]

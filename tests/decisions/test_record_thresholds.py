@@ -8,8 +8,8 @@ from outcome_tables import paths, question, record, table
 from faultpath.core.errors import UserError
 from faultpath.decisions import decide
 from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.question import AuditQuestion, ask
 from faultpath.trials import Metric, OutcomeTable, Status, SystemSpec, load_system
+from faultpath.trials.question import AuditQuestion, ask
 
 CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}
 TOY = SystemSpec(name="examples/toy.py:create")

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from faultpath.core.errors import UserError
-from faultpath.decisions.question import CheckQuestion
 from faultpath.systems.checks.check import check_system
 from faultpath.trials import SystemSpec, load_system
+from faultpath.trials.question import CheckQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 BROKEN = f"{Path(__file__).with_name('broken.py')}:create"

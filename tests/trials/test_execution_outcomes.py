@@ -75,8 +75,8 @@ def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
 def test_the_toy_survives_the_loss_of_its_gain(tmp_path):
     """Dividing by an erased gain gives no number; the trials fail, and the rest stands."""
     from faultpath.decisions.planning import plan_audit
-    from faultpath.decisions.question import AuditQuestion
     from faultpath.trials import SystemSpec
+    from faultpath.trials.question import AuditQuestion
 
     spec = SystemSpec(name=f"{HERE.parents[2] / 'examples' / 'toy.py'}:create")
     system = load_system(spec)

@@ -9,8 +9,8 @@ from typing import Any, TypeVar
 
 from faultpath.api.display import Display, display
 from faultpath.api.systems import Chosen, choose
-from faultpath.decisions.question import Request, ask
 from faultpath.trials import Library, System, library_of
+from faultpath.trials.question import Request, ask
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)

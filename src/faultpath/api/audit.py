@@ -13,10 +13,10 @@ from faultpath.api.display import Display
 from faultpath.api.systems import Chosen, hands
 from faultpath.core.errors import UserError
 from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.question import AuditQuestion, Running
 from faultpath.faults import each_size
 from faultpath.statistics import IN_FORCE
 from faultpath.trials import System
+from faultpath.trials.question import AuditQuestion, Running
 from faultpath.trials.state import system_code
 
 if TYPE_CHECKING:

@@ -9,8 +9,8 @@ from faultpath.api.audit import run_folder
 from faultpath.api.display import Display
 from faultpath.api.systems import hands
 from faultpath.decisions.map.study import plan_map
-from faultpath.decisions.question import MapQuestion
 from faultpath.trials import System
+from faultpath.trials.question import MapQuestion
 
 if TYPE_CHECKING:
     from faultpath.api.run import MapRun

@@ -15,8 +15,8 @@ from faultpath.decisions.plan.plan import Plan, Proposal
 from faultpath.decisions.plan.study import StudyFile, check_arms
 from faultpath.decisions.plan.words import sentences
 from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.question import PlanQuestion, Question
 from faultpath.trials import System, library_of
+from faultpath.trials.question import PlanQuestion, Question
 from faultpath.trials.store import write_text
 from faultpath.trials.store.atomic import check_writable
 from faultpath.trials.work import Progress

@@ -11,7 +11,6 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
 from faultpath.decisions import DecisionRecord
 from faultpath.decisions.planning import plan_audit
-from faultpath.decisions.question import AuditQuestion
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
@@ -23,6 +22,7 @@ from faultpath.trials.execution.again import difference
 from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.provenance import amend
 from faultpath.trials.execution.worker import Job
+from faultpath.trials.question import AuditQuestion
 from faultpath.trials.state import system_code
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.atomic import write_file

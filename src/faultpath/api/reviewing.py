@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 from faultpath.api.asking import asked_for, asks, begin
 from faultpath.api.display import Display
 from faultpath.api.systems import Chosen
-from faultpath.decisions.question import CheckQuestion, TraceQuestion
 from faultpath.trials import System
+from faultpath.trials.question import CheckQuestion, TraceQuestion
 
 if TYPE_CHECKING:
     from faultpath.systems.checks.check import Report

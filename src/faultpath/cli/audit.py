@@ -11,7 +11,7 @@ import typer
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FAILED_TRIALS, SYSTEM, path
 from faultpath.core.text import one_line
-from faultpath.decisions.question import AuditQuestion
+from faultpath.trials.question import AuditQuestion
 
 if TYPE_CHECKING:
     from faultpath.api.display import SafeConsole

@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM
-from faultpath.decisions.question import CheckQuestion
+from faultpath.trials.question import CheckQuestion
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 import typer
 
 from faultpath.cli.options import path
-from faultpath.decisions.question import Flag, Request, flag, panel, settings
+from faultpath.trials.question import Flag, Request, flag, panel, settings
 
 _Verb = TypeVar("_Verb", bound=Callable[..., Any])
 _PLAIN = (str, int, float, bool)

@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FAILED_TRIALS, SYSTEM
-from faultpath.decisions.question import MapQuestion
+from faultpath.trials.question import MapQuestion
 
 
 @takes(MapQuestion)

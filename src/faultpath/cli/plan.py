@@ -8,7 +8,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM, path
-from faultpath.decisions.question import PlanQuestion
+from faultpath.trials.question import PlanQuestion
 
 
 @takes(PlanQuestion)

@@ -7,7 +7,7 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import SYSTEM
-from faultpath.decisions.question import TraceQuestion, ask
+from faultpath.trials.question import TraceQuestion, ask
 
 FOUND = 1
 

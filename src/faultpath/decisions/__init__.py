@@ -2,7 +2,7 @@
 
 from faultpath.decisions.decide import decide, primary_path, stops
 from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Path, StruckTap
-from faultpath.decisions.recorded_question import Question, StopRule
+from faultpath.decisions.question import Question, StopRule
 from faultpath.trials.provenance import RunProvenance
 
 __all__ = [

@@ -19,7 +19,7 @@ from faultpath.decisions.model import (
     Stopped,
     Verdict,
 )
-from faultpath.decisions.recorded_question import EarlierLook, Question
+from faultpath.decisions.question import EarlierLook, Question
 from faultpath.decisions.summary import headline
 from faultpath.statistics import (
     Region,

@@ -5,7 +5,7 @@ from statistics import median
 from typing import Any
 
 from faultpath.decisions.model import CORRECT, AtThreshold, Cell, Path
-from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.question import Question
 from faultpath.statistics import (
     Estimate,
     Resamples,

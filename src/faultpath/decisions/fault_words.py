@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.question import Question
 from faultpath.decisions.wording import MINUS, capital
 from faultpath.faults import Fault
 from faultpath.faults.base import number as plain_number

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from faultpath.core.results import Result
-from faultpath.decisions.recorded_question import EarlierLook, Question
+from faultpath.decisions.question import EarlierLook, Question
 from faultpath.statistics import BreakEven, Estimate, Sign, Turn
 
 CORRECT = "correct"

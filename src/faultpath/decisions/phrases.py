@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 
 from faultpath.decisions.model import Change, DecisionRecord, Effect, PathBreakEven, Verdict
-from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.question import Question
 from faultpath.decisions.wording import (
     capital,
     counted,

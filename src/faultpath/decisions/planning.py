@@ -19,7 +19,6 @@ from faultpath.decisions import (
     stops,
 )
 from faultpath.decisions import question as asking
-from faultpath.decisions.question import AuditQuestion, StopWhen
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop.taps import TapCount
@@ -34,6 +33,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
+from faultpath.trials.question import AuditQuestion, StopWhen
 
 LOOK = 5
 """Scenes from one look to the next of a sequential audit, where the system flies as many at once:

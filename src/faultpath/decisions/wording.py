@@ -5,7 +5,7 @@ import re
 from collections.abc import Sequence
 
 from faultpath.decisions.model import CORRECT, SHARED, Effect
-from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.question import Question
 from faultpath.statistics import BreakEven, Estimate
 
 MINUS = "−"

@@ -8,7 +8,7 @@ import typer
 
 from faultpath.cli.options import path, refuse_with
 from faultpath.cli.verbs import Verbs
-from faultpath.decisions.question import LARGEST
+from faultpath.trials.question import LARGEST
 
 EXAMPLE = "faultpath train quadrotor gru gru+dcc --seed 0"
 FAILED_MODELS = 1

@@ -10,8 +10,8 @@ from faultpath.decisions.plan.probing import command_responses
 from faultpath.decisions.plan.sources import Candidate, candidates
 from faultpath.decisions.plan.study import StudyAudit, StudyFile, arms_of
 from faultpath.decisions.planning import Audit, plan_audit, two_variants
-from faultpath.decisions.question import PlanQuestion
 from faultpath.trials import Arm, Library, LoopSystem, System, SystemSpec, Variant
+from faultpath.trials.question import PlanQuestion
 
 PROBED_SCENES = 5
 """A probe is a look at where to begin, and no result."""

@@ -13,7 +13,7 @@ from faultpath.core.files.plain import Misread, read_yaml, yaml_text
 from faultpath.core.frozen import Frozen
 from faultpath.decisions import CORRECT, SHARED
 from faultpath.decisions.planning import Audit
-from faultpath.decisions.question import Question
+from faultpath.trials.question import Question
 
 _MOST = 200
 """Audits of a file. Each is a finding of its own, and a file of more asks no one question."""

@@ -7,7 +7,7 @@ from pathlib import Path
 from faultpath.decisions import wording
 from faultpath.decisions.family import CORRECT, SHARED
 from faultpath.decisions.model import DecisionRecord, Effect
-from faultpath.decisions.recorded_question import Question
+from faultpath.decisions.question import Question
 from faultpath.decisions.tables import Line, Table, line
 from faultpath.statistics import Sign
 from faultpath.trials.provenance import RunProvenance

@@ -7,7 +7,6 @@ from typing import Literal
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
-from faultpath.decisions.question import CheckQuestion
 from faultpath.faults import Fault, Offset, Replace, Scale
 from faultpath.faults import Sequence as InTurn
 from faultpath.systems.checks import judging
@@ -17,6 +16,7 @@ from faultpath.trials import Arm, Library, System, SystemSpec, Variant, library_
 from faultpath.trials.attempt import Died, Wrong
 from faultpath.trials.execution.dispatch import Dispatch, block_limit_s
 from faultpath.trials.execution.worker import Job
+from faultpath.trials.question import CheckQuestion
 from faultpath.trials.state import system_code
 from faultpath.trials.work import Executor, local
 

@@ -1,0 +1,373 @@
+"""What can be asked: every option of an audit, a map, a plan, a check and a trace, declared once.
+
+The flags of the command line, Python's keywords, their help, the study file and the checks follow
+from these models. Texts are taken where the command line gives them, as in `seeds="0,1,2"`.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, cast
+
+from pydantic import BeforeValidator, Field, PlainSerializer, ValidationError
+
+from faultpath.core.errors import UserError
+from faultpath.core.frozen import Frozen
+from faultpath.core.misfits import misfit_of
+
+Generalise = Literal["scenes", "models"]
+StopWhen = Literal["decided", "all-decided"]
+Rule = Literal["exact", "unconditional"]
+
+LARGEST = 2**63 - 1
+"""The largest seed that the tables hold."""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """How the command line calls and shows a field, where its name does not say."""
+
+    name: str = ""
+    several: bool = False
+    """Whether the flag may be repeated."""
+    panel: str = ""
+    """Heading in the help; by default that of the class which declares the field."""
+
+
+def numbers(text: str) -> tuple[int, ...]:
+    """Read comma-separated seeds such as `0,1,2`; `ValueError` for what is none."""
+    parts = [part.strip() for part in text.split(",")]
+    if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
+        raise ValueError(f"{text!r:.80} is not a list of whole numbers, for example 0,1,2")
+    return tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
+
+
+def sizes(text: str) -> tuple[float, ...]:
+    """Read comma-separated numbers such as `0.1,0.2`; `ValueError` for what is none."""
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"{text!r:.80} is not a list of numbers, for example 0.1,0.2") from None
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Read comma-separated names; `ValueError` for an empty one, and for one given twice."""
+    found = tuple(part.strip() for part in text.split(","))
+    if not all(found):
+        raise ValueError(f"'{text}' holds an empty name: part names by one comma each")
+    if twice := [name for place, name in enumerate(found) if name in found[:place]]:
+        raise ValueError(f"'{text}' names '{twice[0]}' twice: name each once")
+    return found
+
+
+def settings(pairs: Sequence[str]) -> dict[str, str]:
+    """Read `key=value` pairs; `UserError` for a pair without `=`, and for what is given twice."""
+    found: dict[str, str] = {}
+    for pair in pairs:
+        key, separator, value = pair.partition("=")
+        if not separator or not key:
+            raise UserError(f"--set {pair!r} is not of the form key=value, for example wind=L3.")
+        if key in found:
+            raise UserError(f"the options name '{key}' twice: give it once.")
+        found[key] = value
+    return found
+
+
+def _seeds(given: object) -> object:
+    found = numbers(given) if isinstance(given, str) else _several(given)
+    for seed in found:
+        if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
+            raise ValueError(
+                f"{seed!r:.80} is not a seed: give whole numbers between 0 and 2^63 - 1"
+            )
+    if not found or len(set(found)) < len(found):
+        raise ValueError("give at least one seed, each of them once")
+    return found
+
+
+def _several(given: object) -> tuple[object, ...]:
+    if isinstance(given, Sequence) and not isinstance(given, str):
+        return tuple(cast("Sequence[object]", given))
+    return (given,)
+
+
+def _sizes(given: object) -> object:
+    return sizes(given) if isinstance(given, str) else _several(given)
+
+
+def _names(given: object) -> object:
+    return names(given) if isinstance(given, str) else _several(given)
+
+
+def _path(given: object) -> object:
+    return Path(given) if isinstance(given, str) else given
+
+
+def _options(given: object) -> object:
+    return {} if given is None else given
+
+
+Sizes = Annotated[tuple[float, ...], BeforeValidator(_sizes)]
+Place = Annotated[
+    Path | None, BeforeValidator(_path), PlainSerializer(lambda path: path and str(path))
+]
+
+
+Options = Annotated[
+    dict[str, Any],
+    BeforeValidator(_options),
+    Flag("--set", several=True),
+    Field(description="System option, key=value; where a flag has the same name, or in scripts."),
+]
+Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
+Workers = Annotated[
+    int | None,
+    Field(
+        description="Worker processes, 0 for this process alone; default one per core if that "
+        "helps."
+    ),
+]
+TimeLimit = Annotated[
+    float | None,
+    Field(
+        description="Seconds that a block of scenes may take; default what the system says, else "
+        "3600."
+    ),
+]
+
+
+class Request(Frozen, strict=True, allow_inf_nan=False):
+    """What is asked of a system."""
+
+    panel: ClassVar[str] = ""
+    """Heading in the help of the fields that a class declares."""
+
+    library: Scenes = "selection"
+    options: Options = Field(default_factory=dict)
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return ()
+
+
+class TraceQuestion(Request):
+    """What a trace shows."""
+
+    variant: str | None = Field(default=None, description="Variant; default the first.")
+    steps: int = Field(default=3, ge=1, description="Control steps to trace.")
+    scene: str | None = Field(default=None, description="Scene by its id; default the first.")
+    seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trial.")
+    fault: str | None = Field(
+        default=None, description="A fault, as in `audit`, to see whom it reaches."
+    )
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return (self.variant,) if self.variant else ()
+
+
+class CheckQuestion(Request):
+    """What is checked."""
+
+    variants: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        default=(),
+        description="Variants to check: wm-a,wm-a+dcc. Default all, or two of more than 4.",
+    )
+    scenes: int = Field(default=4, description="Run the first N scenes.")
+    seed: int = Field(default=0, ge=0, le=LARGEST, description="Seed of the trials.")
+    workers: int | None = Field(
+        default=None,
+        description="Worker processes, by default 2 where that helps; 0 is this process alone, "
+        "which cannot see what differs from process to process.",
+    )
+    time_limit_s: TimeLimit = None
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return self.variants
+
+
+class Question(Request):
+    """Two variants of a system, compared in scenes."""
+
+    panel: ClassVar[str] = "What is compared"
+
+    baseline: str = Field(
+        description="Variant to compare with; for the quadrotor also your file.py:factory."
+    )
+    repair: str = Field(description="Variant that is meant to help, named likewise.")
+    library: Scenes = "held-out"
+    scenes: int | None = Field(default=None, description="Run only the first N scenes.")
+    seeds: Annotated[tuple[int, ...], BeforeValidator(_seeds)] = Field(
+        default=(0,), description="Seeds of the noise, and of trained models where there are any."
+    )
+
+    @property
+    def arms(self) -> tuple[str, ...]:
+        """Variants that it names."""
+        return self.baseline, self.repair
+
+    def audit_of(self, fault: str) -> "AuditQuestion":
+        """Return the audit of the same variants and scenes under a fault."""
+        same = {name: getattr(self, name) for name in Question.model_fields}
+        return AuditQuestion(fault=fault, **same)
+
+
+class Running(Question):
+    """The same, with where and how it runs."""
+
+    panel: ClassVar[str] = "How it runs"
+
+    folder: Annotated[Place, Flag("--out")] = Field(
+        default=None,
+        description="Run folder; default runs/<question>-<code>, so the same call resumes.",
+    )
+    share: Place = Field(
+        default=None,
+        description="Folder in which runs share trials; default runs/.shared, and none where the "
+        "run folder is named.",
+    )
+    workers: Workers = None
+    executor: str = Field(
+        default="local",
+        description="local, or ray for a Ray cluster: the one that RAY_ADDRESS names or that runs "
+        "here, else one of its own; ray:HOST:PORT names it.",
+    )
+    time_limit_s: TimeLimit = None
+
+    @property
+    def shared_in(self) -> Path | None:
+        """The folder in which the run shares trials with others, if it does."""
+        if self.executor != "local":
+            return None
+        return self.share or (Path("runs") / ".shared" if self.folder is None else None)
+
+
+class AuditQuestion(Running):
+    """What an audit asks."""
+
+    panel: ClassVar[str] = "How it is decided"
+
+    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+        description="`calibration=+0.1`, `wind:delay=5@predictor`, `gain:scale=2,onset=20`, ...; "
+        "several sizes, `mass:scale=0.9,1.1` or `calibration=-0.2..0.2/9`, are an audit each."
+    )
+    primary: str | None = Field(
+        default=None, description="Path of the primary contrast, a module or shared (default)."
+    )
+    generalise: Generalise = Field(
+        default="scenes",
+        description="What intervals speak of: new scenes, or newly trained models too (several "
+        "seeds).",
+    )
+    metric: str = Field(default="", description="Metric of the system to show beside success.")
+    thresholds: Sizes = Field(
+        default=(), description="Of that metric, to judge success anew: 0.02,0.05,0.1."
+    )
+    stop_when: StopWhen | None = Field(
+        default=None,
+        description="Stop once the primary contrast is decided, or the effect on every path: "
+        "scenes in random order, at most --scenes of them.",
+    )
+    margin_pp: float | None = Field(
+        default=None,
+        description="With --stop-when: a difference shown to be smaller than so many percentage "
+        "points ends it too.",
+    )
+    rule: Rule = Field(
+        default="unconditional",
+        description="By which an audit without --stop-when is decided: that in force since "
+        "2026-11-23, or the exact one for scenes that were seen under it.",
+    )
+    signals: bool = Field(
+        default=True,
+        description="Run the report's first scenes once more to plot their signals.",
+    )
+
+
+class MapQuestion(Running):
+    """What a reversal map asks."""
+
+    panel: ClassVar[str] = "What is mapped"
+
+    fault: Annotated[str, Flag(panel=Question.panel)] = Field(
+        description="Without its size: `calibration`, `gain`, `gain:offset`, `gain,onset=9`."
+    )
+    against: Annotated[tuple[str, ...], BeforeValidator(_names)] = Field(
+        description="The two modules whose errors are mapped: reconstruction,predictor."
+    )
+    up_to: float | None = Field(
+        default=None, description="Largest error, of either sign; default three declared spreads."
+    )
+    points: int = Field(
+        default=81, description="Pairs of errors at most, but for those that bisect the paths."
+    )
+    mean: Sizes = Field(
+        default=(0.0,), description="Mean of the errors, one number or one a module."
+    )
+    spread: Sizes = Field(
+        default=(), description="Standard deviation of the errors, likewise; default as declared."
+    )
+    correlation: float | None = Field(
+        default=None, description="Of the errors, to tell the expected difference there."
+    )
+
+
+class PlanQuestion(Question):
+    """What a plan starts from."""
+
+    panel: ClassVar[str] = "What is planned"
+
+    fault: Annotated[
+        tuple[str, ...],
+        BeforeValidator(_several),
+        Flag(several=True, panel=Question.panel),
+    ] = Field(
+        default=(),
+        description="Expected error of a source that declares none, or another one: "
+        "`gain:scale=1.1`; repeat the option for more.",
+    )
+    module: Annotated[
+        tuple[str, ...],
+        BeforeValidator(_several),
+        Flag(several=True),
+    ] = Field(
+        default=(), description="Module that the repair changes, where its reads do not show it."
+    )
+
+
+_Asked = TypeVar("_Asked", bound=Frozen)
+
+
+def ask(model: type[_Asked], given: Mapping[str, object], command: bool = False) -> _Asked:
+    """Return what is asked; `UserError` for what does not fit, by its flag if `command`."""
+    try:
+        return model.model_validate(dict(given))
+    except ValidationError as error:
+        wrong = misfit_of(error, model)
+        first = str(wrong.place[0]) if wrong.place else ""
+        where = flag(model, first) if command and first in model.model_fields else wrong.where
+        raise UserError(f"{where}: {wrong.says}.") from None
+
+
+def flag(model: type[Frozen], name: str) -> str:
+    """Return what the command line calls a field: `margin_pp` is `--margin`."""
+    field = model.model_fields[name]
+    for note in field.metadata:
+        if isinstance(note, Flag) and note.name:
+            return note.name
+    dashed = re.sub(r"_(s|pp)$", "", name).replace("_", "-")
+    return f"--no-{dashed}" if field.default is True else f"--{dashed}"
+
+
+def panel(model: type[Request], name: str) -> str | None:
+    """Return under which heading the help shows a field."""
+    for note in model.model_fields[name].metadata:
+        if isinstance(note, Flag) and note.panel:
+            return note.panel
+    owners = (each for each in model.__mro__ if name in vars(each).get("__annotations__", {}))
+    return next(each.panel or None for each in owners if issubclass(each, Request))
