@@ -18,7 +18,6 @@ from faultpath.decisions import (
     primary_path,
     stops,
 )
-from faultpath.decisions import question as asking
 from faultpath.faults import AnyFault, Fault
 from faultpath.interface import module_of
 from faultpath.loop.taps import TapCount
@@ -33,6 +32,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
+from faultpath.trials import question as asking
 from faultpath.trials.question import AuditQuestion, StopWhen
 
 LOOK = 5

@@ -7,7 +7,6 @@ import numpy as np
 
 from faultpath.core.errors import UserError
 from faultpath.decisions import CORRECT
-from faultpath.decisions import question as asking
 from faultpath.decisions.compared import Compared, compared
 from faultpath.decisions.map.asked import MapQuestion, SizedFault, check_up_to, places, sized_fault
 from faultpath.decisions.map.lattice import COARSE, UNITS, Point, lattice
@@ -24,6 +23,7 @@ from faultpath.trials import (
     SystemSpec,
     Variant,
 )
+from faultpath.trials import question as asking
 
 COARSE_POINTS = len(lattice(COARSE))
 
