@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
-import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 
@@ -27,7 +26,7 @@ def _imported(source: str) -> Iterator[str]:
 def _third_party(files: list[Path]) -> set[str]:
     names = {name for path in files for name in _imported(path.read_text(encoding="utf-8"))}
     distributions = packages_distributions()
-    outside = names - sys.stdlib_module_names - {"faultpath"}
+    outside = names - sys.stdlib_module_names - {"faultpath", "faultpath_quadrotor"}
     found: set[str] = set()
     for name in outside:
         bringing = {canonicalize_name(each) for each in distributions.get(name, [name])}
@@ -35,35 +34,25 @@ def _third_party(files: list[Path]) -> set[str]:
     return {BROUGHT_BY.get(name, name) for name in found}
 
 
-@pytest.fixture(scope="module")
-def files(root: Path) -> list[Path]:
-    return sorted((root / "src").rglob("*.py"))
-
-
-def _declared(root: Path, *extras: str) -> set[str]:
-    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    lines = list(project["dependencies"])
+def _declared(project: Path, *extras: str) -> set[str]:
+    declared = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    lines = list(declared["dependencies"])
     for extra in extras:
-        lines += project["optional-dependencies"][extra]
-    return {canonicalize_name(Requirement(line).name) for line in lines}
+        lines += declared["optional-dependencies"][extra]
+    return {canonicalize_name(Requirement(line).name) for line in lines} - {"faultpath"}
 
 
-def test_the_core_imports_what_is_declared_and_nothing_else(root: Path, files: list[Path]) -> None:
-    quadrotor = root / "src" / "faultpath" / "quadrotor"
-    core = [path for path in files if not path.is_relative_to(quadrotor)]
-    declared = _declared(root, "pandas", "ulog", "gymnasium", "torch", "ray")
-    assert _third_party(core) == declared
+def test_the_engine_imports_what_is_declared_and_nothing_else(root: Path) -> None:
+    files = sorted((root / "src").rglob("*.py"))
+    assert _third_party(files) == _declared(root, "pandas", "ulog", "gymnasium", "torch", "ray")
 
 
-def test_the_quadrotor_imports_only_what_its_extras_declare(root: Path, files: list[Path]) -> None:
-    assert _third_party(files) <= _declared(
-        root, "pandas", "quadrotor", "mujoco", "ulog", "gymnasium", "ray"
-    )
+def test_the_quadrotor_imports_only_what_it_and_the_engine_declare(root: Path) -> None:
+    files = sorted((root / "quadrotor" / "src").rglob("*.py"))
+    assert _third_party(files) <= _declared(root) | _declared(root / "quadrotor")
 
 
 def test_every_dependency_has_its_line_in_the_design_notes(root: Path) -> None:
-    notes = (root / "docs" / "design" / "dependencies.md").read_text(encoding="utf-8")
-    missing = {
-        name for name in _declared(root, "quadrotor", "mujoco", "dev") if name not in notes.lower()
-    }
-    assert missing - {"faultpath"} == set()
+    notes = (root / "docs" / "design" / "dependencies.md").read_text(encoding="utf-8").lower()
+    declared = _declared(root, "dev") | _declared(root / "quadrotor", "mujoco")
+    assert {name for name in declared if name not in notes} == set()

@@ -30,6 +30,9 @@ def test_version_is_the_same_everywhere(declared: dict[str, Any], root: Path) ->
     version = declared["project"]["version"]
     assert faultpath.__version__ == version
     assert importlib.metadata.version("faultpath") == version
+    assert importlib.metadata.version("faultpath-quadrotor") == version
+    quadrotor = tomllib.loads((root / "quadrotor" / "pyproject.toml").read_text("utf-8"))
+    assert f"faultpath=={version}" in quadrotor["project"]["dependencies"]
 
 
 def test_constraints_pin_one_public_version_each(pins: list[Requirement]) -> None:
@@ -54,7 +57,7 @@ def test_constraints_satisfy_every_declared_range(
             assert requirement.specifier.contains(versions[name]), requirement
 
 
-def test_every_package_but_the_quadrotor_is_checked_strictly(
+def test_every_room_but_the_one_with_torch_is_checked_strictly(
     declared: dict[str, Any], root: Path
 ) -> None:
     packages = {
@@ -62,10 +65,7 @@ def test_every_package_but_the_quadrotor_is_checked_strictly(
         for path in (root / "src" / "faultpath").glob("*/__init__.py")
     }
     strict = set(declared["tool"]["pyright"]["strict"])
-    assert (
-        packages - strict
-        == {"quadrotor/src/faultpath_quadrotor", "src/faultpath/learning"} & packages
-    )
+    assert packages - strict == {"src/faultpath/learning"}
     assert "src/faultpath/*.py" in strict
 
 
@@ -78,5 +78,6 @@ def test_what_is_to_be_installed_exists(declared: dict[str, Any], root: Path) ->
         assert not re.search(r"pip install '?faultpath", text), file
         found = re.findall(r"pip install '(?:\.|/faultpath)\[([\w,]+)\]'|\bextra\(['\"](\w+)", text)
         named |= {each for pair in found for one in pair for each in one.split(",") if each}
-    assert {"quadrotor", "torch", "pandas", "ray"} <= named
-    assert named | set(_EXTRAS) <= extras
+    assert {"torch", "pandas", "ray"} <= named
+    assert named <= extras
+    assert {"torch", "gymnasium"} <= set(_EXTRAS) <= extras

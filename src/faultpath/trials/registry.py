@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
 
-_EXTRAS = frozenset({"torch", "mujoco", "gymnasium"})
+_EXTRAS = frozenset({"torch", "gymnasium"})
 
 
 @cache
