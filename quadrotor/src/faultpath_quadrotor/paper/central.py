@@ -58,7 +58,7 @@ def central(lines: Iterable[Line]) -> Table:
         columns=COLUMNS,
         lines=(*every, line("The paper", *printed, "claimed")),
         words=COLUMNS[-1:],
-        notes=(*_when(every), "Each was decided by itself; no test compares them."),
+        notes=(_when(every), "Each was decided by itself; no test compares them."),
     )
 
 
@@ -78,12 +78,12 @@ def of_page(found: Reproduction) -> tuple[str, Table] | None:
     return state(asked), central([*([own] if own else []), *besides])
 
 
-def _when(lines: Iterable[Line]) -> Iterable[str]:
-    """Say where the reversal is decided, and where it is not."""
-    held: dict[bool, list[str]] = {True: [], False: []}
-    for each in lines:
-        place = each.label[:1].lower() + each.label[1:]
-        held[each.entries[-1].text == DECIDED].append(place)
-    for holds, places in held.items():
-        if places:
-            yield f"The reversal is {DECIDED if holds else OPEN} {'; '.join(places)}."
+def _when(lines: tuple[Line, ...]) -> str:
+    """Say where the ranking is decided to reverse."""
+    places = (f"{each.label[:1].lower()}{each.label[1:]}" for each in lines)
+    held = [place for place, each in zip(places, lines, strict=True) if _decided(each)]
+    return f"The ranking reverses {'; '.join(held)}." if held else "Nowhere is it decided."
+
+
+def _decided(each: Line) -> bool:
+    return each.entries[-1].text == DECIDED
