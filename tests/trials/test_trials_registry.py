@@ -14,7 +14,7 @@ from faultpath.core.errors import UserError
 from faultpath.trials import SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
-FILE = Path(__file__).parents[1] / "execution" / "toy_system.py"
+FILE = Path(__file__).with_name("toy_system.py")
 
 
 def test_a_file_is_enough(tmp_path, monkeypatch):

@@ -9,16 +9,12 @@ VI: "mean of per-seed window medians").
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.inputs import Floats, Numbers, by_scene_and_seed, paired
-from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.resamples import Resamples, quantiles
 
 N_RESAMPLES = 10_000
-
-_SLACK = 1e-9
-"""On a count of windows: q times a count may miss the whole number that it is by rounding."""
 
 
 class WindowQuantiles:
@@ -41,72 +37,39 @@ class WindowQuantiles:
 
     def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
         """Return the quantile ``q`` of ``values``."""
-        array = self._checked(by_scene_and_seed(values), q)
-        return self._effect(self._quantiles(array, q), unit, f"quantile {q:g} over windows")
+        found = self._quantiles(by_scene_and_seed(values), q)
+        return self._effect(*found, unit, f"quantile {q:g} over windows")
 
     def log_ratio(self, first: Numbers, second: Numbers, q: float) -> Contrast:
         """Return the natural logarithm of the ratio of two quantiles, which must be positive.
 
         Without a difference it is 0, as for other contrasts. Over seeds it is the mean logarithm.
         """
-        arms = paired(first, second)
-        one, two = (self._quantiles(self._checked(array, q), q) for array in arms)
-        if not ((one > 0.0).all() and (two > 0.0).all()):
+        one, two = (self._quantiles(array, q) for array in paired(first, second))
+        if not all((part > 0.0).all() for part in (*one, *two)):
             raise ValueError("a ratio needs quantiles above 0 in every resample")
-        what = f"log ratio of quantiles {q:g} over windows"
-        return self._effect(np.log(one) - np.log(two), "log", what)
+        seen, drawn = (np.log(a) - np.log(b) for a, b in zip(one, two, strict=True))
+        return self._effect(seen, drawn, "log", f"log ratio of quantiles {q:g} over windows")
 
-    def _checked(self, values: Floats, q: float) -> Floats:
+    def _quantiles(self, values: Floats, q: float) -> tuple[Floats, Floats]:
+        """Return those of the scenes as they are [seeds], and the resampled [resamples, seeds]."""
         if not 0.0 < q < 1.0:
             raise ValueError(f"a quantile lies between 0 and 1, not at {q}")
         if len(values) != len(self._scene):
             raise ValueError(f"{len(values)} values are not of {len(self._scene)} windows")
-        return values
+        counts = np.concatenate([np.ones((1, self.resamples.n_scenes)), self.resamples.counts])
+        every = [quantiles(counts, column, self._scene, q) for column in values.T]
+        found: Floats = np.stack(every, axis=1)
+        return found[0], found[1:]
 
-    def _quantiles(self, values: Floats, q: float) -> Floats:
-        return np.stack([self._column(column, q) for column in values.T], axis=1)
-
-    def _column(self, values: Floats, q: float) -> Floats:
-        order = np.argsort(values, kind="stable")
-        ordered = values[order]
-        # Windows of each scene among the least so many: whole numbers, exact in any order of sums.
-        reached = np.zeros((self.resamples.n_scenes, len(values)))
-        reached[self._scene[order], np.arange(len(values))] = 1.0
-        np.cumsum(reached, axis=1, out=reached)
-        whole = np.ones((1, self.resamples.n_scenes))
-        blocks = (whole, *self.resamples.blocks())
-        # A block is cut further: there are many more windows than scenes.
-        parts = [part for block in blocks for part in _cut(block, len(values))]
-        return np.concatenate([_quantile(ordered, part @ reached, q) for part in parts])
-
-    def _effect(self, quantiles: Floats, unit: str, what: str) -> Contrast:
-        means = quantiles.mean(axis=1)
+    def _effect(self, seen: Floats, drawn: Floats, unit: str, what: str) -> Contrast:
         return Contrast(
-            value=float(means[0]),
-            draws=means[1:],
-            per_seed=tuple(float(value) for value in quantiles[0]),
+            value=float(seen.mean()),
+            draws=drawn.mean(axis=1),
+            per_seed=tuple(float(value) for value in seen),
             unit=unit,
             method=f"{what}, percentile bootstrap of scenes",
             n_scenes=self.resamples.n_scenes,
-            n_seeds=quantiles.shape[1],
+            n_seeds=len(seen),
             resamples=self.resamples,
         )
-
-
-def _quantile(ordered: Floats, reached: Floats, q: float) -> Floats:
-    """Return the quantile of ascending values [n] in every resample.
-
-    ``reached`` [resamples, n] counts what a resample has of the values up to and with each.
-
-    Where q of the count is a whole number it is the mean of the two values beside it, so that the
-    quantile 0.5 is the median.
-    """
-    rank = q * reached[:, -1:]
-    lower = (reached < rank - _SLACK).sum(axis=1)
-    upper = (reached <= rank + _SLACK).sum(axis=1)
-    return (ordered[lower] + ordered[upper]) / 2.0
-
-
-def _cut(block: Floats, n_windows: int) -> list[NDArray[np.float64]]:
-    step = max(1, 100_000 // n_windows)
-    return [block[first : first + step] for first in range(0, len(block), step)]

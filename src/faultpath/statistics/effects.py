@@ -15,10 +15,8 @@ from faultpath.statistics.inputs import (
     paired,
     paired_binary,
 )
-from faultpath.statistics.resamples import Resamples
+from faultpath.statistics.resamples import Resamples, quantiles
 from faultpath.statistics.score import SceneValues
-
-BETTING = "confidence sequence by betting on scene means"
 
 
 def success_effect(
@@ -44,12 +42,7 @@ def success_effect(
     return replace(found, arms=(one, two))
 
 
-def mean_effect(
-    first: Numbers,
-    second: Numbers,
-    resamples: Resamples,
-    unit: str,
-) -> Contrast:
+def mean_effect(first: Numbers, second: Numbers, resamples: Resamples, unit: str) -> Contrast:
     """Return the mean difference of [scenes, seeds] in ``unit`` (distances, clearances)."""
     difference = np.subtract(*paired(first, second))
     return _mean(difference, resamples, unit)
@@ -75,17 +68,26 @@ def _mean(
 ) -> Contrast:
     n_scenes, n_seeds = values.shape
     check_scenes(n_scenes, resamples)
+    if models and n_seeds < 2:
+        raise ValueError("one seed says nothing about new seeds")
+    if scenes is None:
+        method = "percentile bootstrap of scenes"
+    elif scenes.sequential:
+        method = "confidence sequence by betting on scene means"
+    else:
+        name = "Wilson" if scenes.centre else "Tango"
+        several = f"score on scene means ({name}'s, cluster-robust)"
+        method = f"score ({name})" if n_seeds == 1 else several
+        method = f"hull of {method} and Student's t over seeds" if models else method
     scale = scenes.scale if scenes else 1.0
     # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
     # of 0 exactly 0, on which "the interval excludes 0" depends.
     sums = resamples.counts @ values.sum(axis=1)
-    if models and n_seeds < 2:
-        raise ValueError("one seed says nothing about new seeds")
     return Contrast(
         value=float(scale * values.sum() / (n_scenes * n_seeds)),
         unit=unit,
         n_scenes=n_scenes,
-        method=_method(scenes, n_seeds, models),
+        method=method,
         estimand=SCENES_AND_SEEDS if models else SCENES,
         n_seeds=n_seeds,
         per_seed=tuple(float(scale * total / n_scenes) for total in values.sum(axis=0)),
@@ -93,17 +95,6 @@ def _mean(
         resamples=resamples,
         scenes=scenes,
     )
-
-
-def _method(scenes: SceneValues | None, n_seeds: int, models: bool) -> str:
-    if scenes is None:
-        return "percentile bootstrap of scenes"
-    if scenes.sequential:
-        return BETTING
-    name = "Wilson" if scenes.centre else "Tango"
-    seeds = f"score on scene means ({name}'s, cluster-robust)"
-    score = f"score ({name})" if n_seeds == 1 else seeds
-    return f"hull of {score} and Student's t over seeds" if models else score
 
 
 def median_effect(
@@ -127,7 +118,7 @@ def median_effect(
     means = difference[used].sum(axis=1) / mask[used].sum(axis=1)
     return Contrast(
         value=float(np.median(means)),
-        draws=_resampled_medians(means, np.flatnonzero(used), resamples),
+        draws=quantiles(resamples.counts, means, np.flatnonzero(used), 0.5),
         per_seed=tuple(
             float(np.median(column[seen]))
             for column, seen in zip(difference.T, mask.T, strict=True)
@@ -147,19 +138,3 @@ def _masked(values: Numbers, mask: NDArray[np.bool_], name: str) -> Floats:
     if array.shape != mask.shape:
         raise ValueError(f"{name} has shape {array.shape}, joint has {mask.shape}")
     return by_scene_and_seed(np.where(mask, array, 0.0), name)
-
-
-def _resampled_medians(values: Floats, scenes: NDArray[np.intp], resamples: Resamples) -> Floats:
-    order = np.argsort(values, kind="stable")
-    ordered, columns = values[order], scenes[order]
-    return np.concatenate([_medians(ordered, block[:, columns]) for block in resamples.blocks()])
-
-
-def _medians(ordered: Floats, counts: Floats) -> Floats:
-    reached = np.cumsum(counts, axis=1, dtype=np.int32)
-    reached = reached[reached[:, -1] > 0]
-    total = reached[:, -1:]
-    # The middle one, or the two middle ones, of the resampled values in ascending order.
-    lower = (2 * reached < total).sum(axis=1)
-    upper = (2 * reached <= total).sum(axis=1)
-    return (ordered[lower] + ordered[upper]) / 2.0

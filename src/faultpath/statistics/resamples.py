@@ -5,12 +5,15 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
 from faultpath.statistics.inputs import Floats
 
 _BLOCK = 50_000
 """Counts worked on at a time: with what comes between, they fit into a core's own cache."""
+_SLACK = 1e-9
+"""On a count of values: q times a count may miss the whole number that it is by rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +34,12 @@ class Resamples:
         """Draw from the stream ("bootstrap", label, seed); ``label`` names the scene library."""
         if n_scenes < 1 or n_resamples < 1:
             raise ValueError(f"cannot draw {n_resamples} resamples of {n_scenes} scenes")
-        drawn = _counts(generator("bootstrap", label, seed), n_resamples, n_scenes)
+        stream, drawn = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
+        for rows in _blocks(n_resamples, n_scenes):  # where they end does not matter
+            part = drawn[rows]
+            chosen = stream.integers(0, n_scenes, size=part.shape)
+            chosen += n_scenes * np.arange(len(part))[:, np.newaxis]
+            part[:] = np.bincount(chosen.ravel(), minlength=part.size).reshape(part.shape)
         drawn.setflags(write=False)  # shared by many effects
         return cls(label=label, seed=seed, counts=drawn)
 
@@ -47,26 +55,32 @@ class Resamples:
 
     def blocks(self) -> Iterator[Floats]:
         """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
-        for rows in _blocks(self.n_resamples, self.n_scenes):
-            yield self.counts[rows]
+        return (self.counts[rows] for rows in _blocks(self.n_resamples, self.n_scenes))
 
     def same_as(self, other: "Resamples") -> bool:
         """Return whether both hold the same draws, so that effects on them are joint."""
         return self is other or np.array_equal(self.counts, other.counts)
 
 
-def _counts(stream: np.random.Generator, rows: int, items: int) -> Floats:
-    """Return [rows, items]: how often each item comes up in ``items`` equally likely draws.
+def quantiles(counts: Floats, values: Floats, scenes: NDArray[np.intp], q: float) -> Floats:
+    """Return the quantile ``q`` of ``values`` [n] in every resample that has any of them.
 
-    Where the blocks end does not matter: the stream goes on from one to the next.
+    A resample, a row of ``counts`` [resamples, scenes], has each value as often as it has its scene
+    ``scenes`` [n]. Where q of the number of values is a whole number the quantile is the mean of
+    the two values beside it, so that 0.5 is the median.
     """
-    counts = np.empty((rows, items))
-    for block in _blocks(rows, items):
-        part = counts[block]
-        chosen = stream.integers(0, items, size=part.shape)
-        chosen += items * np.arange(len(part))[:, np.newaxis]
-        part[:] = np.bincount(chosen.ravel(), minlength=part.size).reshape(part.shape)
-    return counts
+    order = np.argsort(values, kind="stable")
+    ordered, columns = values[order], scenes[order]
+    found: list[Floats] = []
+    for rows in _blocks(len(counts), len(values)):
+        # How many values of a resample lie up to and with each: whole numbers, and so exact.
+        reached = np.cumsum(counts[rows][:, columns], axis=1, dtype=np.float64)
+        reached = reached[reached[:, -1] > 0.0]
+        rank = q * reached[:, -1:]
+        lower = (reached < rank - _SLACK).sum(axis=1)
+        upper = (reached <= rank + _SLACK).sum(axis=1)
+        found.append((ordered[lower] + ordered[upper]) / 2.0)
+    return np.concatenate(found)
 
 
 def _blocks(rows: int, items: int) -> Iterator[slice]:

@@ -10,7 +10,7 @@ from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
 from faultpath.trials.registry import load_measurer, load_system, system_options
-from faultpath.trials.shown import SystemShown, VariantShown, system_shown, variant_shown
+from faultpath.trials.shown import SystemShown, VariantShown, system_shown
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, TrialRow
 from faultpath.trials.terms import ErrorSum, ErrorTerm
@@ -51,5 +51,4 @@ __all__ = [
     "pair",
     "system_options",
     "system_shown",
-    "variant_shown",
 ]

@@ -25,7 +25,6 @@ from faultpath.core.misfits import misfit_of
 
 Factory = Callable[..., object]
 _Built = TypeVar("_Built")
-_Model = TypeVar("_Model", bound=BaseModel)
 
 
 @dataclass(frozen=True)
@@ -84,7 +83,7 @@ class _Slot:
 
 def options_of(factory: Factory) -> tuple[Option, ...]:
     """Return the options that a factory declares, in its order."""
-    return tuple(slot.option for slot in _slots(factory).values())
+    return tuple(slot.option for slot in _slots(factory)[0].values())
 
 
 def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) -> _Built:
@@ -93,24 +92,21 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
     Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
     for a value that the option cannot have.
     """
-    slots, model = _slots(factory), _model(factory)
+    slots, model = _slots(factory)
     names = ", ".join(slots)
     for name in given:
-        if name not in slots and not _takes_any(factory):
+        if name not in slots:
             raise UserError(
                 f"the options of {system} do not include '{name}': it takes {names or 'none'}."
             )
     for name, slot in slots.items():
         if slot.required and name not in given:
             raise UserError(f"{system} needs the option '{name}': give it, it takes {names}.")
-    values = {k: slots[k].read(v, system) if k in slots else v for k, v in given.items()}
-    return factory(**values) if model is None else factory(build(model, values, system))
-
-
-def build(model: type[_Model], values: Mapping[str, Any], system: str) -> _Model:
-    """Return the model of some options that fit one by one; `UserError` where not together."""
+    values = {name: slots[name].read(text, system) for name, text in given.items()}
+    if model is None:
+        return factory(**values)
     try:
-        return model.model_validate(values)
+        return factory(model.model_validate(values))
     except ValidationError as error:
         raise UserError(f"the options of {system} do not fit: {misfit_of(error)}.") from None
 
@@ -125,22 +121,25 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
     return {name: _text(value) for name, value in options.items()}
 
 
-def _slots(factory: Factory) -> dict[str, _Slot]:
-    model = _model(factory)
-    fields = _fields(factory) if model is None else model.model_fields
-    return {name: _slot(name, field) for name, field in fields.items()}
-
-
-def _fields(factory: Factory) -> dict[str, FieldInfo]:
-    found: dict[str, FieldInfo] = {}
+def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None]:
+    """Return where a factory takes its options, and the model of them if it takes one."""
+    try:
+        parameters = inspect.signature(factory).parameters
+    except (TypeError, ValueError):  # of some built-in functions nothing is known
+        parameters = {}
     hints = _hints(factory)
-    for name, parameter in _parameters(factory).items():
+    only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
+    if isinstance(only, type) and issubclass(only, BaseModel):
+        return {name: _slot(name, field) for name, field in only.model_fields.items()}, only
+    slots: dict[str, _Slot] = {}
+    for name, parameter in parameters.items():
         if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
             written = parameter.annotation
             known = str if written is parameter.empty or isinstance(written, str) else written
             default = ... if parameter.default is parameter.empty else parameter.default
-            found[name] = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
-    return found
+            field = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
+            slots[name] = _slot(name, field)
+    return slots, None
 
 
 def _slot(name: str, field: FieldInfo) -> _Slot:
@@ -154,15 +153,13 @@ def _slot(name: str, field: FieldInfo) -> _Slot:
 
 
 def _values(kind: Any) -> dict[str, Any]:
-    if kind is bool:
-        return {"true": True, "false": False}
     if isinstance(kind, type) and issubclass(kind, Enum):
         return {_text(member): member for member in kind}
-    if get_origin(kind) is Literal:
-        return {_text(value): value for value in get_args(kind)}
-    inner = [each for each in get_args(kind) if each is not type(None)]
-    if len(inner) == 1 and type(None) in get_args(kind):
-        return _values(inner[0])
+    inner = get_args(kind)
+    if kind is bool or get_origin(kind) is Literal:
+        return {_text(value): value for value in inner or (True, False)}
+    if len(inner) == 2 and type(None) in inner:
+        return _values(inner[0] if inner[1] is type(None) else inner[1])
     return {}
 
 
@@ -172,29 +169,11 @@ def _text(value: object) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _model(factory: Factory) -> type[BaseModel] | None:
-    names = list(_parameters(factory))
-    kind = _hints(factory).get(names[0]) if len(names) == 1 else None
-    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
-
-
-def _takes_any(factory: Factory) -> bool:
-    return any(p.kind is p.VAR_KEYWORD for p in _parameters(factory).values())
-
-
-def _parameters(factory: Factory) -> Mapping[str, inspect.Parameter]:
-    try:
-        return inspect.signature(factory).parameters
-    except (TypeError, ValueError):  # of some built-in functions nothing is known
-        return {}
-
-
 def _hints(factory: Factory) -> dict[str, Any]:
     made: Any = factory.__init__ if isinstance(factory, type) else factory
-    found: dict[str, Any] = {}
+    names, found = getattr(made, "__globals__", {}), dict[str, Any]()
     for name, written in getattr(made, "__annotations__", {}).items():
         holder = types.SimpleNamespace(__annotations__={name: written})
-        names = getattr(made, "__globals__", {})
         with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
             found |= typing.get_type_hints(holder, names, include_extras=True)
     return found

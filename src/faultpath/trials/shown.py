@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import Field, ValidationError
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.frozen import Frozen
 from faultpath.core.misfits import misfit_of
 from faultpath.interface import Interface
-from faultpath.trials.declared import FloorPlan, Variant, shown
+from faultpath.trials.declared import FloorPlan, shown
 from faultpath.trials.system import System
 
 
@@ -26,10 +26,7 @@ class VariantShown(Frozen, allow_inf_nan=False):
 
 
 class SystemShown(Frozen, allow_inf_nan=False):
-    """What a run keeps of the system beside its trials; written as `system.json`.
-
-    Raises `ValueError` for variants that do not fit the interface.
-    """
+    """What a run keeps of the system beside its trials; written as `system.json`."""
 
     format: Literal[1] = 1
     control_dt_s: Annotated[float, Field(gt=0)]
@@ -38,23 +35,6 @@ class SystemShown(Frozen, allow_inf_nan=False):
     variants: tuple[VariantShown, ...]
     plans: dict[str, FloorPlan]
     """By scene id; scenes without one are drawn without obstacles."""
-
-    @model_validator(mode="after")
-    def _fits(self) -> Self:
-        sources = {channel.name: channel.sources for channel in self.interface.channels}
-        known = {name for channel in self.interface.channels for name in channel.consumers}
-        for variant in self.variants:
-            for name in set(variant.consumers) - known:
-                raise ValueError(
-                    f"variant '{variant.name}' reads at {name!r}: there is no such tap"
-                )
-            for channel, source in variant.bindings.items():
-                if source not in sources.get(channel, ()):
-                    raise ValueError(
-                        f"variant '{variant.name}' feeds {channel!r} from {source!r}, which the "
-                        "interface does not offer"
-                    )
-        return self
 
 
 def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str]) -> SystemShown:
@@ -72,7 +52,15 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
             {
                 "control_dt_s": system.control_dt_s,
                 "interface": system.interface,
-                "variants": [variant_shown(system.variants[name]) for name in variants],
+                "variants": [
+                    VariantShown(
+                        name=variant.name,
+                        description=variant.description,
+                        consumers=tuple(sorted(variant.consumers)),
+                        bindings=dict(variant.bindings),
+                    )
+                    for variant in (system.variants[name] for name in variants)
+                ],
                 # As plain data: what is a `FloorPlan` already would not be looked into.
                 "plans": {scene: asdict(plan) for scene, plan in plans.items()},
             }
@@ -81,13 +69,3 @@ def system_shown(system: System, variants: Iterable[str], scenes: Sequence[str])
         raise UserError(
             f"the system cannot be shown in a report ({misfit_of(error)}): correct what it returns"
         ) from error
-
-
-def variant_shown(variant: Variant) -> VariantShown:
-    """Return what a report shows of a variant."""
-    return VariantShown(
-        name=variant.name,
-        description=variant.description,
-        consumers=tuple(sorted(variant.consumers)),
-        bindings=dict(variant.bindings),
-    )
