@@ -4,7 +4,7 @@ import numpy as np
 from faultpath_quadrotor.evidence.signals import quadrotor_signals
 
 from faultpath.faults import parse_fault
-from faultpath.systems.checks.hearing import fly_heard, signals
+from faultpath.systems.checks.recording import run_recorded, signals
 from faultpath.trials import Arm, SystemSpec, load_system
 from faultpath.trials.attempt import Done, attempt
 from faultpath.trials.execution.again import difference
@@ -22,7 +22,7 @@ def test_a_heard_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     told: list[dict[str, np.ndarray]] = []
     for faults in ((), struck):
         arm = Arm(variant="dob", faults=faults)
-        done, heard = fly_heard(system, arm, SCENE)
+        done, heard = run_recorded(system, arm, SCENE)
         assert isinstance(done, Done)
         if faults:
             again = attempt(system, arm, SCENE)

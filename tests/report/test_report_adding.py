@@ -11,7 +11,7 @@ from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import read_pairs
 from faultpath.report.viewer_choice import choose
-from faultpath.systems.checks.hearing import added
+from faultpath.systems.checks.recording import added
 from faultpath.trials.store import TrialAddress
 
 TOPIC = "error of the predicted acceleration"

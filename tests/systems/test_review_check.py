@@ -31,7 +31,7 @@ def failed(report) -> dict[str, tuple[str, ...]]:
 SAID = {
     "raises": ("trials end", "Variant 'bare': ValueError: no air"),
     "never repeats": ("determinism", "first at step 1 in tap range -> pilot.approach, scene 'w0'"),
-    "by place": ("scene independence", "Variant 'bare' flown in another order, without"),
+    "by place": ("scene independence", "Variant 'bare' run in another order, without"),
     "crowded": ("scene independence", "without some of the scenes beside it, differs"),
     "barely crowded": ("scene independence", "differs in"),
     "unpaired": ("pairing", "their disturbances differ"),
@@ -40,7 +40,7 @@ SAID = {
     "nosy": ("declared reads", "tap range -> guard.limit: this variant has no such consumer"),
     "of the future": ("declared reads", "the reading is of step 1, which is after step 0"),
     "another source": ("declared reads", "the reading is of source 'sonar'"),
-    "keeps": ("fault delivery", "Tap range -> guard.limit of variant 'guarded', struck in 4"),
+    "keeps": ("fault delivery", "Tap range -> guard.limit of variant 'guarded', faulted in 4"),
     "nan": ("shape and unit", "source 'laser' at step 10, read by pilot.approach, is not finite"),
     "shape": ("shape and unit", "'laser' is declared with []"),
     "millimetres": ("shape and unit", "its largest reading is 2.78e+03; give it in m"),

@@ -24,8 +24,8 @@ TOY, DOCK = f"{ROOT / 'examples/toy.py'}:create", f"{ROOT / 'examples/dock.py'}:
 def trace(name, variant, fault=None, library="selection", **options):
     spec = SystemSpec(name=name, options=options)
     system = load_system(spec)
-    struck = fault and parse_fault(fault, system.interface, {}, system.control_dt_s)
-    return system, trace_system(system, spec, variant, library, fault=struck)
+    faulted = fault and parse_fault(fault, system.interface, {}, system.control_dt_s)
+    return system, trace_system(system, spec, variant, library, fault=faulted)
 
 
 def test_it_says_who_read_what_and_when_and_stops_after_its_steps():

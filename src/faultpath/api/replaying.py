@@ -15,7 +15,7 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import by_scene, read_pairs
 from faultpath.report.viewer_choice import choose as picked
-from faultpath.systems.checks.hearing import Listening, Overheard, listen, listen_here
+from faultpath.systems.checks.recording import Block, RecordedBlock, record, record_here
 from faultpath.trials import Arm, Outcome, OutcomeTable, Study, System, SystemSpec, library_of
 from faultpath.trials.attempt import Died, Done, Wrong
 from faultpath.trials.execution.again import difference
@@ -140,7 +140,7 @@ def fly_again(
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
     """
     wanted = set(asked)
-    tasks: dict[str, Listening] = {}
+    tasks: dict[str, Block] = {}
     addresses: dict[tuple[str, str], list[TrialAddress]] = {}
     for row in study.rows:
         scenes: list[str] = []
@@ -152,22 +152,22 @@ def fly_again(
         if scenes:
             old = tasks.get(row.arm.key())
             every = dict.fromkeys((*(old.scenes if old else ()), *scenes))
-            tasks[row.arm.key()] = Listening(row.arm, tuple(every))
+            tasks[row.arm.key()] = Block(row.arm, tuple(every))
     code = system_code(system, study.system).state
     found: list[Replayed] = []
     waiting, done = list(tasks.values()), 0
 
-    def settle(task: Listening, reply: Overheard | Died | Wrong) -> None:
+    def settle(task: Block, reply: RecordedBlock | Died | Wrong) -> None:
         nonlocal done
         done += 1
         found.extend(_compared(task, reply, before, addresses))
         note(task.arm, done, len(tasks))
 
     job = Job(study.system, study.library, code, library_hash)
-    there, here = partial(listen, job), partial(listen_here, system)
+    there, here = partial(record, job), partial(record_here, system)
     call = here if executor.in_process else there
     seconds = block_limit_s(system, time_limit_s)
-    dispatch = Dispatch[Listening](
+    dispatch = Dispatch[Block](
         executor, lambda task: partial(call, task), seconds, study.system.name
     )
     dispatch.run(lambda _: waiting.pop(0) if waiting else None, settle)
@@ -176,12 +176,12 @@ def fly_again(
 
 
 def _compared(
-    task: Listening,
-    reply: Overheard | Died | Wrong,
+    task: Block,
+    reply: RecordedBlock | Died | Wrong,
     before: Mapping[TrialAddress, Outcome],
     addresses: dict[tuple[str, str], list[TrialAddress]],
 ) -> Iterable[Replayed]:
-    heard = reply if isinstance(reply, Overheard) else Overheard(error=_said(reply))
+    heard = reply if isinstance(reply, RecordedBlock) else RecordedBlock(error=_said(reply))
     for place, scene in enumerate(task.scenes):
         for at in addresses[task.arm.key(), scene]:
             if heard.error:

@@ -1,4 +1,4 @@
-"""What a heard flight of the quadrotor says beside its readings: errors, predictions and thrust."""
+"""What a recorded flight of the quadrotor adds to its readings: errors, predictions and thrust."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.systems.checks.hearing import Heard, Values, added, laid_out, steps_of
+from faultpath.systems.checks.recording import Recording, Values, added, laid_out, steps_of
 from faultpath.trials.attempt import Done
 from faultpath.trials.store.signals import Signal
 from faultpath_quadrotor.device import arithmetic
@@ -21,7 +21,9 @@ _CANDIDATES = 8
 _MOTION = "predicted_motion"
 
 
-def quadrotor_signals(system: Quadrotor, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
+def quadrotor_signals(
+    system: Quadrotor, recording: Recording, done: Done
+) -> list[tuple[Signal, ...]]:
     """Return more signals of each scene of a flight of the quadrotor.
 
     The acceleration errors are those of the paper, with the thrust and the attitude of the flight:
@@ -30,12 +32,12 @@ def quadrotor_signals(system: Quadrotor, heard: Heard, done: Done) -> list[tuple
     Along the thrust they have a sign, so that it shows whether they cancel (paper, Eq. 2). What a
     learned predictor adds to its analytic dynamics is in none of them.
     """
-    ahead = _predicted(heard)
+    ahead = _predicted(recording)
     found: list[tuple[Signal, ...]] = []
     for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
-        thrust = laid_out(heard.got["action", "vehicle.actuators"], scene, steps)[:, :1]
+        thrust = laid_out(recording.got["action", "vehicle.actuators"], scene, steps)[:, :1]
         named = [_signal("commanded thrust", "commanded thrust", "N", thrust)]
-        named += _errors(system, heard, scene, steps)
+        named += _errors(system, recording, scene, steps)
         for horizon, positions in ahead.items():
             said = f"position predicted {horizon * system.control_dt_s:g} s before"
             values = laid_out(positions, scene, steps).astype(np.float32)
@@ -48,14 +50,14 @@ def _signal(name: str, topic: str, unit: str, values: Values) -> Signal:
     return Signal(name, topic, unit, values.astype(np.float32))
 
 
-def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Signal]:
+def _errors(system: Quadrotor, recording: Recording, scene: int, steps: int) -> list[Signal]:
     def told(channel: str, place: str) -> Values:
-        return laid_out(heard.got[channel, f"predictor.{place}"], scene, steps)
+        return laid_out(recording.got[channel, f"predictor.{place}"], scene, steps)
 
     def true(source: str) -> Values:
-        return laid_out(heard.sources[source], scene, steps)
+        return laid_out(recording.sources[source], scene, steps)
 
-    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= heard.got.keys():
+    if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= recording.got.keys():
         return []
     drag = LinearDrag(PLATFORM.drag_kgps)
     rotation = true("vehicle.attitude").reshape(-1, 3, 3)
@@ -73,7 +75,7 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
         mass, scale
     )
     pairs, along = {"nominal": first}, ()
-    if ("wind", "predictor.wind_map") in heard.got:
+    if ("wind", "predictor.wind_map") in recording.got:
         believed = force(told("wind", "wind_map")) / told("mass", "wind_map")
         second = believed - force(true("true_wind")) / mass
         pairs["combined"] = first + second
@@ -100,19 +102,19 @@ def _errors(system: Quadrotor, heard: Heard, scene: int, steps: int) -> list[Sig
 
 @arithmetic()
 @torch.inference_mode()
-def _predicted(heard: Heard) -> Mapping[int, Mapping[int, Values]]:
+def _predicted(recording: Recording) -> Mapping[int, Mapping[int, Values]]:
     """Ask the predictor of every step where the commands that were then flown would lead.
 
     By horizon in steps and by the step that is spoken of, `[B, 3]`, metres. It is asked again after
     the flight, and answers from what it was told at its step.
     """
-    request = heard.asked.get(_MOTION)
+    request = recording.asked.get(_MOTION)
     if request is None:
         return {}
-    flown = heard.got["action", "vehicle.actuators"]
+    flown = recording.got["action", "vehicle.actuators"]
     horizon = request.commands[0].shape[0]
     found: dict[int, Values] = {}
-    for step, query in heard.queries[_MOTION].items():
+    for step, query in recording.queries[_MOTION].items():
         if step + horizon not in flown:
             continue
         actions = np.stack([flown[step + h] for h in range(horizon)])

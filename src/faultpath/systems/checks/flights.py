@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from typing import Any
@@ -53,10 +54,8 @@ class Read:
     valid_step: int
     """Step of the reading: before `step` for what is late, held or read of the past."""
     dtype: str = ""
-    shape: tuple[int, ...] = ()
-    """Of one scene's reading, or of one scene in an answer."""
-    low: float = np.inf
-    high: float = -np.inf
+    low: float = math.inf
+    high: float = -math.inf
     """Of the finite numbers of all scenes."""
     lost: str = ""
     """A scene with a number that is not finite."""
@@ -72,11 +71,6 @@ class Read:
         """Channel and consumer."""
         return self.channel, self.consumer
 
-    @property
-    def altered(self) -> bool:
-        """Whether a fault changed it, in some scene."""
-        return self.given != self.got
-
 
 class Trace(Observer):
     """Notes the reads of the first steps of a run, in the order in which they happened."""
@@ -91,31 +85,28 @@ class Trace(Observer):
             raise TraceEnded
         key = step, tap.channel, tap.consumer
         if key not in self.held:
-            read = Read(*key, reading.source, reading.step)
-            signal = not isinstance(reading.value, Query)
-            self.held[key] = self._noted(read, reading.value, got) if signal else read
+            self.held[key] = Read(*key, reading.source, reading.step)
+            if not isinstance(reading.value, Query):
+                self._note(key, reading.value, got, asks=0)
 
     @override
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
         key = step, tap.channel, tap.consumer
-        read = self.held[key]
-        read = replace(read, asks=read.asks + 1)
-        self.held[key] = self._noted(read, query.value(answer), query.value(got))
+        self._note(key, query.value(answer), query.value(got), asks=1)
 
-    def _noted(self, read: Read, given: Any, got: Any) -> Read:
-        values = to_numpy(given)
-        finite = np.isfinite(values)
-        seen = values[finite]
+    def _note(self, key: tuple[int, str, str], given: Any, got: Any, asks: int) -> None:
+        read, values = self.held[key], to_numpy(given)
+        numbers, finite = values.astype(np.float64), np.isfinite(values)
         lost = np.flatnonzero(~finite.reshape(len(values), -1).all(axis=1))
-        return replace(
+        self.held[key] = replace(
             read,
             dtype=str(values.dtype),
-            shape=tuple(values.shape[1:]),
-            low=min(read.low, float(seen.min())) if seen.size else read.low,
-            high=max(read.high, float(seen.max())) if seen.size else read.high,
+            low=float(np.min(numbers, initial=read.low, where=finite)),
+            high=float(np.max(numbers, initial=read.high, where=finite)),
             lost=self._scenes[lost[0]] if lost.size else read.lost,
+            asks=read.asks + asks,
             given=self._digests(values, read.given),
             got=self._digests(to_numpy(got), read.got),
         )
@@ -137,7 +128,7 @@ class Flight:
     steps: int | None = None
     """After so many it is stopped; `None`: it runs to its end."""
     tap: tuple[str, str] = ("", "")
-    """That which a fault strikes by itself."""
+    """The only one that a fault reaches."""
 
 
 @dataclass(frozen=True)
@@ -173,41 +164,35 @@ def fly(job: Job, flight: Flight) -> Flown:
 def fly_here(system: System, flight: Flight) -> Flown:
     """Run with a system that is built, in blocks of its size; an error ends it."""
     outcomes, counts, reads = list[Outcome](), list[TapCount](), list[Read]()
+    error = blames = ""
     for first in range(0, len(flight.scenes), system.block_size):
         scenes = flight.scenes[first : first + system.block_size]
-        trace = Trace(scenes, flight.steps)
-        error = blames = ""
-        try:
+        trace, found = Trace(scenes, flight.steps), None
+        with suppress(TraceEnded):
             found = attempt(system, flight.arm, scenes, observer=trace)
-        except TraceEnded:
-            reads += trace.held.values()
-            continue
         reads += trace.held.values()
         if isinstance(found, Done):
             outcomes += found.outcomes
             counts += found.taps
             if lost := next((o for o in found.outcomes if o.failed), None):
                 error, blames = f"{lost.error} in scene {lost.scene!r}", TRIALS
-        else:
-            error, blames = _said(found)
+        elif isinstance(found, Raised):
+            kind, _, text = found.error.partition(": ")
+            error, blames = found.error, TRIALS
+            if kind == NotFinite.__name__:
+                error, blames = text, "shape and unit"
+        elif isinstance(found, Wrong):
+            error = str(found.error)
+            blamed = (name for name, kinds in MISTAKES.items() if isinstance(found.error, kinds))
+            blames = next(blamed, TRIALS)
         if error:
             return Flown((), tuple(counts), tuple(reads), error, blames)
     return Flown(tuple(outcomes), tuple(counts), tuple(reads))
 
 
-def _said(found: Raised | Wrong) -> tuple[str, str]:
-    if isinstance(found, Raised):
-        kind, _, text = found.error.partition(": ")
-        return (text, "shape and unit") if kind == NotFinite.__name__ else (found.error, TRIALS)
-    error = found.error
-    blames = next((name for name, kinds in MISTAKES.items() if isinstance(error, kinds)), TRIALS)
-    return str(error), blames
-
-
-def unflown(reply: Died | Wrong) -> Flown:
+def lost(reply: Died | Wrong) -> Flown:
     """Return what is known of a flight whose worker gave nothing back; raises a `UserError`."""
-    if isinstance(reply, Wrong):
-        if isinstance(reply.error, UserError):
-            raise reply.error
-        return Flown(error=described(reply.error), blames=TRIALS)
-    return Flown(error=reply.how, blames=TRIALS)
+    if isinstance(reply, Wrong) and isinstance(reply.error, UserError):
+        raise reply.error
+    error = described(reply.error) if isinstance(reply, Wrong) else reply.how
+    return Flown(error=error, blames=TRIALS)

@@ -1,15 +1,15 @@
-"""Flying an arm once more and recording, as named signals, what its taps and its plant say.
+"""Running an arm once more and recording, as named signals, what its taps and its plant say.
 
-Nothing that flies knows of it: an observer sees what taps deliver, and the plant of a loop senses
+Nothing that runs knows of it: an observer sees what taps deliver, and the plant of a loop senses
 what it senses. Recorded are small arrays of numbers: what a source held, what a consumer got where
 a fault changed it, by how much, and when a fault was in force.
 """
 
 import copy
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, TypeAlias, TypeVar, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,15 +32,14 @@ from faultpath.trials.terms import Recorded
 Values: TypeAlias = NDArray[np.float64]
 Steps: TypeAlias = dict[int, Values]
 """By control step, `[B, P]`."""
-_Thing = TypeVar("_Thing")
 
 _MOST_NUMBERS = 9
 """Of a scene's reading, a rotation matrix; images and candidates are no signals."""
 
 
 @dataclass
-class Heard(Observer):
-    """What a flight said."""
+class Recording(Observer):
+    """What a run said."""
 
     interface: Interface
     sources: dict[str, Steps] = field(default_factory=dict[str, Steps])
@@ -79,31 +78,26 @@ class Heard(Observer):
         self.force[step] = self.force.get(step, False) | mask
 
     def source(self, name: str, value: Any, step: int) -> None:
-        """Note what a source holds at a step, where that is a few numbers."""
+        """Note what a source holds at a step, or its parts, where that is a few numbers."""
+        if isinstance(value, Mapping):
+            for part, each in cast("Mapping[str, Any]", value).items():
+                self.source(f"{name}.{part}", each, step)
+            return
         held = self.sources.setdefault(name, {})
         if step >= 0 and step not in held and (numbers := _numbers(value)) is not None:
             held[step] = numbers
 
-    def sensed(self, plant: str, outputs: Mapping[str, Any], step: int) -> None:
-        """Note what a plant senses, and the parts of what it shows."""
-        for name, value in outputs.items():
-            if isinstance(value, Mapping):
-                for part, each in cast("Mapping[str, Any]", value).items():
-                    self.source(f"{plant}.{part}", each, step)
-            elif not isinstance(value, Query):
-                self.source(name, value, step)
-
 
 @dataclass(frozen=True)
-class Listening:
-    """An arm over some scenes."""
+class Block:
+    """An arm over some scenes, to be recorded."""
 
     arm: Arm
     scenes: tuple[str, ...]
 
 
 @dataclass(frozen=True)
-class Overheard:
+class RecordedBlock:
     """What came of it, by scene."""
 
     outcomes: tuple[Outcome, ...] = ()
@@ -112,68 +106,81 @@ class Overheard:
     """What kept it from its end."""
 
 
-def listen(job: Job, task: Listening) -> Overheard:
-    """Fly in a worker process, which keeps what it has built for the next task."""
+def record(job: Job, block: Block) -> RecordedBlock:
+    """Run in a worker process, which keeps what it has built for the next block."""
     with building(job) as built:
-        return listen_here(built.system, task)
+        return record_here(built.system, block)
 
 
-def listen_here(system: System, task: Listening) -> Overheard:
-    """Fly with a system that is built."""
-    done, heard = fly_heard(system, task.arm, task.scenes)
+def record_here(system: System, block: Block) -> RecordedBlock:
+    """Run with a system that is built."""
+    done, recording = run_recorded(system, block.arm, block.scenes)
     if not isinstance(done, Done):
-        return Overheard(error=str(done.error))
+        return RecordedBlock(error=str(done.error))
     more = named(system.more_signals) if system.more_signals else error_signals
-    beside: list[tuple[Signal, ...]] = more(system, heard, done)
-    pairs = zip(signals(heard, done, system.control_dt_s), beside, strict=True)
-    return Overheard(done.outcomes, tuple(a + b for a, b in pairs))
+    beside: list[tuple[Signal, ...]] = more(system, recording, done)
+    pairs = zip(signals(recording, done, system.control_dt_s), beside, strict=True)
+    return RecordedBlock(done.outcomes, tuple(a + b for a, b in pairs))
 
 
-def fly_heard(
+def run_recorded(
     system: System, arm: Arm, scenes: Sequence[str]
-) -> tuple[Done | Raised | Wrong, Heard]:
+) -> tuple[Done | Raised | Wrong, Recording]:
     """Run an arm over some scenes and record it; an error comes back as a value."""
-    heard = Heard(system.interface)
-    listened = system
-    if isinstance(system, LoopSystem):
-        loop = system.loop
+    recording = Recording(system.interface)
+    if not isinstance(system, LoopSystem):
+        return attempt(system, arm, scenes, observer=recording), recording
+    inner = system.loop
 
-        def listening(variant: str, seed: int | None) -> Loop:
-            return _listening(loop(variant, seed), heard)
+    def recorded(variant: str, seed: int | None) -> Loop:
+        loop = inner(variant, seed)
+        plant = copy.copy(loop.graph.plant)
+        sense, step = plant.sense, iter(range(plant.steps + 1))
 
-        listened = _with(system, "loop", listening)
-    return attempt(listened, arm, scenes, observer=heard), heard
+        def sensed(state: Any) -> Mapping[str, Any]:
+            outputs, now = sense(state), next(step)
+            for name, value in outputs.items():
+                # What a plant shows to estimators alone is named after the plant.
+                shown = plant.name if isinstance(value, Mapping) else name
+                if not isinstance(value, Query):
+                    recording.source(shown, value, now)
+            return outputs
+
+        vars(plant)["sense"] = sensed
+        return replace(loop, graph=replace(loop.graph, plant=plant))
+
+    system = copy.copy(system)
+    vars(system)["loop"] = recorded
+    return attempt(system, arm, scenes, observer=recording), recording
 
 
-def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
+def signals(recording: Recording, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
     """Return the signals of each scene, while its trial ran."""
-    topics = {
-        name: channel.name for channel in heard.interface.channels for name in channel.sources
-    }
-    units = {source.name: source.unit for source in heard.interface.sources}
-    channels = {channel.name for channel in heard.interface.channels}
+    interface = recording.interface
+    topics = {name: channel.name for channel in interface.channels for name in channel.sources}
+    units = {source.name: source.unit for source in interface.sources}
+    fed = {channel.name: channel.sources[0] for channel in interface.channels}
+    fixed = {s.name for s in interface.sources if s.provenance is Provenance.CONSTANT}
     found: list[tuple[str, str, str, Mapping[int, Values]]] = []
-    fixed = {s.name for s in heard.interface.sources if s.provenance is Provenance.CONSTANT}
-    for name, held in heard.sources.items():
+    for name, held in recording.sources.items():
         if name in fixed:
             continue
-        part = name.partition(".")[2]
-        same = next((s for s, c in topics.items() if c == part), "")
-        topic = part if part in channels else topics.get(name, name)
-        found.append((name, topic, units.get(name, units.get(same, "")), held))
-    for (channel, consumer), got in heard.got.items():
-        given = heard.given[channel, consumer]
+        part = name.partition(".")[2]  # of a truth, which may be that of a channel
+        topic = part if part in fed else topics.get(name, name)
+        found.append((name, topic, units.get(name, units.get(fed.get(part, ""), "")), held))
+    for (channel, consumer), got in recording.got.items():
+        given = recording.given[channel, consumer]
         if all(np.array_equal(got[step], given[step], equal_nan=True) for step in got):
             continue
-        unit = units[heard.interface.channel(channel).sources[0]]
+        unit = units[fed[channel]]
         error = {step: got[step] - given[step] for step in got}
         found.append((f"{channel} at {consumer}", channel, unit, got))
         found.append((f"{channel} error at {consumer}", f"{channel} error", unit, error))
-    if heard.force:
+    if recording.force:
         many = len(done.outcomes)
         force = {
             step: np.broadcast_to(mask, many)[:, None].astype(np.float64)
-            for step, mask in heard.force.items()
+            for step, mask in recording.force.items()
         }
         found.append((IN_FORCE, IN_FORCE, "1", force))
     return [
@@ -186,7 +193,7 @@ def signals(heard: Heard, done: Done, dt_s: float) -> list[tuple[Signal, ...]]:
     ]
 
 
-def error_signals(system: System, heard: Heard, done: Done) -> list[tuple[Signal, ...]]:
+def error_signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
     """Return the two errors that a system names and their sum, of each scene.
 
     None where the variant has not got what they are taken from.
@@ -194,7 +201,7 @@ def error_signals(system: System, heard: Heard, done: Done) -> list[tuple[Signal
     errors = system.errors
     found: list[tuple[Signal, ...]] = []
     for scene, steps in enumerate(steps_of(done, system.control_dt_s)):
-        trial = _Trial(heard, scene, steps)
+        trial = _Trial(recording, scene, steps)
         try:
             terms = {term.words: term.of(trial) for term in errors.terms} if errors else {}
             found.append(added(errors.words, errors.unit, terms) if errors else ())
@@ -220,17 +227,17 @@ def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, .
 class _Trial(Recorded):
     """One scene of what was recorded."""
 
-    heard: Heard
+    recording: Recording
     scene: int
     steps: int
 
     @override
     def held(self, source: str) -> Values:
-        return laid_out(self.heard.sources[source], self.scene, self.steps)
+        return laid_out(self.recording.sources[source], self.scene, self.steps)
 
     @override
     def got(self, channel: str, consumer: str) -> Values:
-        return laid_out(self.heard.got[channel, consumer], self.scene, self.steps)
+        return laid_out(self.recording.got[channel, consumer], self.scene, self.steps)
 
 
 def steps_of(done: Done, dt_s: float) -> list[int]:
@@ -253,21 +260,3 @@ def _numbers(value: Any) -> Values | None:
         return None
     host = np.array(to_numpy(value))
     return host.reshape(len(host), -1).astype(np.float64) if host.dtype.kind in "fiub" else None
-
-
-def _listening(loop: Loop, heard: Heard) -> Loop:
-    plant = loop.graph.plant
-    sense, step = plant.sense, iter(range(plant.steps + 1))
-
-    def heard_too(state: Any) -> Mapping[str, Any]:
-        outputs = sense(state)
-        heard.sensed(plant.name, outputs, next(step))
-        return outputs
-
-    return replace(loop, graph=replace(loop.graph, plant=_with(plant, "sense", heard_too)))
-
-
-def _with(thing: _Thing, name: str, method: Callable[..., Any]) -> _Thing:
-    other = copy.copy(thing)
-    vars(other)[name] = method
-    return other
