@@ -46,6 +46,10 @@ def modelled(settings: Settings):
     return settings
 
 
+def anything(**options: str):
+    return options
+
+
 def needy(path: str):
     return path
 
@@ -75,6 +79,7 @@ def test_text_becomes_what_the_factory_takes():
     assert call(typed, {}, "it") == ("low", 1, False, None, "", None)
     assert call(modelled, {"gear": "high"}, "it") == Settings(gear=Gear.HIGH)
     assert call(modelled, {"carts": "2"}, "it") == Settings(carts=2)
+    assert call(anything, {"wind": "L3"}, "it") == {"wind": "L3"}
 
 
 @pytest.mark.parametrize(

@@ -92,17 +92,17 @@ def call(factory: Callable[..., _Built], given: Mapping[str, str], system: str) 
     Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
     for a value that the option cannot have.
     """
-    slots, model = _slots(factory)
+    slots, model, any_other = _slots(factory)
     names = ", ".join(slots)
     for name in given:
-        if name not in slots:
+        if name not in slots and not any_other:
             raise UserError(
                 f"the options of {system} do not include '{name}': it takes {names or 'none'}."
             )
     for name, slot in slots.items():
         if slot.required and name not in given:
             raise UserError(f"{system} needs the option '{name}': give it, it takes {names}.")
-    values = {name: slots[name].read(text, system) for name, text in given.items()}
+    values = {k: slots[k].read(v, system) if k in slots else v for k, v in given.items()}
     if model is None:
         return factory(**values)
     try:
@@ -121,8 +121,8 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
     return {name: _text(value) for name, value in options.items()}
 
 
-def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None]:
-    """Return where a factory takes its options, and the model of them if it takes one."""
+def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None, bool]:
+    """Return where a factory takes its options, their model if any, and if it takes any other."""
     try:
         parameters = inspect.signature(factory).parameters
     except (TypeError, ValueError):  # of some built-in functions nothing is known
@@ -130,7 +130,7 @@ def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None]:
     hints = _hints(factory)
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
     if isinstance(only, type) and issubclass(only, BaseModel):
-        return {name: _slot(name, field) for name, field in only.model_fields.items()}, only
+        return {name: _slot(name, field) for name, field in only.model_fields.items()}, only, False
     slots: dict[str, _Slot] = {}
     for name, parameter in parameters.items():
         if parameter.kind in (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY):
@@ -139,7 +139,7 @@ def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None]:
             default = ... if parameter.default is parameter.empty else parameter.default
             field = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
             slots[name] = _slot(name, field)
-    return slots, None
+    return slots, None, any(each.kind is each.VAR_KEYWORD for each in parameters.values())
 
 
 def _slot(name: str, field: FieldInfo) -> _Slot:
