@@ -2,6 +2,7 @@
 
 import secrets
 import signal
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
@@ -27,3 +28,16 @@ def fuzz_seed(request: pytest.FixtureRequest) -> int:
     """The seed of what a fuzz test tries; a failing test names it."""
     given = request.config.getoption("--fuzz-seed")
     return secrets.randbelow(10**9) if given == "random" else int(given)
+
+
+@pytest.fixture(scope="module")
+def selection_held_out() -> Iterator[None]:
+    """Selection scenes in the place of the held-out ones, which are run once and not by tests."""
+    from faultpath_quadrotor.scenes import library
+
+    real = library.frozen_file
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            library, "frozen_file", lambda name: real("selection" if name == "held-out" else name)
+        )
+        yield

@@ -23,7 +23,9 @@ ASKED = Plan((table_4.PAGE,), QUICK)
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> ReproductionRun:
+def done(
+    tmp_path_factory: pytest.TempPathFactory, selection_held_out: None
+) -> ReproductionRun:
     return carry_out(ASKED, Job(tmp_path_factory.mktemp("quick"), Here(), TOLD))
 
 

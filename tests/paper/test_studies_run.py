@@ -43,7 +43,7 @@ def fly(asked: Plan, folder: Path) -> Flown:
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> Path:
     """A folder with the whole of page one."""
     folder = tmp_path_factory.mktemp("run")
     asked = a_plan(ONE)
@@ -58,12 +58,13 @@ def test_what_was_saved_is_read_back(run: Path) -> None:
     results, found = read_results(run)
     assert found.trials == 4
     assert found.ledger.library == HELD_OUT
+    assert {row.outcome.scene.split("/")[0] for row in results.outcomes.rows} == {"selection"}
     assert len(results.pairs(NOMINAL, FAULTY).scenes) == 2
     assert len(results.measured(ERROR).values) > 0
     assert found == Reproduction.model_validate_json(found.model_dump_json())
 
 
-def test_cells_are_flown_once_for_all_pages(run: Path) -> None:
+def test_cells_are_run_once_for_all_pages(run: Path) -> None:
     flown = fly(a_plan(TWO, ONE), run)
     assert sum(result.blocks_computed for result in flown.results) == 0
     assert len(flown.outcomes.rows) == 4
@@ -85,7 +86,7 @@ def test_a_run_without_measurements_says_which_is_missing(run: Path) -> None:
         blind.measured(ERROR)
 
 
-def test_progress_reaches_the_end(tmp_path: Path) -> None:
+def test_progress_reaches_the_end(tmp_path: Path, selection_held_out: None) -> None:
     seen: list[Progress] = []
     one = Plan((TWO,), Profile("one", 1, (0,)))
     flights.fly(one.legs(), tmp_path, Job(tmp_path, Here(), SILENT).run, seen.append)
