@@ -23,9 +23,7 @@ ASKED = Plan((table_4.PAGE,), QUICK)
 
 
 @pytest.fixture(scope="module")
-def done(
-    tmp_path_factory: pytest.TempPathFactory, selection_held_out: None
-) -> ReproductionRun:
+def done(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> ReproductionRun:
     return carry_out(ASKED, Job(tmp_path_factory.mktemp("quick"), Here(), TOLD))
 
 
