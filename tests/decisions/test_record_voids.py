@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, paths, question, rows
 
-from faultpath.decisions import CORRECT, SHARED, DecisionRecord, decide, phrases
-from faultpath.decisions.summary import answers
+from faultpath.decisions import CORRECT, SHARED, DecisionRecord, decide
+from faultpath.decisions.summary import answers, in_short
 from faultpath.trials import OutcomeTable, Status
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED
@@ -71,7 +71,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     effect = open_.effects[0]
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
     assert effect.p_value < 0.05
-    said = phrases.effect(open_, effect)
+    said = in_short(open_, effect)
     assert "failed" in said
     assert "failed" in open_.verdict.headline
     assert "no difference" not in " ".join((open_.verdict.headline, said)).lower()

@@ -20,7 +20,7 @@ from faultpath.decisions.model import (
     Verdict,
 )
 from faultpath.decisions.question import EarlierLook, Question
-from faultpath.decisions.summary import headline
+from faultpath.decisions.summary import verdict
 from faultpath.statistics import (
     Region,
     Resamples,
@@ -92,8 +92,9 @@ def decide(
         *mismatch_words(found.mismatches),
         *findings,  # of a record that is decided anew, with some of the above among them
     )
-    said = phrases.verdict(record, headline(record))
-    return record.model_copy(update={"verdict": said, "findings": tuple(dict.fromkeys(noted))})
+    return record.model_copy(
+        update={"verdict": verdict(record), "findings": tuple(dict.fromkeys(noted))}
+    )
 
 
 def stops(question: Question, paths: Sequence[Path], table: OutcomeTable) -> bool:

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 
-from faultpath.decisions.model import Change, DecisionRecord, Effect, PathBreakEven, Verdict
+from faultpath.decisions.model import Change, DecisionRecord, Effect
 from faultpath.decisions.question import Question
 from faultpath.decisions.wording import (
     capital,
@@ -12,7 +12,6 @@ from faultpath.decisions.wording import (
     interval,
     last,
     p_value,
-    plain,
     series,
     signed,
     where,
@@ -111,57 +110,14 @@ def only_alone(of: Effect | Change) -> bool:
     return tested and (low > 0 or high < 0)
 
 
-def numbers(record: DecisionRecord, of: Effect | Change) -> str:
-    """Return `+32.0 pp [20.1, 43.2], p < 0.001 after Holm`, and which of the two decides where
-    they disagree."""
-    parts = [f"{signed(of.estimate.value)} pp {interval(of.estimate)}", adjusted(record, of)]
-    shown = ", ".join(part.rstrip() for part in parts if part)
-    return f"{shown}: the interval alone decides nothing" if only_alone(of) else shown
-
-
-def effect(record: DecisionRecord, of: Effect) -> str:
-    """Say what one path shows: who is decided to be ahead, or what could have been found."""
-    place, shown = capital(where(of.path)), numbers(record, of)
-    if not of.acted:
-        return f"{place}, the fault never acted: nothing was tested."
-    if of.sign:
-        aside = ""
-        if of.extreme:
-            aside = f"; {_extreme(of)}, so this carries no headline"
-        elif of.failed and of.uneven:
-            asked, failed = record.question, of.failed
-            aside = (
-                f"; {failed.repair} trials of {asked.repair} and {failed.baseline} of "
-                f"{asked.baseline} failed, so this carries no headline"
-            )
-        return f"{place}, {record.winner(of.sign)} succeeds more often ({shown}){aside}."
-    if of.unsettled:
-        return f"{place}, nothing is decided ({shown}): trials that failed could undo it."
-    if record.few:
-        return f"{place}, nothing is decided ({shown}): the scenes are too few."
-    same = "" if any((*of.wins, *of.losses)) else "both arms succeed in the same scenes; "
-    small = f", and it is smaller than {margin(record)}" if record.is_small(of) else ""
-    said = f"{place}, {same}no difference is detected ({shown}){small}"
-    if of.extreme:
-        return f"{said}; {_extreme(of)}, where a difference can hardly show."
-    if of.minimum_detectable_pp is None:
-        return f"{said}."
-    least = math.ceil(of.minimum_detectable_pp)
-    return f"{said}; a true one of {least} pp would be found with 80 % power."
-
-
-def _extreme(of: Effect) -> str:
-    ends = "fail" if of.extreme == "floor" else "succeed"
-    rates = f"{plain(of.baseline_percent)} and {plain(of.repair_percent)} % success"
-    return f"both arms nearly always {ends} there ({rates})"
-
-
 def change(record: DecisionRecord, of: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {each.path: each for each in record.effects}
     ends = effects[of.isolated], effects[of.shared]
     values = " to ".join(f"{signed(end.success.value)} pp" for end in ends)
-    shown = f"{values}; change {numbers(record, of)}"
+    shown = f"{values}; change {signed(of.estimate.value)} pp {interval(of.estimate)}".rstrip()
+    shown += f", {adjusted(record, of)}"
+    shown += ": the interval alone decides nothing" if only_alone(of) else ""
     alone, shared = where(of.isolated), where(of.shared)
     if of.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
@@ -207,16 +163,6 @@ def frequency(
         elif low and last(region.high) > 0:
             said.append(f"{ahead} up to {last(region.high)} %")
     return ", ".join(said)
-
-
-def frequencies(breaks: tuple[PathBreakEven, ...]) -> Iterator[str]:
-    """Say on all paths at which fault frequencies who is ahead."""
-    decided = [f"{where(each.path)}, {each.words}" for each in breaks if each.words]
-    silent = [where(each.path) for each in breaks if not each.words]
-    if decided:
-        yield f"By fault frequency: {'; '.join(decided)}."
-    if silent:
-        yield f"At no fault frequency is it decided who is ahead {' or '.join(silent)}."
 
 
 def hardly_acted(record: DecisionRecord) -> Iterator[str]:
@@ -282,18 +228,3 @@ def failed_trials(record: DecisionRecord) -> Iterator[str]:
             f"difference over all scenes lies anywhere from {signed(found.against_pp)} to "
             f"{signed(found.favour_pp)} pp."
         )
-
-
-def verdict(record: DecisionRecord, headline: str) -> Verdict:
-    """Return all that a record says of its decisions."""
-    return Verdict(
-        headline=headline,
-        sentences=(
-            *reach(record),
-            *(effect(record, each) for each in record.effects),
-            *(change(record, each) for each in record.changes),
-            *frequencies(record.break_even),
-            *hardly_acted(record),
-        ),
-        would_change=tuple(would_change(record)),
-    )

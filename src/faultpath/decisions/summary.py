@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from faultpath.decisions import phrases
-from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect
+from faultpath.decisions.model import CORRECT, SHARED, DecisionRecord, Effect, Verdict
 from faultpath.decisions.phrases import adjusted, margin, only_alone
 from faultpath.decisions.wording import capital, counted, series, where
 
@@ -154,26 +154,38 @@ def not_standing(record: DecisionRecord) -> Iterator[str]:
         )
 
 
+def verdict(record: DecisionRecord) -> Verdict:
+    """Return all that a record says of its decisions."""
+    changes = (phrases.change(record, each) for each in record.changes)
+    said = [*changes, *(one for several in _answers(record).values() for one in several)]
+    would_change = tuple(phrases.would_change(record))
+    return Verdict(headline=headline(record), sentences=tuple(said), would_change=would_change)
+
+
 def answers(record: DecisionRecord) -> dict[str, str]:
     """Return `What follows`, `How sure` and `Not decided`, each with a sentence or a few.
 
     With too few scenes nothing follows, and only the other two are there.
     """
+    return {label: " ".join(said) for label, said in _answers(record).items()}
+
+
+def _answers(record: DecisionRecord) -> dict[str, list[str]]:
     sure = [*phrases.reach(record), *phrases.hardly_acted(record)]
     if record.few:
         few = (
             f"Too few scenes to decide: {counted(record.scenes, 'scene')} compared, and this "
             f"question needs at least {record.scenes_needed}. The numbers are theirs alone."
         )
-        return {"Not decided": few, "How sure": " ".join(sure)}
+        return {"Not decided": [few], "How sure": sure}
     if record.earlier:
         sure.append(phrases.looks(record))
     elif record.question.generalise == "scenes" and any(each.sign for each in record.effects):
         sure.append("Of audits of two equal systems, at most 5 % would decide anything.")
     return {
-        "What follows": " ".join(_follows(record)),
-        "How sure": " ".join(sure),
-        "Not decided": " ".join(_left_open(record)),
+        "What follows": list(_follows(record)),
+        "How sure": sure,
+        "Not decided": list(_left_open(record)),
     }
 
 

@@ -6,7 +6,6 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.decisions import wording
-from faultpath.decisions.fault_words import fault_words
 from faultpath.decisions.model import DecisionRecord
 from faultpath.decisions.phrases import change
 from faultpath.decisions.summary import answers, in_short
@@ -66,7 +65,7 @@ def report_page(source: ReportInput) -> str:
         pairs=pairs,
         forest=Markup(forest(record)),
         effects=Markup(html(by_path(record, SHOWN, "Effects; bold is decided"))),
-        fault=fault_words(asked, source.interface, source.traces.dt_s)
+        fault="; ".join(each.striking("*").describe() for each in asked.faults)
         or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.variants, strict=True)),
         forks=list(map(Markup, fork_panels(forks(source)))),
