@@ -1,11 +1,10 @@
-"""A fault of several sizes: an audit each, and what they have in common flies once."""
+"""A fault of several sizes: an audit each."""
 
 from pathlib import Path
 
 import pytest
 
 import faultpath
-from faultpath.api.listing import runs
 from faultpath.core.errors import UserError
 from faultpath.faults import each_size
 
@@ -65,33 +64,13 @@ def test_lists_that_are_none(text, said):
         each_size(text)
 
 
-def test_the_arms_that_sizes_share_fly_once_and_the_others_as_if_alone(tmp_path):
-    asked = {**ASKED, "workers": 1}
-    _, strong = faultpath.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **asked)
-    alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **asked)
+def test_each_size_is_an_audit_as_if_alone(tmp_path):
+    _, strong = faultpath.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **ASKED)
+    alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **ASKED)
     assert strong.record == alone.record
     assert strong.table() == alone.table()
-    assert strong.provenance.blocks_kept > alone.provenance.blocks_kept == 0
 
 
 def test_one_audit_takes_one_size():
     with pytest.raises(UserError, match=r"several sizes: use faultpath\.audits"):
         faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)
-
-
-def test_runs_share_trials_unless_their_folder_is_named(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    asked = {**ASKED, "workers": 1, "scenes": 8}
-    first = faultpath.audit(TOY, fault="gain:scale=0.6", **asked)
-    second = faultpath.audit(TOY, fault="gain:scale=0.8", **asked)
-    assert first.provenance.blocks_kept == 0
-    assert second.provenance.blocks_kept == 2, "both arms under correct inputs"
-    assert len(list(Path("runs/.shared").rglob("*.parquet"))) > 2
-    assert {run.folder for run in runs(Path("runs"))} == {str(first.folder), str(second.folder)}
-    plane = {"against": ("controller", "observer"), "up_to": 0.2, "points": 25, "spread": 0.1}
-    drawn = faultpath.reversal_map(TOY, fault="gain", **plane, **asked)
-    assert drawn.provenance.blocks_kept == 6, "correct inputs, and every path of the second audit"
-    named = faultpath.audit(TOY, fault="gain:scale=0.8", folder="named", **asked)
-    assert named.provenance.blocks_kept == 0
-    assert named.record == second.record
-    assert named.provenance.outcomes_sha256 == second.provenance.outcomes_sha256

@@ -65,7 +65,7 @@ RIGHT = {
     "train quadrotor": ["nobody"],
 }
 """Each verb with arguments that end soon: right ones for the toy, wrong ones for what is costly."""
-COSTLY = ("--executor", "--share", "--traceback", "--help", "--workers", "--judge", "--list")
+COSTLY = ("--executor", "--traceback", "--help", "--workers", "--judge", "--list")
 
 
 def _verbs(command: Any, *names: str) -> Iterator[tuple[str, list[str]]]:

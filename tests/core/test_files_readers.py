@@ -19,7 +19,7 @@ from faultpath.learning.model_card import read_card
 from faultpath.learning.record import FitRecord
 from faultpath.systems.flightlog import read_columns, read_flight
 from faultpath.trials.store import RunFolder, read_evidence, read_outcomes, read_traces
-from faultpath.trials.store.lock import locked
+from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.manifest import read_manifest
 from faultpath.trials.store.parquet import Unreadable, rows_in
 from faultpath.trials.store.sealed import read_regular

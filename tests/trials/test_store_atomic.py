@@ -8,7 +8,7 @@ import pytest
 
 from faultpath.core.errors import UserError
 from faultpath.trials.store import atomic, write_text
-from faultpath.trials.store.lock import locked
+from faultpath.trials.store.atomic import locked
 
 
 def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):
@@ -35,7 +35,7 @@ def test_a_file_gets_the_permissions_of_any_other(tmp_path):
 def test_the_lock_of_a_killed_process_is_free(tmp_path):
     code = (
         "import sys, time; from pathlib import Path\n"
-        "from faultpath.trials.store.lock import locked\n"
+        "from faultpath.trials.store.atomic import locked\n"
         "with locked(Path(sys.argv[1]), print):\n    print('held', flush=True); time.sleep(60)"
     )
     command = [sys.executable, "-c", code, str(tmp_path)]

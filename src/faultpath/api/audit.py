@@ -65,7 +65,7 @@ def audit(
     if chosen.notice:
         told.say(chosen.notice)
     with hands(chosen.system, chosen.workers, chosen.executor) as workforce:
-        job = Job(place, workforce, told, asked.time_limit_s, asked.shared_in)
+        job = Job(place, workforce, told, asked.time_limit_s)
         held = carry_out(chosen.system, laid, job, asked.signals)
     run = Run(place, held, read_table(read_regular(place / OUTCOMES)))
     run.report()
@@ -78,9 +78,8 @@ def audits(
 ) -> "tuple[Run, ...]":
     """Audit a repair under each size of a fault.
 
-    What worker processes run for one size, correct inputs for one, the others share. Each size is
-    an audit with a record of its own, which holds within a size; `compare` decides all of them as
-    one family.
+    Each size is an audit with a record of its own, which holds within a size; `compare` decides all
+    of them as one family.
 
     Args:
         system: As for `audit`.
@@ -97,8 +96,6 @@ def audits(
     runs: list[Run] = []
     asked = asked_for(AuditQuestion, given, progress)
     folder, texts = asked.folder, each_size(asked.fault)
-    if folder is not None and len(texts) > 1:
-        given["share"] = asked.share or folder / ".shared"
     for number, text in enumerate(texts, 1):
         place = folder / f"size-{number}" if folder and len(texts) > 1 else folder
         runs.append(audit(system, progress=progress, **{**given, "fault": text, "folder": place}))

@@ -17,7 +17,6 @@ from faultpath.trials import System, system_shown
 from faultpath.trials.execution import RunResult
 from faultpath.trials.store import TrialAddress, write_text
 from faultpath.trials.store.atomic import write_file
-from faultpath.trials.store.manifest import kin
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.sealed import read_regular, seal
 from faultpath.trials.store.signals import SIGNALS, Signal, decode_signals, encode_signals
@@ -30,9 +29,9 @@ _SCENES_FOR_ONE = 20
 def carry_out(system: System, audit: Audit, job: Job, signals: bool = True) -> ReportInput:
     """Run, decide and write what the run folder's pages are made from; return that.
 
-    What was concluded before in the folder, or in another that shares these trials, is told in the
-    record: see `after_looks`. With `signals`, the scenes that the report begins with run once more
-    and keep what is read in them; what goes wrong there is a finding, never an error of the audit.
+    What was concluded before in the folder is told in the record: see `after_looks`. With
+    `signals`, the scenes that the report begins with run once more and keep what is read in them;
+    what goes wrong there is a finding, never an error of the audit.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing is left to
     compare.
@@ -46,8 +45,7 @@ def carry_out(system: System, audit: Audit, job: Job, signals: bool = True) -> R
     with display.progress("Running") as show:
         result = job.run(audit.study, system, show, stop=audit.stops)
     record = audit.conclude(result.outcomes, result.deliveries)
-    places = [folder, *(kin(folder) if job.share is not None else ())]
-    record = after_looks(record, (each for place in places for each in _concluded(place)))
+    record = after_looks(record, _concluded(folder))
     traces = Traces(result.traces, system.control_dt_s)
     held = _kept(folder, before, result)
     if signals:

@@ -23,8 +23,6 @@ class Job:
     executor: Executor
     display: Display
     time_limit_s: float | None = None
-    share: Path | None = None
-    """Folder in which runs into other folders find its trials, and it theirs."""
     stopwatch: Stopwatch = field(default_factory=Stopwatch)
 
     def run(
@@ -48,7 +46,6 @@ class Job:
             system=system,
             executor=self.executor,
             time_limit_s=self.time_limit_s,
-            share=self.share,
             **how,
         )
 

@@ -49,7 +49,7 @@ def reversal_map(
     from faultpath.api.run import MapRun
 
     with hands(chosen.system, chosen.workers, chosen.executor) as workforce:
-        job = Job(place, workforce, told, asked.time_limit_s, asked.shared_in)
+        job = Job(place, workforce, told, asked.time_limit_s)
         run = MapRun(place, *fly_map(plan, job))
     run.report()
     return run

@@ -114,7 +114,7 @@ def audit_study(
     progress: bool | Display = True,
     **running: Any,
 ) -> "tuple[Run, ...]":
-    """Carry out the audits of a study, once all fit the system; arms they have in common run once.
+    """Carry out the audits of a study, once all fit the system.
 
     `running` is what `audit` takes of how to run: workers and limits. Raises as `audit`, and for a
     file that does not fit the system any more.
@@ -124,8 +124,6 @@ def audit_study(
     for each in study.audits:
         laid = plan_audit(chosen.system, chosen.spec, study.audit_of(each.fault), library)
         check_arms(study, each, laid)
-    if folder is not None:
-        running["share"] = running.get("share") or Path(folder) / ".shared"
     same = {name: getattr(study, name) for name in Question.model_fields}
     return tuple(
         audit(

@@ -10,6 +10,7 @@ from typing import cast
 
 from faultpath import trials
 from faultpath.core.errors import UserError
+from faultpath.core.text import extra
 from faultpath.trials import System, SystemSpec
 from faultpath.trials.checks import check_system
 from faultpath.trials.options import as_text
@@ -115,8 +116,12 @@ def hands(system: System, workers: int | None, executor: str = LOCAL) -> Executo
     count = 1 if workers is None and not system.parallel else workers
     if executor == LOCAL:
         return local((os.cpu_count() or 1) if count is None else count)
-    from faultpath.trials.work.ray_cluster import RayWorkers
-
+    try:
+        from faultpath.trials.work.ray_cluster import RayWorkers
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"--executor ray needs the package {error.name!r}, not installed here: {extra('ray')}"
+        ) from None
     return RayWorkers(executor.removeprefix(RAY).removeprefix(":"), count)
 
 

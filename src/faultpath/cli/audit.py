@@ -64,7 +64,7 @@ def command(
     *(
         name
         for name in AuditQuestion.model_fields
-        if name not in ("folder", "share", "workers", "executor", "time_limit_s")
+        if name not in ("folder", "workers", "executor", "time_limit_s")
     ),
 )
 def study(

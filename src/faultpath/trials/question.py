@@ -226,11 +226,6 @@ class Running(Question):
         default=None,
         description="Run folder; default runs/<question>-<code>, so the same call resumes.",
     )
-    share: Place = Field(
-        default=None,
-        description="Folder in which runs share trials; default runs/.shared, and none where the "
-        "run folder is named.",
-    )
     workers: Workers = None
     executor: str = Field(
         default="local",
@@ -238,13 +233,6 @@ class Running(Question):
         "here, else one of its own; ray:HOST:PORT names it.",
     )
     time_limit_s: TimeLimit = None
-
-    @property
-    def shared_in(self) -> Path | None:
-        """The folder in which the run shares trials with others, if it does."""
-        if self.executor != "local":
-            return None
-        return self.share or (Path("runs") / ".shared" if self.folder is None else None)
 
 
 class AuditQuestion(Running):

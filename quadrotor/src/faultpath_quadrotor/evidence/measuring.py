@@ -7,8 +7,8 @@ from pathlib import Path
 
 from faultpath.trials.evidence import EvidenceTable, Measurement, Progress
 from faultpath.trials.store import atomic, make_folder
+from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.evidence import read_evidence, write_evidence
-from faultpath.trials.store.lock import locked
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.evidence.quantities import check, measured
 from faultpath_quadrotor.evidence.recording import Block, Recorded, blocks, recorded

@@ -26,7 +26,7 @@ from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, read_json
 from faultpath.core.streams import generator
 from faultpath.trials.store import atomic
-from faultpath.trials.store.lock import locked
+from faultpath.trials.store.atomic import locked
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath_quadrotor.perception.labels import visible_distance

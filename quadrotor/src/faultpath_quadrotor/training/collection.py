@@ -17,7 +17,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.version import __version__
 from faultpath.trials.execution.provenance import packages
 from faultpath.trials.store import atomic
-from faultpath.trials.store.lock import locked
+from faultpath.trials.store.atomic import locked
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.parts import Part, Progress, make_missing
 from faultpath_quadrotor.training.pool import episodes_path, join_flights, write_flights

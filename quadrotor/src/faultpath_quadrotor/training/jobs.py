@@ -15,8 +15,7 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.learning.loop import Moment
 from faultpath.learning.model_card import read_card
 from faultpath.trials.store import make_folder
-from faultpath.trials.store.atomic import sweep
-from faultpath.trials.store.lock import locked
+from faultpath.trials.store.atomic import locked, sweep
 from faultpath.trials.work import Lost, Returned, local, run_each, tell
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import ModelCard, ship

@@ -14,7 +14,6 @@ from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store import write_text
 from faultpath.trials.store.sealed import seal
-from faultpath.trials.store.shared import processor
 from faultpath.trials.work import Executor
 
 PROVENANCE = "provenance.json"
@@ -116,6 +115,16 @@ def _state(main: Path, files: Iterable[Path]) -> tuple[str | None, bool | None]:
     inside = [str(path) for path in files if path.resolve().is_relative_to(top)]
     changes = _git(top, "status", "--porcelain", "--untracked-files=all", "--", *inside)
     return _git(top, "rev-parse", "HEAD"), None if changes is None else bool(changes)
+
+
+def processor() -> str:
+    """Return the model of the processor, as well as the platform tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    models = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(models, "") or platform.processor() or platform.machine()
 
 
 def packages() -> dict[str, str]:

@@ -25,7 +25,6 @@ from faultpath.trials.registry import load_system
 from faultpath.trials.state import system_code
 from faultpath.trials.store.folder import RunFolder
 from faultpath.trials.store.manifest import Manifest
-from faultpath.trials.store.shared import SharedTrials
 from faultpath.trials.store.tables import Trace, TrialAddress, traces_of
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, assemble, check_rows, selected
@@ -85,7 +84,6 @@ def run_study(
     time_limit_s: float | None = None,
     recheck: bool = True,
     stop: Stop | None = None,
-    share: Path | None = None,
 ) -> RunResult:
     """Run every arm of a study over its scenes, keeping what `folder` already holds.
 
@@ -105,8 +103,6 @@ def run_study(
         recheck: Runs a few scenes again and compares; see `RunResult.findings`.
         stop: Asked at each look of a study that has some, and ends it; the result holds the scenes
             up to that look.
-        share: Folder in which runs into other folders left trials of the same units, by the same
-            code; they are taken over, and what this one ran is left there, as far as it is sound.
 
     Raises:
         UserError: The folder or the study cannot be run.
@@ -125,7 +121,6 @@ def run_study(
         scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
     units = plan(study.arms(), scenes, system.block_size, library, code.state.digest, study.look)
-    keys = [unit.key for unit in units]
     looks = Looks(study, library, units, stop)
     manifest = Manifest(
         faultpath_version=__version__,
@@ -135,16 +130,8 @@ def run_study(
     )
     run = RunFolder(Path(folder))
     state = RunState(units, run, workers, Counter(row.arm.key() for row in study.rows))
-    store = None
-    if share is not None and not study.system.is_object:
-        store = SharedTrials(share, study.system, system.backend)
     try:
         with run.open(manifest, notice, shared):
-            if store and (lent := store.lend(run, keys)):
-                notice(
-                    f"{lent} of {len(units)} blocks are those of other runs, of the same code on "
-                    f"this machine, taken from {store.place}."
-                )
             schedule = Schedule(_missing(state, run, notice), study.look > 0)
             progress(state.progress())
             job = Job(study.system, study.library, code.state, library.content_hash)
@@ -176,21 +163,13 @@ def run_study(
                         lambda task, reply: again.settle(task, reply, state.outcomes),
                     )
             table = assemble(looks.study, library, state.outcomes)
-            found = tuple(again.findings())
-            deliveries = Deliveries.of(study, state.taps(looks.units), table, found)
+            taps, found = state.taps(looks.units), tuple(again.findings())
+            deliveries = Deliveries.of(study, taps, table, found)
             digest = run.save_tables(table, deliveries)
             failures = _failures(looks.units, state, run)
-            if store and recheck and not workforce.in_process and not found:
-                bad = {(failure.arm.key(), failure.scene) for failure in failures}
-                sound = [
-                    unit.key
-                    for unit in looks.units
-                    if not any((unit.arm.key(), scene) in bad for scene in unit.scenes)
-                ]
-                store.keep(run, sound, notice)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
-        done = sum(run.holds_shard(key) for key in keys)
+        done = sum(bool(run.files_of(unit.key)) for unit in units)
         raise Stopped(
             f"interrupted with {done} of {len(units)} blocks done and kept in {run.path}; run the "
             "same again to resume."

@@ -1,4 +1,5 @@
-"""Files that are either whole or absent, whenever the process is killed.
+"""Files that are either whole or absent, whenever the process is killed; one process at a time in
+a run folder.
 
 A file takes the place of another file and of nothing else: a device, a pipe, a socket or a folder
 of that name is left as it is. Symbolic links are followed, as by any program that opens a file, so
@@ -6,16 +7,19 @@ that the link stays and what it points to is replaced.
 """
 
 import errno
+import fcntl
 import os
 import stat
 import tempfile
-from contextlib import suppress
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.opening import unlike_file
 
 _PREFIX = ".partial-"
+Say = Callable[[str], None]
 
 
 def write(path: Path, data: bytes, inside: Path | None = None) -> None:
@@ -107,3 +111,37 @@ def _place(path: Path, inside: Path | None) -> Path:
     if inside is not None and path.is_symlink() and not place.is_relative_to(inside.resolve()):
         raise OSError(errno.ELOOP, f"it is a link out of {inside}")
     return place
+
+
+@contextmanager
+def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
+    """Hold the lock of `folder`, waiting for another process that does.
+
+    The kernel holds the lock for this process and lets it go when the process dies, however it
+    dies. Its file descriptor is not inherited, so a worker that outlives us cannot keep it.
+    """
+    path = folder / ".lock"
+    try:
+        descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o666)
+    except OSError as error:
+        raise UserError(
+            f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to"
+        ) from error
+    try:
+        if kind := unlike_file(os.fstat(descriptor).st_mode):
+            raise UserError(f"{path} is {kind}, not a file: remove it, or choose another folder")
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            holder = os.pread(descriptor, 32, 0).decode(errors="replace").strip() or "unknown"
+            notice(f"another faultpath process (id {holder}) works in {folder}; waiting for it")
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        except OSError as error:
+            raise UserError(
+                f"cannot lock {folder} ({error.strerror}): choose a folder on a local disk"
+            ) from error
+        os.truncate(descriptor, 0)
+        os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
+        yield
+    finally:
+        os.close(descriptor)

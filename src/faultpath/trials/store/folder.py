@@ -1,9 +1,8 @@
 """A run on disk."""
 
 import hashlib
-import shutil
-from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -11,7 +10,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import contents
 from faultpath.trials.deliveries import Deliveries
 from faultpath.trials.store import atomic
-from faultpath.trials.store.lock import Say, locked
+from faultpath.trials.store.atomic import Say, locked
 from faultpath.trials.store.manifest import Manifest, check_same, read_manifest
 from faultpath.trials.store.parquet import Unreadable
 from faultpath.trials.store.tables import (
@@ -83,10 +82,6 @@ class RunFolder:
             if other != path:  # the block as it was before its failed trials were tried again
                 other.unlink(missing_ok=True)
 
-    def holds_shard(self, key: str) -> bool:
-        """Return whether a finished block is stored."""
-        return bool(self.files_of(key))
-
     def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
         """Return when the first and the last of some stored blocks were written, UTC."""
         times = [path.stat().st_mtime for key in keys for path in self.files_of(key)]
@@ -113,16 +108,6 @@ class RunFolder:
                 found.append(shard)
         # A process killed between writing and tidying leaves two; the later one failed less often.
         return min(found, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
-
-    def take_over(self, other: "RunFolder", keys: Iterable[str]) -> None:
-        """Copy the blocks that another run has and this one has not, with the times of theirs."""
-        try:
-            for key in keys:
-                for shard in () if self.files_of(key) else other.files_of(key):
-                    with suppress(FileNotFoundError):  # deleted since it was listed
-                        shutil.copy2(shard, self.shards / shard.name)
-        except OSError as error:
-            raise self._unwritable(error) from error
 
     def save_failure(self, key: str, text: str) -> None:
         """Store what is known about the failed trials of a block; without any, forget the last."""

@@ -30,10 +30,6 @@ class Manifest(Frozen):
         content = self.model_dump(mode="json")
         return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
-    def of_any_scenes(self) -> "Manifest":
-        """Return it without its choice of scenes."""
-        return self.model_copy(update={"study": self.study.model_copy(update={"scenes": ()})})
-
 
 def read_manifest(path: Path) -> Manifest | None:
     """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
@@ -93,20 +89,6 @@ def check_same(folder: Path, found: Manifest, asked: Manifest, shared: bool = Fa
         )
 
 
-def kin(folder: Path) -> list[Path]:
-    """Return the folders beside a run's that hold its study by its code, but for the scenes."""
-    own = read_manifest(folder / "manifest.json")
-    found: list[Path] = []
-    for path in sorted(folder.parent.iterdir()):
-        try:
-            other = read_manifest(path / "manifest.json") if path.is_dir() else None
-        except UserError:  # of another format, or damaged
-            continue
-        if own and other and path != folder and own.of_any_scenes() == other.of_any_scenes():
-            found.append(path)
-    return found
-
-
 def _damaged(path: Path, error: Exception) -> UserError:
     why = error.strerror if isinstance(error, OSError) else error
     return UserError(
@@ -114,10 +96,6 @@ def _damaged(path: Path, error: Exception) -> UserError:
     )
 
 
-_KEY = 8
-"""Digits of the code's digest in a folder's name."""
-
-
 def keyed(place: Path, name: str, code: CodeState) -> Path:
     """Return the folder for a question, run by `code`."""
-    return place / f"{name}-{code.digest[:_KEY]}"
+    return place / f"{name}-{code.digest[:8]}"

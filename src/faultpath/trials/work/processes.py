@@ -43,6 +43,15 @@ _BOOT = (
 )
 
 
+def passed_on(message: tuple[Any], on_message: OnMessage) -> None:
+    """Show a notice of a worker's, once for all workers; hand over what else its call tells."""
+    (told,) = message
+    if isinstance(told, Notice):
+        warnings.warn(told, stacklevel=2)  # which shows the same text once
+    else:
+        on_message(told)
+
+
 def local(workers: int) -> Executor:
     """Return so many processes of this machine, or for 0 this process itself."""
     if not 0 <= workers <= _MOST:
@@ -87,11 +96,7 @@ class Processes(Executor):
             worker = next(w for c, w in channels.items() if c is channel)
             message = self._processes[worker].receive()
             if not isinstance(message, (Returned, Failed, Lost)):
-                (on_message,) = message
-                if isinstance(on_message, Notice):
-                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
-                else:
-                    self._busy[worker](on_message)
+                passed_on(message, self._busy[worker])
                 continue
             del self._busy[worker]
             if isinstance(message, Lost):

@@ -1,5 +1,8 @@
-"""Workers on a Ray cluster, seen from the driver: actors of one CPU each."""
+"""Workers on a Ray cluster: actors of one CPU each, and what runs in them."""
 
+# Of Ray's types nothing is known.
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+# pyright: reportUnknownArgumentType=false, reportMissingTypeStubs=false
 import os
 import pickle
 import signal
@@ -8,25 +11,39 @@ import sys
 import threading
 import warnings
 from collections.abc import Generator, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing.reduction import ForkingPickler
+from queue import SimpleQueue
+from threading import Semaphore
 from typing import Any
 
-from faultpath.core.errors import Notice, UserError
-from faultpath.core.text import extra
-from faultpath.core.version import __version__
-from faultpath.trials.work.executor import ONE_THREAD, Call, End, Executor, Lost, OnMessage, ignore
-from faultpath.trials.work.processes import KEEP_MEMORY
+import ray
 
+from faultpath.core.errors import UserError
+from faultpath.core.version import __version__
+from faultpath.trials.work.executor import (
+    ONE_THREAD,
+    Call,
+    End,
+    Executor,
+    Lost,
+    OnMessage,
+    ignore,
+    live_on,
+)
+from faultpath.trials.work.process import served, show
+from faultpath.trials.work.processes import KEEP_MEMORY, passed_on
+
+_ray: Any = ray
 _QUIET = {"logging_level": "ERROR", "log_to_driver": False}
-_STORE_BYTES = 256 * 2**20
-"""Of shared memory for a cluster of our own: what comes back is small, and fetched at once."""
+_OWN = {"object_store_memory": 256 * 2**20, "include_dashboard": False}
+"""For a cluster of our own: what comes back is small, and fetched at once."""
 _FALSE_STARTS = 4
 """So many workers in a row may end before they have begun."""
 _REPORTS = "RAY_USAGE_STATS_ENABLED"
 _TICK_S = 0.5
-_REACH_S = 10.0
 
 _ENVIRONMENT = {
     **KEEP_MEMORY,
@@ -34,6 +51,53 @@ _ENVIRONMENT = {
     # A worker asks Ray for a CPU only, and sees the GPUs that a process of the node would see.
     "RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO": "0",
 }
+
+
+class OnNode:
+    """An actor of Ray's: the counterpart of a local worker process.
+
+    `folder` is the working directory of the driver, entered where the node has it too; `path`
+    names folders that modules are looked for in beside the node's own.
+    """
+
+    def __init__(self, folder: str, path: Sequence[str]) -> None:
+        if os.path.isdir(folder):
+            os.chdir(folder)
+        sys.path += [each for each in path if each not in sys.path]
+        warnings.showwarning = show
+        self._place = f"node {socket.gethostname()} of the Ray cluster"
+        live_on(self._place)
+        self._thread = ThreadPoolExecutor(1)  # always the same: some libraries bind to theirs
+
+    def ready(self) -> tuple[str, str, str]:
+        """Return where this is in words, the node's id, and the version of faultpath."""
+        return self._place, _ray.get_runtime_context().get_node_id(), __version__
+
+    def serve(self, packed: bytes) -> Iterator[bytes]:
+        """Run a call; yield what it tells as it tells it, and its end last.
+
+        What it tells has reached the driver before it goes on: Ray loses what a worker has only
+        begun to send when it ends, and a call that ends it would not be known to have begun.
+        """
+        news: SimpleQueue[tuple[bytes, bool]] = SimpleQueue()
+        taken = Semaphore(0)
+
+        def on_message(message: object) -> None:
+            news.put((bytes(ForkingPickler.dumps((message,))), False))
+            taken.acquire()
+
+        def run() -> None:
+            try:
+                news.put((bytes(served(packed, on_message)), True))
+            except BaseException:  # as a process ends that cannot go on
+                os._exit(1)
+
+        self._thread.submit(run)
+        last = False
+        while not last:
+            message, last = news.get()
+            yield message  # until the driver has taken it: see `RayWorkers.submit`
+            taken.release()
 
 
 @dataclass
@@ -72,22 +136,12 @@ class RayWorkers(Executor):
                 f"the number of workers is {count}: on Ray use 1 or more, or leave it out for one "
                 "a CPU"
             )
-        try:
-            import ray
-        except ModuleNotFoundError as error:
-            raise UserError(
-                f"--executor ray needs the package {error.name!r}, not installed here: "
-                f"{extra('ray')}"
-            ) from None
-        self._ray: Any = ray
-        self._ours = _connect(self._ray, address, count)
-        from faultpath.trials.work.on_node import OnNode  # it imports ray
-
-        self._count = count or max(1, int(self._ray.cluster_resources().get("CPU", 0)))
+        self._ours = _connect(address, count)
+        self._count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
         self._false_starts = 0
         options = {"num_cpus": 1, "runtime_env": {"env_vars": _ENVIRONMENT}}
-        self._kind = self._ray.remote(OnNode).options(**options)
+        self._kind = _ray.remote(OnNode).options(**options)
         self._workers = {number: self._started() for number in range(self._count)}
 
     @property
@@ -99,7 +153,7 @@ class RayWorkers(Executor):
     def name(self) -> str:
         """Say on what calls ran."""
         nodes = len(self._nodes)
-        return f"Ray {self._ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
+        return f"Ray {_ray.__version__}, {nodes} {'node' if nodes == 1 else 'nodes'}"
 
     def free(self) -> Sequence[int]:
         """Return the workers that run and have no call; wait for one where none has a call."""
@@ -107,7 +161,7 @@ class RayWorkers(Executor):
             free = [number for number, each in self._workers.items() if each.awaited is None]
             if free or any(each.stream is not None for each in self._workers.values()):
                 return free
-            for number in self._heard(_TICK_S):
+            for number in self._ready(_TICK_S):
                 self._welcome(number)
 
     def submit(self, worker: int, call: Call, on_message: OnMessage = ignore) -> None:
@@ -120,36 +174,39 @@ class RayWorkers(Executor):
 
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
         """Wait for the actors; one that was lost is asked for anew."""
-        for number in self._heard(timeout_s):
+        for number in self._ready(timeout_s):
             worker = self._workers[number]
             if worker.starting is not None:
                 self._welcome(number)
                 continue
-            message = self._message(worker)
+            try:
+                # Of our own worker, through Ray, which itself runs what its cluster sends: no file.
+                message: tuple[Any] | End = pickle.loads(_ray.get(next(worker.stream)))
+            except _ray.exceptions.RayTaskError:
+                raise
+            except (_ray.exceptions.RayError, StopIteration) as error:
+                message = Lost(f"the worker on {worker.place} was lost ({_last_line(error)})")
             if isinstance(message, tuple):
-                (on_message,) = message
-                if isinstance(on_message, Notice):
-                    warnings.warn(on_message, stacklevel=1)  # which shows the same text once
-                else:
-                    worker.on_message(on_message)
+                passed_on(message, worker.on_message)
                 continue
             worker.stream = None
             if isinstance(message, Lost):
-                self._replace(number)
+                self.cancel(number)
             yield number, message
 
     def cancel(self, worker: int) -> None:
-        """Kill the actor."""
-        self._replace(worker)
+        """Kill the actor, which may only be out of reach, and ask for another."""
+        _ray.kill(self._workers[worker].actor)
+        self._workers[worker] = self._started()
 
     def close(self) -> None:
         """Kill the actors, and leave the cluster; one of our own ends."""
         for worker in self._workers.values():
-            self._ray.kill(worker.actor)
+            _ray.kill(worker.actor)
         self._workers.clear()
         if self._ours:
             with _as_before():
-                self._ray.shutdown()
+                _ray.shutdown()
         self._ours = False
 
     def _started(self) -> _Worker:
@@ -158,37 +215,28 @@ class RayWorkers(Executor):
         actor = self._kind.remote(os.getcwd(), path)
         return _Worker(actor, actor.ready.remote())
 
-    def _replace(self, number: int) -> None:
-        self._ray.kill(self._workers[number].actor)  # it may only be out of reach
-        self._workers[number] = self._started()
-
-    def _heard(self, timeout_s: float) -> list[int]:
-        awaited = {
-            id(each.awaited): (number, each.awaited)
-            for number, each in self._workers.items()
-            if each.awaited is not None
-        }
-        refs = [ref for _, ref in awaited.values()]
-        if not refs:
+    def _ready(self, timeout_s: float) -> list[int]:
+        """Return the workers from which something has come, waiting for the first."""
+        awaited = {n: each.awaited for n, each in self._workers.items() if each.awaited is not None}
+        refs = list(awaited.values())
+        if not refs or not _ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
             return []
-        if self._ray.wait(refs, num_returns=1, timeout=timeout_s)[0]:
-            ready, _ = self._ray.wait(refs, num_returns=len(refs), timeout=0)
-            return [awaited[id(ref)][0] for ref in ready]
-        return []
+        ready = {id(ref) for ref in _ray.wait(refs, num_returns=len(refs), timeout=0)[0]}
+        return [number for number, ref in awaited.items() if id(ref) in ready]
 
     def _welcome(self, number: int) -> None:
         """Take in the first answer of an actor, or ask for another where it has not come up."""
         worker = self._workers[number]
         try:
-            worker.place, node, version = self._ray.get(worker.starting)
-        except self._ray.exceptions.RayError as error:
+            worker.place, node, version = _ray.get(worker.starting)
+        except _ray.exceptions.RayError as error:
             self._false_starts += 1
             if self._false_starts > _FALSE_STARTS:
                 raise UserError(
                     f"workers do not start on the Ray cluster ({_last_line(error)}): every node "
                     "needs the same Python, and faultpath with its extra ray"
                 ) from error
-            self._replace(number)
+            self.cancel(number)
             return
         if version != __version__:
             raise UserError(
@@ -198,64 +246,48 @@ class RayWorkers(Executor):
         worker.starting, self._false_starts = None, 0
         self._nodes.add(node)
 
-    def _message(self, worker: _Worker) -> tuple[Any] | End:
-        try:
-            # Of our own worker, through Ray, which itself runs what its cluster sends: no file.
-            message: tuple[Any] | End = pickle.loads(self._ray.get(next(worker.stream)))
-        except self._ray.exceptions.RayTaskError:
-            raise
-        except (self._ray.exceptions.RayError, StopIteration) as error:
-            return Lost(f"the worker on {worker.place} was lost ({_last_line(error)})")
-        return message
 
-
-def _connect(ray: Any, address: str, count: int | None) -> bool:
+def _connect(address: str, count: int | None) -> bool:
     """Connect this process; return whether it was not before.
 
     Without an address, and where nothing runs here, a cluster of this machine alone starts, and
     ends with this process.
     """
     asked = address or os.environ.get("RAY_ADDRESS", "")
-    if ray.is_initialized():
-        now = ray.get_runtime_context().gcs_address
+    if _ray.is_initialized():
+        now = _ray.get_runtime_context().gcs_address
         if address not in ("", "auto", now):
             raise UserError(
                 f"this process is connected to the Ray cluster at {now}: name that one, or leave "
                 "the address out"
             )
         return False
-    if asked not in ("", "auto"):
-        _reach(asked)
+    if asked not in ("", "auto"):  # tried first with a plain connection: Ray waits for minutes
+        host, _, port = asked.rpartition(":")
+        try:
+            if "/" in asked:
+                raise OSError("it is no HOST:PORT")
+            socket.create_connection((host.strip("[]"), int(port)), 10.0).close()
+        except (OSError, OverflowError, ValueError) as error:
+            raise UserError(
+                f"no Ray cluster answers at {asked!r} ({error}): give HOST:PORT of its head, as in "
+                "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command "
+                "with `ray job submit` from a machine that does not belong to it"
+            ) from error
     with _as_before():
         try:
-            ray.init(address=asked or "auto", **_QUIET)
+            _ray.init(address=asked or "auto", **_QUIET)
         except (RuntimeError, ConnectionError) as error:  # other versions of Ray, or none there
             if asked or isinstance(error, RuntimeError):
                 where = asked or "on this machine"
                 raise UserError(
                     f"cannot use the Ray cluster {where}: {' '.join(str(error).split())[:300]}"
                 ) from error
-            store = {"object_store_memory": _STORE_BYTES, "include_dashboard": False}
             try:
-                ray.init(address="local", num_cpus=count, **store, **_QUIET)
+                _ray.init(address="local", num_cpus=count, **_OWN, **_QUIET)
             except Exception as late:  # of no narrower kind, when it does not come up in time
                 raise UserError(f"Ray does not start on this machine: {_last_line(late)}") from late
     return True
-
-
-def _reach(address: str) -> None:
-    """Raise `UserError` for an address at which nothing answers; Ray itself waits for minutes."""
-    host, _, port = address.rpartition(":")
-    try:
-        if "/" in address:
-            raise OSError("it is no HOST:PORT")
-        socket.create_connection((host.strip("[]"), int(port)), _REACH_S).close()
-    except (OSError, OverflowError, ValueError) as error:
-        raise UserError(
-            f"no Ray cluster answers at {address!r} ({error}): give HOST:PORT of its head, as in "
-            "ray:10.0.0.1:6379, start one there with `ray start --head`, or send the command with "
-            "`ray job submit` from a machine that does not belong to it"
-        ) from error
 
 
 @contextmanager
