@@ -94,7 +94,7 @@ def _record(row: Row, rates: dict[str, list[float]], missing: dict[str, str]) ->
 def describe() -> Machine:
     """Return this machine and the code on it."""
     kernels = native.kernels()
-    commit, _ = checkout(Path(faultpath.__file__).parent)
+    commit, _ = checkout(Path(faultpath.__file__), [Path(faultpath.__file__).parent])
     installed = {each.name.replace("_", "-"): each.version for each in distributions()}
     return Machine(
         date=datetime.now(UTC).date().isoformat(),

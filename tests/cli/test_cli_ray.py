@@ -27,6 +27,7 @@ def test_a_cluster_that_is_not_there_is_a_sentence(executor, workers, says, tmp_
 
 def test_a_missing_extra_is_a_sentence(tmp_path):
     with patch.dict(sys.modules, {"ray": None}):
+        sys.modules.pop("faultpath.trials.work.ray_cluster", None)
         ended = audit(executor="ray", workers=1, out=tmp_path / "run")
     assert "pip install '.[ray]'" in ended.refused()
 

@@ -18,7 +18,7 @@ from faultpath.interface import read_interface
 from faultpath.learning.model_card import read_card
 from faultpath.learning.record import FitRecord
 from faultpath.systems.flightlog import read_columns, read_flight
-from faultpath.trials.store import RunFolder, read_evidence, read_outcomes, read_traces
+from faultpath.trials.store import RunFolder, read_outcomes, read_traces
 from faultpath.trials.store.atomic import locked
 from faultpath.trials.store.manifest import read_manifest
 from faultpath.trials.store.parquet import Unreadable, rows_in
@@ -43,6 +43,12 @@ def _card(path: Path) -> object:
     return read_card(path, ModelCard)
 
 
+def _evidence(path: Path) -> object:
+    from faultpath_quadrotor.evidence.table import read_evidence
+
+    return read_evidence(path)
+
+
 def _shard(path: Path) -> object:
     folder = RunFolder(path.parents[1])
     return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
@@ -62,7 +68,7 @@ READERS: dict[str, tuple[str, Read]] = {
     "any file of a run": ("record.json", read_regular),
     "outcomes": ("outcomes.parquet", read_outcomes),
     "traces": ("traces.parquet", read_traces),
-    "evidence": ("evidence.parquet", read_evidence),
+    "evidence": ("evidence.parquet", _evidence),
     "reproduction": ("reproduction.json", lambda path: read_results(path.parent)),
     "shard": ("shards/key-digest.parquet", _shard),
     "length of a table": ("table.parquet", rows_in),

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.pages import (
     figure_3,
@@ -18,7 +19,6 @@ from faultpath_quadrotor.paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
 from faultpath.trials import OutcomeTable, Status
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 
 SCENES = 100
 WINDOWS = 2

@@ -1,6 +1,7 @@
 """The claims over whole runs: as published, mirrored, in part, and not at all."""
 
 import pytest
+from faultpath_quadrotor.evidence.table import EvidenceTable, Measured
 from faultpath_quadrotor.paper.answers import ClaimVerdict
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.claims import STATEMENTS, evaluate, ledger
@@ -16,7 +17,6 @@ from toy_runs import EMPTY, trials
 
 from faultpath.statistics.contrast import MIN_SCENES
 from faultpath.trials import OutcomeTable, Status
-from faultpath.trials.evidence import EvidenceTable, Measured
 
 Answers = dict[str, ClaimVerdict]
 

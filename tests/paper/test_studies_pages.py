@@ -5,6 +5,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.pages import PAGES
@@ -26,7 +27,6 @@ from toy_runs import (
 
 from faultpath.decisions.tables import MISSING, Table
 from faultpath.trials import OutcomeTable
-from faultpath.trials.evidence import EvidenceTable
 
 NAMES = tuple(page.name for page in PAGES)
 

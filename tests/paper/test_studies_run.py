@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper import flights
 from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibration
@@ -16,7 +17,6 @@ from faultpath_quadrotor.paper.run import Plan, conclude, measure_all, plan, rea
 from faultpath.api.display import Display
 from faultpath.api.job import Job
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import EvidenceTable
 from faultpath.trials.work import Here, Progress
 
 SILENT = Display(command=("faultpath", "reproduce"))

@@ -1,5 +1,6 @@
 """Tables of the studies: known figures from runs with known results."""
 
+from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.pages import PAGES, figure_3, table_4, table_6
@@ -19,7 +20,6 @@ from toy_runs import (
 )
 
 from faultpath.trials import Status
-from faultpath.trials.evidence import Measurement
 
 
 def test_table_1_counts_how_trials_end_and_when() -> None:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.page import Page
 from faultpath_quadrotor.paper.pages import PAGES
@@ -11,7 +12,6 @@ from faultpath_quadrotor.paper.results import Results
 
 from faultpath.decisions.tables import Entry, Line, Table
 from faultpath.trials import Outcome, OutcomeTable, Pairs, Status, TrialRow
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
 
 SCENES = 20
 Ends = Callable[[Cell, int, int], Status]

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 import torch
-from faultpath_quadrotor.evidence import measure, recording
+from faultpath_quadrotor.evidence import recording
+from faultpath_quadrotor.evidence.measuring import measure
+from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.scenes.library import Library, as_text
 from flights import hall
 
 from faultpath.core.errors import UserError
-from faultpath.trials import load_measurer
-from faultpath.trials.evidence import Measurement, Recording
 
 torch.set_num_threads(1)
 
@@ -44,7 +44,7 @@ def asked(library) -> list[Measurement]:
 def whole(library, tmp_path_factory):
     """The folder of a run that nothing interrupted, and its table."""
     folder = tmp_path_factory.mktemp("whole")
-    return folder, load_measurer("quadrotor")(asked(library), None, folder)
+    return folder, measure(asked(library), None, folder)
 
 
 def contents(folder) -> dict[str, bytes]:

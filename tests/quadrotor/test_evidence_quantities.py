@@ -9,6 +9,7 @@ from faultpath_quadrotor.evidence import quantities
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.quantities import check, measured
 from faultpath_quadrotor.evidence.recording import STRIDE, Recorded
+from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM, Platform
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
 from faultpath_quadrotor.training.flight import fly
@@ -17,7 +18,6 @@ from faultpath_quadrotor.training.windows import HISTORY, cut, places
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import Measurement, Recording
 
 torch.set_num_threads(1)
 

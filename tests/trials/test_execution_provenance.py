@@ -22,17 +22,18 @@ def _git(folder, *arguments):
 def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
     package = tmp_path / "src" / "package"
     package.mkdir(parents=True)
-    (package / "__init__.py").write_text("a = 1\n")
+    main = package / "__init__.py"
+    main.write_text("a = 1\n")
     _git(tmp_path, "init", "-q")
-    assert checkout(package) == (None, None)  # inside a repository, but not part of it
+    assert checkout(main, [package]) == (None, None)  # inside a repository, but not part of it
     _git(tmp_path, "add", ".")
     _git(tmp_path, "commit", "-qm", "one")
     commit = _git(tmp_path, "rev-parse", "HEAD")
-    assert checkout(package) == (commit, False)
+    assert checkout(main, [package]) == (commit, False)
     (tmp_path / "notes").write_text("beside the package\n")
-    assert checkout(package) == (commit, False)
-    (package / "__init__.py").write_text("a = 2\n")
-    assert checkout(package) == (commit, True)
+    assert checkout(main, [package]) == (commit, False)
+    main.write_text("a = 2\n")
+    assert checkout(main, [package]) == (commit, True)
 
 
 def test_provenance_tells_the_run(tmp_path):
@@ -63,7 +64,7 @@ def test_provenance_tells_the_users_own_repository_and_every_file_that_flew(tmp_
     clean = told("clean")
     assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
     assert clean.system_dirty is False
-    assert {"my.py", mine.helper.name, "faultpath/taps/taps.py"} <= clean.sources.keys()
+    assert {"my.py", mine.helper.name, "faultpath/loop/taps/taps.py"} <= clean.sources.keys()
     assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
     assert clean.data.keys() == {"push.txt"}
     assert "pydantic-core" in clean.packages

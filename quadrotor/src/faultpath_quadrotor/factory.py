@@ -3,9 +3,6 @@
 from faultpath.trials import System
 from faultpath_quadrotor.choices import QuadrotorChoices
 
-MEASURE = "faultpath_quadrotor.evidence:measure"
-"""What measures on recorded windows: a name, since whatever is imported here counts as flown."""
-
 
 def create(choices: QuadrotorChoices) -> System:
     """Build the quadrotor; `UserError` where the device is not there."""

@@ -9,7 +9,7 @@ from faultpath.trials.metrics import Metric
 from faultpath.trials.options import Offered, Option
 from faultpath.trials.outcome import Outcome, Status
 from faultpath.trials.pairing import PairingRefused, Pairs, Side, pair
-from faultpath.trials.registry import load_measurer, load_system, system_options
+from faultpath.trials.registry import load_system, system_options
 from faultpath.trials.shown import SystemShown, VariantShown, system_shown
 from faultpath.trials.system import System
 from faultpath.trials.table import OutcomeTable, TrialRow
@@ -46,7 +46,6 @@ __all__ = [
     "VariantShown",
     "Wiring",
     "library_of",
-    "load_measurer",
     "load_system",
     "pair",
     "system_options",

@@ -18,7 +18,7 @@ from importlib.machinery import (
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
@@ -29,9 +29,6 @@ from faultpath.trials.checks import check_system
 from faultpath.trials.code import Graph, Kind, Root, file_of, kind_of, locate
 from faultpath.trials.options import Factory, Option, call, options_of
 from faultpath.trials.system import System
-
-if TYPE_CHECKING:
-    from faultpath.trials.evidence import Measurer
 
 GROUP = "faultpath.systems"
 """Entry points of installed distributions: the name of a system to `module:factory`."""
@@ -126,20 +123,6 @@ def factory_root(spec: SystemSpec) -> Root:
     path = _file(place)
     _look_beside(path)
     return Root(_module_name(path), path)
-
-
-def load_measurer(name: str) -> "Measurer":
-    """Return what measures evidence of the system `name` on recorded windows.
-
-    `MEASURE` beside the factory names it: a system has one set of options, recordings have
-    several. `UserError` for a system that offers none, or a missing package.
-    """
-    place, _ = _target(name)
-    with _needing(name):
-        measure = getattr(_module(place, name), "MEASURE", None)
-        if measure is None:
-            raise UserError(f"system {name!r} offers no measurements on recorded windows")
-        return named(measure)
 
 
 def named(name: str) -> Any:

@@ -5,13 +5,18 @@ from collections.abc import Sequence
 from functools import lru_cache, partial
 from pathlib import Path
 
-from faultpath.trials.evidence import EvidenceTable, Measurement, Progress
 from faultpath.trials.store import atomic, make_folder
 from faultpath.trials.store.atomic import locked
-from faultpath.trials.store.evidence import read_evidence, write_evidence
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.evidence.quantities import check, measured
 from faultpath_quadrotor.evidence.recording import Block, Recorded, blocks, recorded
+from faultpath_quadrotor.evidence.table import (
+    EvidenceTable,
+    Measurement,
+    Progress,
+    read_evidence,
+    write_evidence,
+)
 from faultpath_quadrotor.training.parts import Part, make_missing
 from faultpath_quadrotor.training.provenance import code_of
 
@@ -25,7 +30,18 @@ def measure(
     workers: int = 0,
     progress: Progress | None = None,
 ) -> EvidenceTable:
-    """Measure the quadrotor on recorded windows; see `faultpath.trials.evidence.Measurer`."""
+    """Record what is missing, measure what is missing, and return all of `measurements`.
+
+    Args:
+        measurements: What to measure; one that stands there twice is measured once.
+        scenes: The first N scenes of each library; `None`: all.
+        folder: Where recordings and measurements are kept, so that the next call goes on.
+        workers: Processes; 0: everything is done in this one.
+        progress: Is told how far it is.
+
+    Raises:
+        UserError: A library, variant, option or fault does not exist or does not fit.
+    """
     asked = tuple(dict.fromkeys(measurements))
     for measurement in asked:
         check(measurement)

@@ -8,9 +8,9 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath.core.errors import UserError
-from faultpath.trials.evidence import Measured, Measurement, Quantity
 from faultpath_quadrotor.evidence.inputs import Subject
 from faultpath_quadrotor.evidence.recording import Recorded, quadrotor
+from faultpath_quadrotor.evidence.table import Measured, Measurement, Quantity
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.drag import LinearDrag
 from faultpath_quadrotor.reconstruction import (

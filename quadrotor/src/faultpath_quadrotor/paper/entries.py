@@ -7,7 +7,7 @@ from faultpath.decisions import wording
 from faultpath.decisions.tables import MISSING, Entry
 from faultpath.statistics import Contrast
 from faultpath.trials import Status
-from faultpath.trials.evidence import Measurement
+from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import Cell, of_seed
 from faultpath_quadrotor.paper.quantities.differences import contrast
 from faultpath_quadrotor.paper.quantities.windows import mean_of_medians

@@ -7,7 +7,7 @@ from typing import Protocol, TypeAlias
 
 from faultpath.decisions import wording
 from faultpath.decisions.tables import Line, Table
-from faultpath.trials.evidence import Measured, Measurement
+from faultpath_quadrotor.evidence.table import Measured, Measurement
 from faultpath_quadrotor.paper.answers import Sweep
 from faultpath_quadrotor.paper.cells import Cell
 from faultpath_quadrotor.paper.entries import Figure, Group, PublishedContrast, difference, success

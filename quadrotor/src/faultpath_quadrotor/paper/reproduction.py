@@ -14,11 +14,11 @@ from faultpath.api.systems import LOCAL, check_executor, hands
 from faultpath.core.errors import Stopped, UserError
 from faultpath.decisions import RunProvenance
 from faultpath.decisions.tables import latex, markdown
-from faultpath.trials.evidence import EvidenceTable
 from faultpath.trials.store import write_text
 from faultpath.trials.store.folder import DELIVERIES
 from faultpath.trials.store.sealed import AGAIN, unseal
 from faultpath.trials.work import Progress
+from faultpath_quadrotor.evidence.table import EvidenceTable
 from faultpath_quadrotor.paper.answers import Reproduction
 from faultpath_quadrotor.paper.central import of_page
 from faultpath_quadrotor.paper.flights import fly

@@ -8,7 +8,7 @@ import numpy as np
 
 from faultpath.statistics import Contrast, Estimate, Resamples, success_rate
 from faultpath.trials import OutcomeTable, PairingRefused, Pairs, Status, pair
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement
+from faultpath_quadrotor.evidence.table import EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.cells import Cell
 
 

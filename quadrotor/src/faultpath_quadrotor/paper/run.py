@@ -15,22 +15,24 @@ from faultpath.trials import (
     OutcomeTable,
     System,
     SystemSpec,
-    load_measurer,
     load_system,
 )
-from faultpath.trials.evidence import EvidenceTable, Measurement
 from faultpath.trials.execution import RunResult
 from faultpath.trials.state import system_code
 from faultpath.trials.store import (
     RunFolder,
-    read_evidence,
     read_outcomes,
-    write_evidence,
     write_text,
 )
 from faultpath.trials.store.folder import OUTCOMES
 from faultpath.trials.store.manifest import keyed
 from faultpath.trials.store.sealed import read_regular, unseal
+from faultpath_quadrotor.evidence.table import (
+    EvidenceTable,
+    Measurement,
+    read_evidence,
+    write_evidence,
+)
 from faultpath_quadrotor.paper.answers import Reproduction, Sweep
 from faultpath_quadrotor.paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath_quadrotor.paper.claims import ledger
@@ -112,10 +114,11 @@ def measure_all(
 ) -> EvidenceTable:
     """Measure on recorded windows what `folder` does not hold yet.
 
-    Raises as `evidence.Measurer` does.
+    Raises as `measure` does.
     """
+    from faultpath_quadrotor.evidence.measuring import measure  # it loads torch
+
     wanted = plan.measurements()
-    measure = load_measurer(SYSTEM)
     made = tuple(dict.fromkeys(wanted.values()))
     found = measure(made, plan.profile.scenes, folder / "windows", workers, progress)
     return EvidenceTable({asked: found.values(own) for asked, own in wanted.items()})

@@ -5,6 +5,7 @@ itself, with guarded readings.
 """
 
 import hashlib
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal
@@ -26,8 +27,6 @@ Outcomes = Mapping[tuple[str, str], Outcome]
 
 SAMPLE = 4
 """Scenes of a unit that run again."""
-_NUMBERS = ("time_s", "struck_steps", "altered_steps")
-_HASHES = ("initial_hash", "disturbance_hash", "planner_noise_hash")
 
 
 def difference(first: Sequence[Outcome], reply: Reply) -> str:
@@ -36,40 +35,34 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
         return f"could not be run again ({reply.how}), which differs"
     if not isinstance(reply, Done):
         return f"failed the second time ({reply.error}), which differs"
-    pairs = _unlike(first, reply.outcomes)
-    if not pairs:
+    found = {
+        one.scene: gaps
+        for one, two in zip(first, reply.outcomes, strict=True)
+        if (gaps := _gaps(one, two))
+    }
+    if not found:
         return ""
-    scene = pairs[0][0].scene
-    ends = sum(one.status is not two.status for one, two in pairs)
+    ends = sum("status" in gaps for gaps in found.values())
     parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
-    numbers = (_NUMBERS[0], *dict.fromkeys(n for a, _ in pairs for n in a.metrics), *_NUMBERS[1:])
-    gaps = {name: max(_gap(a, b, name) for a, b in pairs) for name in (*numbers, *_HASHES)}
-    parts += [f"{name} by up to {gaps[name]:.3g}" for name in numbers if gaps[name]]
-    parts += [f"{name} too" for name in _HASHES if gaps[name]]
-    return f"differs in {len(pairs)} of {len(first)}, {scene!r} for one ({', '.join(parts)})"
+    for name in dict.fromkeys(name for gaps in found.values() for name in gaps if name != "status"):
+        most = max(gaps.get(name, 0.0) for gaps in found.values())
+        parts.append(f"{name} by up to {most:.3g}" if math.isfinite(most) else f"{name} too")
+    return f"differs in {len(found)} of {len(first)}, {next(iter(found))!r} for one " + (
+        f"({', '.join(parts)})"
+    )
 
 
-def _unlike(first: Sequence[Outcome], second: Sequence[Outcome]) -> list[tuple[Outcome, Outcome]]:
-    return [(one, two) for one, two in zip(first, second, strict=True) if not _same(one, two)]
-
-
-def _gap(one: Outcome, two: Outcome, name: str) -> float:
-    a, b = (o.metrics[name] if name in o.metrics else getattr(o, name, None) for o in (one, two))
-    if a == b:
-        return 0.0
-    if isinstance(a, int | float) and isinstance(b, int | float):
-        return abs(a - b)
-    return float("inf")  # one of them has none, or they are hashes
-
-
-def _same(one: Outcome, two: Outcome) -> bool:
-    if one.status is not two.status or one.metrics != two.metrics:
-        return False
-    if any(_gap(one, two, name) for name in (*_NUMBERS, *_HASHES)):
-        return False
-    if one.trace is None or two.trace is None:
-        return one.trace is two.trace
-    return np.array_equal(one.trace, two.trace)
+def _gaps(one: Outcome, two: Outcome) -> dict[str, float]:
+    """Return how far two outcomes lie apart, by name; infinity for what is no number."""
+    mine, theirs = ({**vars(each), **each.metrics} for each in (one, two))
+    found: dict[str, float] = {}
+    for name in dict.fromkeys((*mine, *theirs)):
+        a, b = mine.get(name), theirs.get(name)
+        if name in ("metrics", "error") or np.array_equal(a, b):
+            continue
+        numbers = isinstance(a, int | float) and isinstance(b, int | float)
+        found[name] = abs(a - b) if numbers else math.inf
+    return found
 
 
 class _Kept(Frozen):
@@ -123,7 +116,8 @@ class Rechecks:
         first = [outcomes[arm.key(), scene] for scene in task.scenes]
         other = task.scenes
         if isinstance(reply, Done):
-            other = tuple(one.scene for one, _ in _unlike(first, reply.outcomes))
+            pairs = zip(first, reply.outcomes, strict=True)
+            other = tuple(one.scene for one, two in pairs if _gaps(one, two))
         shown = FlownAgain(
             why=task.recheck,
             unit=task.unit.key,

@@ -9,7 +9,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from faultpath.core.version import __version__
-from faultpath.trials.code import Code
 from faultpath.trials.execution.runner import RunResult
 from faultpath.trials.provenance import RunProvenance
 from faultpath.trials.store import write_text
@@ -45,8 +44,12 @@ def run_provenance(
 
     `names` are the files there that its pages are made from; their digests stand beside it.
     """
-    commit, dirty = checkout(Path(__file__).parents[1])
-    system_commit, system_dirty = repository(result.code[0]) if result.code else (None, None)
+    package = Path(__file__).parents[2] / "__init__.py"
+    commit, dirty = checkout(package, [package.parent])
+    system_commit, system_dirty = None, None
+    if result.code and (main := result.code[0].main):
+        ran = (*result.code[0].sources.values(), *result.code[0].data.values())
+        system_commit, system_dirty = checkout(main, ran)
     imported = {
         name.replace("_", "-"): found
         for code in result.code
@@ -89,26 +92,12 @@ def amend(folder: Path, provenance: RunProvenance, names: Iterable[str]) -> RunP
     return sealed
 
 
-def checkout(package: Path) -> tuple[str | None, bool | None]:
-    """Return the commit of the checkout that `package` is tracked in, and whether it was changed.
+def checkout(main: Path, files: Iterable[Path]) -> tuple[str | None, bool | None]:
+    """Return the commit of the checkout that tracks `main`, and whether `files` differ from it.
 
-    `(None, None)` without one. A package installed into an environment that happens to lie inside
+    `(None, None)` without one. A file installed into an environment that happens to lie inside
     some other repository is not tracked there, and that repository's commit would say nothing.
     """
-    return _state(package / "__init__.py", [package])
-
-
-def repository(code: Code) -> tuple[str | None, bool | None]:
-    """Return the commit of the repository that tracks a system, and whether what ran differs.
-
-    `(None, None)` where its file is in none, or not tracked there.
-    """
-    if code.main is None:
-        return None, None
-    return _state(code.main, (*code.sources.values(), *code.data.values()))
-
-
-def _state(main: Path, files: Iterable[Path]) -> tuple[str | None, bool | None]:
     if _git(main.parent, "ls-files", "--error-unmatch", "--", main.name) is None:
         return None, None
     top = Path(_git(main.parent, "rev-parse", "--show-toplevel") or main.parent)

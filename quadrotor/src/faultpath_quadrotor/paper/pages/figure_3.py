@@ -1,6 +1,6 @@
 """Figure 3: success over the calibration error, in free space on the selection library."""
 
-from faultpath.trials.evidence import Measurement
+from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.answers import Point, Series, Sweep
 from faultpath_quadrotor.paper.cells import SELECTION, Cell, Setting
 from faultpath_quadrotor.paper.page import Page, flown

@@ -1,6 +1,6 @@
 """Results that the paper reports in its text only: the claims about them hold their figures."""
 
-from faultpath.trials.evidence import Measurement, Recording
+from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.paper.cells import SEEDS, SELECTION, Cell, Setting, calibration, of_seed
 from faultpath_quadrotor.paper.page import Page
 from faultpath_quadrotor.paper.pages import table_1, table_2, table_3, table_4, table_6

@@ -1,7 +1,7 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
 from faultpath.trials import Status
-from faultpath.trials.evidence import Measurement, Recording
+from faultpath_quadrotor.evidence.table import Measurement, Recording
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, Setting
 from faultpath_quadrotor.paper.entries import (
     centimetres,

@@ -1,7 +1,7 @@
 """Table II: what calibration errors do to four models, and what uncertainty training recovers."""
 
 from faultpath.decisions import wording
-from faultpath.trials.evidence import Measurement
+from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, calibration, of_seed
 from faultpath_quadrotor.paper.entries import (
     Group,

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from faultpath.decisions import wording
-from faultpath.trials.evidence import Measurement
+from faultpath_quadrotor.evidence.table import Measurement
 from faultpath_quadrotor.paper.cells import SEEDS, Cell, calibration
 from faultpath_quadrotor.paper.entries import BLANK, Group, PublishedContrast, difference, measured
 from faultpath_quadrotor.paper.page import Columns, Page, Row, TableSpec, rates

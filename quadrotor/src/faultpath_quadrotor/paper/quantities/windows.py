@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.statistics import Contrast, WindowQuantiles, weighted_sum
-from faultpath.trials.evidence import QUANTITIES, EvidenceTable, Measured, Measurement
+from faultpath_quadrotor.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
 from faultpath_quadrotor.paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 Subject: TypeAlias = tuple[Measurement, ...]

@@ -2,13 +2,18 @@
 
 import numpy as np
 import pytest
+from faultpath_quadrotor.evidence.table import (
+    EvidenceTable,
+    Measured,
+    Measurement,
+    Recording,
+    read_evidence,
+    write_evidence,
+)
 from pydantic import ValidationError
 
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
-from faultpath.trials import load_measurer
-from faultpath.trials.evidence import EvidenceTable, Measured, Measurement, Recording
-from faultpath.trials.store.evidence import encode_evidence, read_evidence, write_evidence
 
 RECORDING = Recording(library="held-out", variant="gru", options={"wind": "L3"})
 
@@ -69,14 +74,16 @@ def test_a_table_comes_back_as_it_went_with_the_same_bytes(tmp_path):
         one, two = table.values(measurement), back.values(measurement)
         assert one.same_windows(two)
         assert np.array_equal(one.values, two.values)
-    assert encode_evidence(back) == path.read_bytes()
+    write_evidence(tmp_path / "again.parquet", back)
+    assert (tmp_path / "again.parquet").read_bytes() == path.read_bytes()
     with pytest.raises(KeyError):
         back.values(asked(seed=2))
 
 
-def test_a_hundred_measurements_of_1500_windows_stay_small():
+def test_a_hundred_measurements_of_1500_windows_stay_small(tmp_path):
     table = EvidenceTable({asked(seed=i): found(1500, i) for i in range(100)})
-    assert len(encode_evidence(table)) < 1_500_000
+    write_evidence(tmp_path / "many.parquet", table)
+    assert (tmp_path / "many.parquet").stat().st_size < 1_500_000
 
 
 def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
@@ -90,8 +97,3 @@ def test_a_missing_or_damaged_table_is_the_user_s_to_see(tmp_path):
 def test_columns_of_different_windows_are_refused():
     with pytest.raises(ValueError, match="same windows"):
         Measured(("a",), np.array([12, 13]), np.array([0.1]))
-
-
-def test_a_system_without_measurements_says_so():
-    with pytest.raises(UserError, match="offers no measurements"):
-        load_measurer("examples/toy.py:create")

@@ -1,19 +1,26 @@
-"""Evidence measured on recorded windows: what was asked, what was found, and where it is kept.
+"""Evidence measured on recorded windows: what was asked, what was found, and its table as Parquet,
+one row a window of a measurement.
 
-No tensors and no simulator here: a system measures, and everybody else reads the table.
+No tensors and no simulator here: `measuring` measures, and everybody else reads the table.
 """
 
 import hashlib
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Literal, Protocol, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
+from pydantic import Field
+
+from faultpath.core.errors import UserError
+from faultpath.core.files.opening import contents
+from faultpath.core.frozen import Frozen
+from faultpath.trials.store.atomic import write_file
+from faultpath.trials.store.parquet import INTEGER, NUMBER, TEXT, Unreadable, decode, encode
 
 Quantity: TypeAlias = Literal[
     "position-error", "position-response", "acceleration-error", "wind-term-error"
@@ -30,11 +37,7 @@ QUANTITIES: Mapping[Quantity, str] = MappingProxyType(
 """Unit of each quantity. `docs/design/evidence.md` gives their formulas."""
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class Recording(_Frozen):
+class Recording(Frozen):
     """Closed-loop flights under correct inputs, whose windows are measured.
 
     Which scenes of the library fly is said when they are measured: the first N.
@@ -45,7 +48,7 @@ class Recording(_Frozen):
     variant: str
     """Variant that flies."""
     seed: int = 0
-    options: dict[str, str] = {}
+    options: dict[str, str] = Field(default_factory=dict[str, str])
     """Options of the system, as in `SystemSpec`."""
 
     @property
@@ -61,7 +64,7 @@ class Recording(_Frozen):
         return hash(self.name)
 
 
-class Measurement(_Frozen):
+class Measurement(Frozen):
     """A quantity of one variant on the windows of a recording, window by window."""
 
     recording: Recording
@@ -131,27 +134,58 @@ class EvidenceTable:
         return len(self.entries)
 
 
-class Measurer(Protocol):
-    """How a system measures: `trials.registry.load_measurer` gives the one of a system."""
+_COLUMNS = {
+    "measurement": TEXT,
+    "recording": TEXT,
+    "quantity": TEXT,
+    "subject": TEXT,
+    "seed": INTEGER,
+    "faults": TEXT,
+    "scene": TEXT,
+    "step": INTEGER,
+    "value": NUMBER,
+}
 
-    def __call__(
-        self,
-        measurements: Sequence[Measurement],
-        scenes: int | None,
-        folder: Path,
-        workers: int = 0,
-        progress: Progress | None = None,
-    ) -> EvidenceTable:
-        """Record what is missing, measure what is missing, and return all of `measurements`.
 
-        Args:
-            measurements: What to measure; one that stands there twice is measured once.
-            scenes: The first N scenes of each library; `None`: all.
-            folder: Where recordings and measurements are kept, so that the next call goes on.
-            workers: Processes; 0: everything is done in this one.
-            progress: Is told how far it is.
+def write_evidence(path: Path, table: EvidenceTable) -> None:
+    """Write a table, measurements in its order; the bytes depend on the table alone.
 
-        Raises:
-            UserError: A library, variant, option or fault does not exist or does not fit.
-        """
-        ...
+    `measurement` is the measurement as JSON, from which it is read back; the columns beside it say
+    the same to whoever opens the file with something else. `UserError` when it cannot be written.
+    """
+    rows: list[dict[str, Any]] = []
+    for measurement in table:
+        found = table.values(measurement)
+        same = {
+            "measurement": measurement.model_dump_json(),
+            "recording": measurement.recording.name,
+            "quantity": measurement.quantity,
+            "subject": measurement.subject,
+            "seed": measurement.seed,
+            "faults": " ".join(measurement.faults),
+        }
+        windows = zip(found.scenes, found.steps.tolist(), found.values.tolist(), strict=True)
+        rows += [{**same, "scene": s, "step": step, "value": value} for s, step, value in windows]
+    write_file(path, encode(_COLUMNS, rows), path.parent)
+
+
+def read_evidence(path: Path) -> EvidenceTable:
+    """Read a table; `UserError` when there is none to read."""
+    windows: dict[str, list[tuple[Any, ...]]] = {}
+    entries: dict[Measurement, Measured] = {}
+    try:
+        for row in decode(contents(path), _COLUMNS)[0]:
+            found = windows.setdefault(row["measurement"], [])
+            found.append((row["scene"], row["step"], row["value"]))
+        for text, found in windows.items():
+            scenes, steps, values = zip(*found, strict=True)
+            measured = Measured(scenes, np.array(steps, np.int64), np.array(values))
+            entries[Measurement.model_validate_json(text)] = measured
+    except OSError as error:
+        raise UserError(
+            f"cannot read {path} ({error.strerror}): measure it first, or check the path"
+        ) from error
+    except (Unreadable, ValueError) as error:
+        said = error if isinstance(error, Unreadable) else "it is not of this version"
+        raise UserError(f"{path} is damaged ({said}): delete it and measure again") from None
+    return EvidenceTable(entries)
