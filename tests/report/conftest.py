@@ -4,10 +4,14 @@ The repair is a reconstruction trained with uncertainty: ahead when only the rec
 struck, behind when the fault is shared. Names a user may give carry markup, to see it escaped.
 """
 
+import json
 import os
 import shutil
+import zlib
+from base64 import b64decode
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,6 +23,7 @@ from faultpath.report.inputs import ReportInput, Traces
 from faultpath.trials import Outcome, OutcomeTable, Status, TrialRow, VariantShown
 from faultpath.trials.declared import FloorPlan, Pillar, Prism
 from faultpath.trials.provenance import RunProvenance
+from faultpath.trials.store import TrialAddress
 
 TOPOLOGIES = ("clutter", "corridors", "doorways", "intersections", "rooms")
 BASELINE, REPAIR = "gru", "gru-dcc"
@@ -91,7 +96,7 @@ def make_input(
     outcomes = OutcomeTable(rows)
     record = decide(question, paths, outcomes)
     tracks = {
-        (r.variant, r.path, r.seed, r.outcome.scene): r.outcome.trace
+        TrialAddress(r.variant, r.path, r.seed, r.outcome.scene): r.outcome.trace
         for r in rows
         if r.outcome.trace is not None
     }
@@ -104,6 +109,12 @@ def make_input(
         traces=Traces(tracks, dt_s=0.05),
         plans={_scene(i): _plan(i) for i in range(n_scenes)},
     )
+
+
+def unpack(packed: str) -> tuple[dict[str, Any], list[np.ndarray]]:
+    """Return the content and the series of what the viewer's `pack` made, as its script does."""
+    content = json.loads(zlib.decompress(b64decode(packed)))
+    return content, [np.cumsum(np.cumsum(steps)) for steps in content.pop("series")]
 
 
 def _lose(row: TrialRow) -> TrialRow:

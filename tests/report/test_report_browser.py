@@ -79,26 +79,17 @@ def test_the_story_can_be_read_and_the_rest_unfolds_by_key(page: Page) -> None:
     assert first.is_visible()
 
 
-def test_selectors_change_the_flights(page: Page) -> None:
-    plan = page.locator("#viewer-plan")
-    before = plan.inner_html()
+def test_scene_and_time_move_the_trials(page: Page) -> None:
+    columns = page.locator("#viewer-across .column:visible")
+    assert columns.count() == page.locator("#viewer-across .plan svg:visible").count() == 4
+    before = columns.first.inner_html()
     page.locator("#viewer-scene").select_option(index=1)
-    second = plan.inner_html()
+    second = columns.first.inner_html()
     assert second != before
-    page.locator("#viewer-paths button").first.click()
-    assert plan.inner_html() != second
-    assert page.locator("#viewer-paths button").first.get_attribute("aria-pressed") == "true"
-    assert "gru-dcc" in page.locator("#viewer-ends").inner_text()
-    assert page.locator("#viewer-across .column:visible").count() == 4
-    assert page.locator("#viewer-across .small svg:visible").count() == 4
-
-
-def test_time_moves_the_vehicles(page: Page) -> None:
-    before = page.locator("#viewer-plan").inner_html()
     page.locator("#viewer-time").fill("10")
     assert page.locator("#viewer-clock").inner_text() == "0.50 s"
-    assert page.locator("#viewer-plan").inner_html() != before
-    assert page.locator("#viewer-plan .v-dot").count() == 2
+    assert columns.first.inner_html() != second
+    assert columns.first.locator(".v-dot").count() == 2
     page.locator("#viewer-on").click()
     assert page.locator("#viewer-clock").inner_text() == "0.55 s"
     page.locator("#viewer-play").click()
@@ -122,7 +113,7 @@ def test_a_cell_leads_to_its_trial_by_key_and_the_address_brings_it_back(page: P
     assert page.evaluate("location.hash") == cell
     scene = page.evaluate("decodeURIComponent(location.hash.slice(7).split('&')[0])")
     assert scene in page.locator("#viewer-scene option:checked").inner_text()
-    chosen = page.locator("#viewer-paths button[aria-pressed='true']")
+    chosen = page.locator("#viewer-across .chosen")
     assert chosen.get_attribute("data-path") == "predictor"
     page.goto(page.url.partition("#")[0] + cell.replace("predictor", "shared") + "&t=0.20")
     expect(page.locator("#viewer-clock")).to_have_text("0.20 s")

@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
+from conftest import unpack
 
 from faultpath.decisions import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pairing import Pair, read_pairs
 from faultpath.report.viewer import viewer_data
 from faultpath.report.viewer_choice import captions, choose
-from faultpath.report.viewer_packing import unpack
 from faultpath.trials import Status
 
 PATHS = ("correct", "predictor", "reconstruction", "shared")

@@ -8,12 +8,12 @@ from html.parser import HTMLParser
 from itertools import pairwise
 
 import pytest
+from conftest import unpack
 
 from faultpath.decisions import wording
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput, Traces
 from faultpath.report.pairing import Kind, read_pairs
-from faultpath.report.viewer_packing import unpack
 
 MINUS = "−"
 FIGURE_NAMESPACE = "http://www.w3.org/2000/svg"

@@ -27,12 +27,11 @@ from faultpath.report.tables import (
     secondary,
 )
 from faultpath.report.taps import fork_panels, forks, tap_table
-from faultpath.report.viewer import SCRIPTS as VIEWER_SCRIPTS
 from faultpath.report.viewer import viewer_data
 from faultpath.trials.store import make_folder, write_text
 
 _STYLES = ("tokens.css", "svg.css", "page.css", "viewer.css")
-_SCRIPTS = ("page.js", *VIEWER_SCRIPTS)
+_SCRIPTS = ("page.js", "viewer.js")
 
 
 def report_page(source: ReportInput) -> str:

@@ -11,23 +11,17 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TypeAlias
 
-import numpy as np
-from numpy.typing import NDArray
-
 from faultpath.decisions import SHARED, DecisionRecord, Question
 from faultpath.decisions.wording import capital, series, where
 from faultpath.report.inputs import Traces
 from faultpath.report.pairing import Kind, Pair, by_scene
 from faultpath.trials.store import TrialAddress
 
-Track: TypeAlias = NDArray[np.float32]
-"""Positions at control steps, `[T, 3]`, metres."""
 At: TypeAlias = tuple[str, int]
 """A scene and a seed."""
 Pattern: TypeAlias = tuple[tuple[str, Kind], ...]
 """Who succeeded, path by path."""
 
-PARTING_M = 0.5
 _MOST = 6
 
 
@@ -56,8 +50,11 @@ def choose(record: DecisionRecord, traces: Traces, pairs: Sequence[Pair]) -> tup
         return -reversals, -sum(shown.values()), -counts[pattern]
 
     def has_tracks(at: At) -> bool:
-        tracks = (tracks_of(asked, traces, pair) for pair in groups[at].values())
-        return not traces.positions or all(len(track) for both in tracks for track in both)
+        return not traces.positions or all(
+            len(traces.positions.get(TrialAddress(arm, pair.path, pair.seed, pair.scene), ()))
+            for pair in groups[at].values()
+            for arm in (asked.baseline, asked.repair)
+        )
 
     by_index = sorted(patterns, key=lambda at: (next(iter(groups[at].values())).index, at[1]))
     # A stable sort: patterns stand in the order of the first scene that has them.
@@ -98,23 +95,6 @@ def captions(record: DecisionRecord, pairs: Sequence[Pair]) -> dict[At, str]:
         count = f" {like[pattern]} of {of} {goes} like this one." if len(patterns) > 1 else ""
         found[at] = f"{words}{count}"
     return found
-
-
-def parting_step(a: Track, b: Track) -> int | None:
-    """Return the first step at which two tracks are more than `PARTING_M` apart, if any."""
-    steps = min(len(a), len(b))
-    apart = np.linalg.norm(a[:steps] - b[:steps], axis=1) > PARTING_M
-    return int(np.argmax(apart)) if apart.any() else None
-
-
-def tracks_of(asked: Question, traces: Traces, pair: Pair) -> list[Track]:
-    """Return the tracks of baseline and repair; what left none has no row."""
-    nothing = np.empty((0, 3), np.float32)
-    arms = (asked.baseline, asked.repair)
-    return [
-        traces.positions.get(TrialAddress(arm, pair.path, pair.seed, pair.scene), nothing)
-        for arm in arms
-    ]
 
 
 def _patterns(pairs: Sequence[Pair]) -> dict[At, Pattern]:

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.decisions import wording
-from faultpath.report.viewer_packing import Whole
 from faultpath.trials.store import TrialAddress
 from faultpath.trials.store.signals import IN_FORCE, Signal, Signals
 
@@ -40,16 +39,16 @@ class Plot:
     """Each with what it is called."""
 
     @property
-    def told(self) -> dict[str, Any]:
-        """What a page says of it."""
-        lines = [name for _, name in self.lines]
-        unit = wording.unit(self.unit)
-        return {"title": self.title, "unit": unit, "lines": lines, "zero": self.of_errors}
-
-    @property
     def of_errors(self) -> bool:
         """Whether it is held against zero."""
         return "error" in self.title
+
+    @property
+    def shown(self) -> dict[str, Any]:
+        """What a page shows of it."""
+        lines = [name for _, name in self.lines]
+        unit = wording.unit(self.unit)
+        return {"title": self.title, "unit": unit, "lines": lines, "zero": self.of_errors}
 
 
 def plots(signals: Signals) -> tuple[Plot, ...]:
@@ -97,7 +96,7 @@ def _alike(one: _Trials, other: _Trials) -> bool:
 
 
 def drawn(
-    named: Mapping[str, Signal], shown: Iterable[Plot], series: list[Whole]
+    named: Mapping[str, Signal], shown: Iterable[Plot], series: list[NDArray[np.int32]]
 ) -> list[list[float | int]]:
     """Return a trial's lines as `[plot, line, place in series, lowest value, value of a level]`."""
     found: list[list[float | int]] = []

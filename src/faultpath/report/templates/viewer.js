@@ -1,5 +1,6 @@
-// The controls of the viewer: scene, path and time, kept in the address; every change draws anew.
+// Every trial again: a scene on one clock, a column a path; scene, path and time are in the address.
 if (document.getElementById("viewer-data")) {
+  const ARMS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
   const get = (id) => document.getElementById(`viewer-${id}`);
   const make = (tag, text = "", attributes = {}) => {
     const node = document.createElement(tag);
@@ -7,170 +8,222 @@ if (document.getElementById("viewer-data")) {
     for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
     return node;
   };
-  const words = {
-    both: "On the path shown both succeed.", "repair-only": "On the path shown only the repair succeeds.",
-    "baseline-only": "On the path shown only the baseline succeeds.", neither: "On the path shown neither succeeds.",
-    "left-out": "Left out of the effects: a pair of this scene is void on another path or seed.",
+  const draw = (parent, tag, attributes, text = "") => {
+    const node = document.createElementNS("http://www.w3.org/2000/svg", tag);
+    for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
+    node.textContent = text;
+    parent.append(node);
+    return node;
+  };
+  const picture = (host, title) => {
+    const w = Math.max(host.clientWidth, 80), h = Math.max(host.clientHeight, 60);
+    host.replaceChildren();
+    return { svg: draw(host, "svg", { viewBox: `0 0 ${w} ${h}`, role: "img", "aria-label": title }), w, h };
+  };
+
+  // What `viewer.py` packed; series are second differences, summed up twice.
+  const unpacked = async (packed) => {
+    const bytes = Uint8Array.from(atob(packed), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+    const data = await new Response(stream).json();
+    data.series = data.series.map((steps) => {
+      let step = 0, value = 0;
+      return steps.map((change) => (value += step += change));
+    });
+    return data;
   };
 
   const begin = (data) => {
-    const spatial = data.space === "space";
+    const spatial = data.space === "space", { series, dt_s: dt } = data;
     const several = new Set(data.scenes.map((s) => s.seed)).size > 1;
-    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0 };
-    // Along one axis the flight itself is a plot, and comes first.
+    const state = { scene: data.picked[0] ?? 0, path: data.path, step: 0, plot: 0, playing: 0, last: 1, box: null, range: null };
+    // Along one axis the track itself is a plot, and comes first.
     if (!spatial) state.plot = Math.max(0, data.plots.findIndex(({ title }) => title === "position"));
-    const current = () => Flight.open(data.scenes[state.scene], data);
-    const pairOf = (path) => current().pairs.find((p) => p.path === path);
-    const pair = () => pairOf(state.path) ?? current().pairs[0];
-    const last = () => Flight.last(current());
+    const current = () => data.scenes[state.scene];
+    const trials = (pair) => ARMS.filter((arm) => pair[arm]).map((arm) => ({ arm, ...pair[arm] }));
+    const track = ({ track: at }) => (at === null ? [] : series[at].map((x, i) => [x / 100, series[at + 1][i] / 100]));
+    const ends = (values, low = Infinity, high = -Infinity) => {
+      for (const v of values) if (v !== null) { low = Math.min(low, v); high = Math.max(high, v); }
+      return [low, high];
+    };
+    const told = ({ arm, status, ended, time_s: time }) =>
+      `${arm}: ${SIGNS[status] ?? "□"} ${ended}${status === "failed" ? "" : `, ${time.toFixed(2)} s`}`;
 
-    const name = (s) => {
-      const title = s.title.includes(s.scene) ? s.title : s.scene + (s.title ? `, ${s.title}` : "");
-      return several ? `${title}, seed ${s.seed}` : title;
+    // Both trials of a pair from above: baseline dashed, what is still to come pale.
+    const drawPlan = (host, title, pair) => {
+      const { svg, w, h } = picture(host, title), plan = data.plans[current().scene], [[x0, x1], [y0, y1]] = state.box;
+      const scale = Math.min((w - 12) / (x1 - x0 || 1), (h - 12) / (y1 - y0 || 1));
+      const at = ([x, y]) => [w / 2 + (x - (x0 + x1) / 2) * scale, h / 2 - (y - (y0 + y1) / 2) * scale];
+      const join = (points) => points.map((p) => at(p).map((v) => v.toFixed(1)).join(",")).join(" ");
+      const disc = (where, r, cls) => { const [cx, cy] = at(where); draw(svg, "circle", { cx, cy, r, class: cls }); };
+      if (plan) {
+        const [a, b] = [plan.low, plan.high];
+        draw(svg, "polygon", { points: join([[a[0], a[1]], [b[0], a[1]], [b[0], b[1]], [a[0], b[1]]]), class: "v-ground" });
+        for (const { corners } of plan.prisms) draw(svg, "polygon", { points: join(corners), class: "v-block" });
+        for (const { x, y, radius } of plan.pillars) disc([x, y], radius * scale, "v-block");
+        disc(plan.goal, Math.max(5, 0.5 * scale), "v-mark");
+        disc(plan.start, 3, "v-solid");
+      }
+      for (const trial of trials(pair).filter((each) => each.track !== null)) {
+        const points = track(trial), now = Math.min(state.step, points.length - 1), [x, y] = at(points[points.length - 1]);
+        draw(svg, "polyline", { points: join(points.slice(now)), class: `v-track rest ${trial.arm}` });
+        draw(svg, "polyline", { points: join(points.slice(0, now + 1)), class: `v-track ${trial.arm}` });
+        const sign = { success: `M${x - 5} ${y}l4 4 7 -9`, crash: `M${x - 5} ${y - 5}l10 10m0 -10l-10 10` }[trial.status];
+        for (const cls of ["halo", trial.arm]) draw(svg, "path", { d: sign ?? `M${x - 4.5} ${y - 4.5}h9v9h-9z`, class: `v-end ${cls}` });
+        if (now < points.length - 1) disc(points[now], 4.5, `v-dot ${trial.arm}`);
+      }
+      const metres = [0.5, 1, 2, 5, 10, 20, 50, 100].find((m) => m * scale > 30) ?? 200;
+      draw(svg, "path", { d: `M8 ${h - 10}v4h${metres * scale}v-4`, class: "v-mark" });
+      draw(svg, "text", { x: 12, y: h - 10, class: "v-text" }, `${metres} m`);
+    };
+
+    const linesOf = (pair) => trials(pair).flatMap(({ arm, lines }) => lines
+      .filter(([plot]) => plot === state.plot)
+      .map(([, line, place, low, level]) => ({ arm, line, values: series[place].map((v) => (v < 0 ? null : low + v * level)) })));
+    // Where the goal lies on the one axis of a position that is plotted over time.
+    const goal = () => (data.space === "line" && data.plots[state.plot].title === "position" ? data.plans[current().scene]?.goal[0] ?? null : null);
+    const drawPlot = (host, title, pair) => {
+      const lines = state.range ? linesOf(pair) : [];
+      host.hidden = !lines.some(({ values }) => values.some((v) => v));
+      if (host.hidden) return;
+      const { svg, w, h } = picture(host, title), left = 52, right = w - 24, under = h - 20, [low, high] = state.range;
+      const x = (i) => left + (Math.min(i, state.last) / state.last) * (right - left);
+      const y = (v) => under - ((v - low) / (high - low)) * (under - 8);
+      const level = (v, cls) => draw(svg, "line", { x1: left, x2: right, y1: y(v), y2: y(v), class: cls });
+      for (const [from, to] of trials(pair).flatMap(({ struck }) => struck)) {
+        draw(svg, "rect", { x: x(from), y: 8, width: Math.max(1, x(to) - x(from)), height: under - 8, class: "v-window" });
+      }
+      const digits = Math.min(6, Math.max(0, Math.ceil(1.3 - Math.log10(high - low))));
+      for (const v of state.range) {
+        level(v, "v-line");
+        draw(svg, "text", { x: left - 5, y: Math.min(under - 1, Math.max(16, y(v) + 4)), "text-anchor": "end", class: "v-text" }, v.toFixed(digits).replace("-", "−"));
+      }
+      const every = [0.5, 1, 2, 5, 10, 20, 50].find((s) => x(s / dt) - x(0) > 44) ?? 100;
+      for (let t = 0; t <= state.last * dt + 1e-9; t += every) {
+        draw(svg, "text", { x: x(t / dt), y: h - 5, "text-anchor": "middle", class: "v-text" }, `${t} s`);
+      }
+      if (data.plots[state.plot].zero) level(0, "v-line");
+      if (goal() !== null) {
+        level(goal(), "v-goal");
+        draw(svg, "text", { x: left + 5, y: y(goal()) + (y(goal()) < 26 ? 14 : -5), class: "v-text" }, "goal");
+      }
+      for (const { arm, line, values } of lines) {
+        const points = values.flatMap((v, i) => (v === null ? [] : [`${x(i).toFixed(1)},${y(v).toFixed(1)}`]));
+        draw(svg, "polyline", { points: points.join(" "), class: `v-signal ${arm} line-${Math.min(line, 3)}` });
+      }
+      draw(svg, "line", { x1: x(state.step), x2: x(state.step), y1: 8, y2: under, class: "v-now" });
+    };
+
+    const option = (place) => {
+      const { scene, title, seed } = data.scenes[place], name = title.includes(scene) ? title : scene + (title && `, ${title}`);
+      return make("option", several ? `${name}, seed ${seed}` : name, { value: place });
     };
     const group = (label, places) => {
       const made = make("optgroup", "", { label });
-      made.append(...places.map((place) => make("option", name(data.scenes[place]), { value: place })));
+      made.append(...places.map(option));
       return made;
     };
-    const all = data.scenes.map((_, place) => place);
-    get("scene").replaceChildren(...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", all));
-
-    // One column a path: both arms from above, how they ended, and the plot of the signal.
+    get("scene").replaceChildren(...(data.picked.length ? [group("Shown first", data.picked)] : []), group("All", [...data.scenes.keys()]));
     const columns = data.paths.map(({ name: path, title }) => {
       const column = make("div", "", { class: "column", "data-path": path });
-      const plan = make("div", "", { class: "plan small" }), plot = make("div", "", { class: "signal" });
-      const told = Flight.arms.map((arm) => make("p", "", { class: `told ${arm}` }));
-      column.append(make("h3", title), ...(spatial ? [plan] : []), ...told, plot);
-      return { path, title, column, plan, told, plot };
+      const plan = make("div", "", { class: "plan" }), plot = make("div", "", { class: "signal" });
+      const said = make("div", "", { class: "told" });
+      column.append(make("h3", title), ...(spatial ? [plan] : []), said, plot);
+      return { path, title, column, plan, said, plot };
     });
     get("across").replaceChildren(...columns.map((c) => c.column));
 
-    let range = null;
     const redraw = () => {
-      const scene = current(), shown = pair(), clock = { last: last(), dt: data.dt_s, step: state.step };
-      if (spatial) {
-        Draw.plan(get("plan"), `Tracks in ${scene.scene} from above`, scene, shown, state.step, data, true);
-        const heights = Flight.drawn(shown).map((arm) => ({ arm, line: 0, values: Array.from(shown[arm].track[2], (v) => v / 100) }));
-        const { low, high } = Flight.bounds(null, [shown]), floor = Math.min(0, Math.floor(low[2]));
-        Draw.lines(get("height"), `Height over time in ${scene.scene}`, heights, [floor, Math.max(Math.ceil(high[2]), floor + 1)], clock);
+      for (const { path, title, plan, said, plot } of columns) {
+        const pair = current().pairs.find((each) => each.path === path);
+        if (!pair) continue;
+        if (spatial) drawPlan(plan, `${title}, from above. ${said.textContent}`, pair);
+        drawPlot(plot, `${data.plots[state.plot]?.title}, ${title}`, pair);
       }
-      for (const { path, title, plan, told, plot } of columns) {
-        const here = pairOf(path);
-        if (!here) continue;
-        if (spatial) Draw.plan(plan, `${title}, from above. ${told.map((p) => p.textContent).join(". ")}`, scene, here, state.step, data, false);
-        const lines = range ? Signals.lines(here, state.plot, data) : [];
-        plot.hidden = !lines.some(({ values }) => values.some((v) => v));
-        if (plot.hidden) continue;
-        const goal = Signals.goal(scene, state.plot, data), { title: of, zero } = data.plots[state.plot];
-        const spans = Flight.flown(here).flatMap((arm) => here[arm].struck);
-        const level = goal === null ? { level: zero ? 0 : null } : { level: goal, name: "goal" };
-        Draw.lines(plot, `${of}, ${title}`, lines, range, { ...clock, spans, ...level });
-      }
-      const wind = Flight.drawn(shown).map((arm) => Flight.wind(shown[arm], state.step))[0];
-      get("wind").textContent = wind ? `Wind at the vehicle: ${Math.hypot(...wind).toFixed(1)} m/s, drawn as the way of ${Flight.ARROW_S} s.` : "";
-      get("clock").textContent = `${(state.step * data.dt_s).toFixed(2)} s`;
+      get("clock").textContent = `${(state.step * dt).toFixed(2)} s`;
       get("time").value = String(state.step);
     };
-
-    const ends = (shown) => {
-      const term = (label, value, cls = "") => {
-        const box = make("div");
-        box.append(make("dt", label, { class: cls }), make("dd", value));
-        return box;
-      };
-      const arms = Flight.arms.map((arm) => {
-        const end = shown[arm], far = end?.distance_m;
-        const told = Flight.told(arm, end).slice(arm.length + 2) + (far === null || far === undefined ? "" : `, ${far.toFixed(2)} m from the goal`);
-        return term(`${arm}: ${data[arm]} (${{ baseline: "dashed", repair: "solid" }[arm]})`, told, arm);
-      });
-      const parting = shown.parting_step === null
-        ? `never more than ${data.parting_m} m`
-        : `□ more than ${data.parting_m} m from ${(shown.parting_step * data.dt_s).toFixed(2)} s on`;
-      get("ends").replaceChildren(...arms, ...(spatial ? [term("apart", parting)] : []));
+    // The range of a plot over all paths of the scene; null where it has nothing to show.
+    const rangeOf = (plot) => {
+      state.plot = plot;
+      let [low, high] = ends(current().pairs.flatMap((pair) => linesOf(pair).flatMap(({ values }) => values)));
+      if (low > high || (low === 0 && high === 0)) return null;
+      const also = data.plots[plot].zero ? 0 : goal();
+      if (also !== null) [low, high] = [Math.min(low, also), Math.max(high, also)];
+      const margin = (high - low || Math.abs(high) || 1) * 0.05;
+      return [low - margin, high + margin];
     };
-
-    // Offers what was recorded of a scene; a choice that it has not got is another one there.
-    const signals = (scene) => {
-      const has = data.plots.map((_, place) => place).filter((place) => Signals.range(scene, place, data));
+    // Offers what was recorded of the scene; a choice that it has not got is another one there.
+    const chooseSignal = (wanted) => {
+      const has = [...data.plots.keys()].filter(rangeOf);
       get("signals").hidden = !has.length;
-      range = null;
+      state.plot = has.includes(wanted) || !has.length ? wanted : has[0];
+      state.range = has.length ? rangeOf(state.plot) : null;
       if (!has.length) return;
-      if (!has.includes(state.plot)) state.plot = has[0];
       const label = ({ title, unit }) => (unit && unit !== "1" ? `${title} (${unit})` : title);
       get("signal").replaceChildren(...has.map((place) => make("option", label(data.plots[place]), { value: place })));
       get("signal").value = String(state.plot);
-      range = Signals.range(scene, state.plot, data);
       const { lines } = data.plots[state.plot];
       get("lines").replaceChildren(...lines.map((line, n) => make("li", line, { class: `line-${Math.min(n, 3)}` })));
       get("lines").hidden = lines.length < 2;
     };
-
     const reset = (step) => {
-      const scene = current(), shown = pair();
-      state.path = shown.path;
-      state.step = Math.min(Math.max(0, step ?? last()), last());
-      get("time").max = String(last());
+      const scene = current(), every = scene.pairs.flatMap(trials), plan = data.plans[scene.scene];
+      const length = (each) => (each.track === null ? Math.ceil(each.time_s / dt - 1e-6) + 1 : series[each.track].length);
+      state.last = Math.max(1, ends(every.map(length))[1] - 1);
+      state.step = Math.min(Math.max(0, step ?? state.last), state.last);
+      const points = [...every.flatMap(track), ...(plan ? [plan.low, plan.high] : [])];
+      state.box = [0, 1].map((axis) => ends(points.map((point) => point[axis])));
+      get("time").max = String(state.last);
       get("scene").value = String(state.scene);
-      get("name").textContent = `${scene.scene}, ${data.paths.find((p) => p.name === shown.path).title}`;
-      get("why").textContent = shown.void ? `Void on the path shown: ${shown.void}.` : `${scene.why} ${words[shown.kind] ?? ""}`.trim();
-      for (const button of get("paths").querySelectorAll("button")) {
-        button.setAttribute("aria-pressed", String(button.dataset.path === shown.path));
-        button.disabled = !pairOf(button.dataset.path);
+      get("why").textContent = scene.why;
+      chooseSignal(state.plot);
+      for (const { path, column, said } of columns) {
+        const pair = scene.pairs.find((each) => each.path === path);
+        column.hidden = !pair;
+        column.classList.toggle("chosen", path === state.path);
+        if (pair) said.replaceChildren(...trials(pair).map((each) => make("p", told(each), { class: each.arm })), make("p", pair.void ? `Void: ${pair.void}.` : ""));
       }
-      signals(scene);
-      for (const { path, column, told } of columns) {
-        const here = pairOf(path);
-        column.hidden = !here;
-        column.classList.toggle("chosen", path === shown.path);
-        Flight.arms.forEach((arm, i) => { told[i].textContent = here ? Flight.told(arm, here[arm]) : ""; });
-      }
-      ends(shown);
       redraw();
     };
 
-    // The address tells what is shown, and shows what it tells.
+    // The address says what is shown, and shows what it says.
     const tell = () => {
       const { scene, seed } = current();
-      const parts = [["scene", scene], ["seed", seed], ["path", state.path], ["t", (state.step * data.dt_s).toFixed(2)]];
-      history.replaceState(null, "", `#${parts.map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&")}`);
+      const parts = { scene, seed, path: state.path, t: (state.step * dt).toFixed(2) };
+      history.replaceState(null, "", `#${Object.entries(parts).map(([key, value]) => `${key}=${encodeURIComponent(value)}`).join("&")}`);
     };
     const listen = () => {
       const asked = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
-      const place = data.scenes.findIndex((s) => s.scene === asked.scene && (asked.seed === undefined || String(s.seed) === asked.seed));
-      if (asked.scene === undefined || place < 0) return false;
+      const place = data.scenes.findIndex((s) => s.scene === asked.scene && String(s.seed) === (asked.seed ?? String(s.seed)));
+      if (place < 0) return false;
       stop();
       state.scene = place;
       if (data.paths.some((p) => p.name === asked.path)) state.path = asked.path;
-      reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / data.dt_s) : undefined);
+      reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / dt) : undefined);
       document.getElementById("viewer").scrollIntoView({ block: "start" });
       get("play").focus({ preventScroll: true });
       return true;
     };
 
     const stop = () => { cancelAnimationFrame(state.playing); state.playing = 0; get("play").textContent = "Play"; };
-    const show = (step) => { state.step = Math.min(Math.max(0, step), last()); redraw(); };
+    const show = (step) => { state.step = Math.min(Math.max(0, step), state.last); redraw(); };
     const play = () => {
+      if (state.step >= state.last) show(0);
       let before = null, exact = state.step;
       const frame = (now) => {
-        if (before !== null) exact += (now - before) / 1000 / data.dt_s;
+        if (before !== null) exact += (now - before) / 1000 / dt;
         before = now;
-        if (exact >= last()) { show(last()); stop(); tell(); return; }
         if (Math.floor(exact) !== state.step) show(Math.floor(exact));
-        state.playing = requestAnimationFrame(frame);
+        if (exact >= state.last) { stop(); tell(); } else state.playing = requestAnimationFrame(frame);
       };
       get("play").textContent = "Pause";
-      if (state.step >= last()) { exact = 0; show(0); }
       state.playing = requestAnimationFrame(frame);
     };
     const by = (steps) => () => { stop(); show(state.step + steps); tell(); };
 
     get("scene").addEventListener("change", (e) => { stop(); state.scene = Number(e.target.value); reset(); tell(); });
-    get("paths").addEventListener("click", (e) => {
-      const button = e.target.closest("button");
-      if (button) { stop(); state.path = button.dataset.path; reset(state.step); tell(); }
-    });
-    get("signal").addEventListener("change", (e) => { state.plot = Number(e.target.value); signals(current()); redraw(); });
+    get("signal").addEventListener("change", (e) => { chooseSignal(Number(e.target.value)); redraw(); });
     get("time").addEventListener("input", (e) => { stop(); show(Number(e.target.value)); tell(); });
     get("back").addEventListener("click", by(-1));
     get("on").addEventListener("click", by(1));
@@ -186,5 +239,5 @@ if (document.getElementById("viewer-data")) {
   };
 
   const failed = (error) => { get("failed").hidden = false; get("failed").append(` (${error.message})`); };
-  Unpacking.read(JSON.parse(document.getElementById("viewer-data").textContent).packed).then(begin).catch(failed);
+  unpacked(JSON.parse(document.getElementById("viewer-data").textContent).packed).then(begin).catch(failed);
 }
