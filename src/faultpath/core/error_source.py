@@ -33,7 +33,7 @@ def ours(module: str) -> bool:
     `faultpath_quadrotor` does: such a one answers for its own mistakes. The registry names what a
     user's file holds `faultpath_system_...`, and that is the user's."""
     top = module.partition(".")[0]
-    return top == "faultpath" or top.startswith("faultpath_") and "_system_" not in top
+    return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
 
 
 def note_system(file: str) -> None:
