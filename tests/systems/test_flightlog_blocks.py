@@ -7,7 +7,7 @@ from scipy.signal import lfilter
 
 from faultpath.report.compensation import sentences
 from faultpath.systems.flightlog import Compensation, compensation, read_columns, read_flight
-from faultpath.systems.flightlog.blocks import LEAST, LEAST_S, Medians, correlation_time
+from faultpath.systems.flightlog.compensation import LEAST, LEAST_S, Medians, correlation_time
 from faultpath.systems.flightlog.flight import INTERVAL_S
 
 

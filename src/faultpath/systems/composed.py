@@ -1,6 +1,6 @@
 """A system composed of a plant of episodes and modules; all that can be seen is not declared."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any, cast
@@ -73,13 +73,24 @@ class ComposedSystem(LoopSystem):
         self.name, self.control_dt_s = name, plant.dt_s
         self.metrics = {key: measure.metric for key, measure in plant.metrics.items()}
         self._plant, self._parts, self._scenes = plant, dict(variants), dict(scenes)
-        self._facts = _Facts(name, plant, self._parts, units, dict(channels or {}))
-        self._wirings = {
-            key: Wiring(parts.description, self._facts.bindings(parts.of(None)))
-            for key, parts in self._parts.items()
-        }
-        self._interface = self._facts.interface(plant.shapes)
-        self._interface = self._facts.interface(plant.shapes | self._shapes())
+        several = dict(channels or {})
+        self._wirings: dict[str, Wiring] = {}
+        for variant, parts in self._parts.items():
+            written = [name for module in parts.of(None) for name in module.writes]
+            bindings = {
+                channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
+                for channel, sources in several.items()
+            }
+            self._wirings[variant] = Wiring(parts.description, bindings)
+        self._interface = self._declared(units, several, plant.shapes)
+        seen = _Shapes()
+        for variant in self._parts:
+            wired = self.wirings[variant].bindings
+            made = graph(self._interface, plant, self.modules(variant, None), wired)
+            batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
+            first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
+            first.state.worlds.close()
+        self._interface = self._declared(units, several, plant.shapes | seen.shapes)
 
     @property
     @override
@@ -116,21 +127,55 @@ class ComposedSystem(LoopSystem):
     def parts(self) -> Sequence[str]:
         return self._plant.code()
 
-    def _shapes(self) -> dict[str, tuple[int, ...]]:
-        seen = _Shapes()
-        for name in self._parts:
-            made = graph(
-                self._interface, self._plant, self.modules(name, None), self.wirings[name].bindings
-            )
-            batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            first = next(iter(Loop(self._interface, made).execute(batch, cast("Any", seen))))
-            first.state.worlds.close()
-        return seen.shapes
+    def _declared(
+        self,
+        units: Mapping[str, str | Mapping[str, Any]],
+        several: Mapping[str, Sequence[str]],
+        shapes: Mapping[str, tuple[int, ...]],
+    ) -> Interface:
+        """Return the interface; what no shape is known of counts as a number."""
+        plant = self._plant
+        modules = [module for parts in self._parts.values() for module in parts.of(None)]
+        read = dict.fromkeys(
+            port.channel for part in (*modules, plant) for port in sorted(part.ports)
+        )
+        feeds = {channel: several.get(channel, (channel,)) for channel in read}
+        written = [name for module in modules for name in module.writes]
+        known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.told, "estimated")
+        known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
+        sources: dict[str, dict[str, Any]] = {}
+        for name in (*plant.senses, *written, *(n for fed in feeds.values() for n in fed)):
+            if name not in units:
+                raise SystemMistake(
+                    f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for "
+                    "a number without one"
+                )
+            given = units[name]
+            facts = {"unit": given} if isinstance(given, str) else dict(given)
+            sources[name] = {
+                "name": name,
+                "shape": shapes.get(name, ()),
+                "provenance": known.get(name, "reconstructed"),
+                **facts,
+            }
+        declared = [
+            {
+                "name": channel,
+                "sources": list(fed),
+                "gap": "fidelity" if sources[fed[0]]["provenance"] == "estimated" else "none",
+            }
+            for channel, fed in feeds.items()
+        ]
+        content = {"name": self.name, "sources": list(sources.values()), "channels": declared}
+        try:
+            return interface_of(content, (*modules, plant))
+        except UserError as error:
+            raise SystemMistake(f"system '{self.name}': {error}") from None
 
 
 @dataclass
 class _Shapes:
-    """Stands in for the taps during a first step, and takes down the shapes that pass."""
+    """Takes the place of the taps during a first step, and notes the shapes that pass."""
 
     shapes: dict[str, tuple[int, ...]] = field(default_factory=dict[str, tuple[int, ...]])
 
@@ -142,74 +187,3 @@ class _Shapes:
         if hasattr(reading.value, "shape"):
             self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
         return reading.value
-
-
-@dataclass(frozen=True)
-class _Facts:
-    """What is known of the sources before anything runs."""
-
-    name: str
-    plant: EpisodePlant
-    variants: Mapping[str, Parts]
-    units: Mapping[str, str | Mapping[str, Any]]
-    several: Mapping[str, Sequence[str]]
-
-    @property
-    def modules(self) -> list[Module]:
-        return [each for parts in self.variants.values() for each in parts.of(None)]
-
-    def bindings(self, modules: Iterable[Module]) -> dict[str, str]:
-        """Return what feeds the channels of several sources in a variant."""
-        written = [name for module in modules for name in module.writes]
-        given = (*written, *self.plant.senses)
-        return {
-            channel: next((name for name in given if name in sources), sources[0])
-            for channel, sources in self.several.items()
-        }
-
-    def interface(self, shapes: Mapping[str, tuple[int, ...]]) -> Interface:
-        """Return the interface; what no shape is known of counts as a number."""
-        parts = (*self.modules, self.plant)
-        commanded = self.several.get(self.plant.action, (self.plant.action,))
-        read = dict.fromkeys(port.channel for part in parts for port in sorted(part.ports))
-        feeds = {channel: self.several.get(channel, (channel,)) for channel in read}
-        written = (name for module in self.modules for name in module.writes)
-        names = dict.fromkeys(
-            (*self.plant.senses, *written, *(n for f in feeds.values() for n in f))
-        )
-        declared = {name: self._source(name, shapes, commanded) for name in names}
-        content = {
-            "name": self.name,
-            "sources": list(declared.values()),
-            "channels": [
-                {
-                    "name": channel,
-                    "sources": list(fed),
-                    "gap": "fidelity" if declared[fed[0]]["provenance"] == "estimated" else "none",
-                }
-                for channel, fed in feeds.items()
-            ],
-        }
-        try:
-            return interface_of(content, parts)
-        except UserError as error:
-            raise SystemMistake(f"system '{self.name}': {error}") from None
-
-    def _source(
-        self, name: str, shapes: Mapping[str, tuple[int, ...]], commanded: Sequence[str]
-    ) -> dict[str, Any]:
-        if name not in self.units:
-            raise SystemMistake(
-                f"system '{self.name}': source '{name}' has no unit: add it to units, '1' for a "
-                "number without one"
-            )
-        given = self.units[name]
-        facts = {"unit": given} if isinstance(given, str) else dict(given)
-        known = dict.fromkeys(self.plant.senses, "measured")
-        known |= dict.fromkeys(self.plant.told, "estimated") | dict.fromkeys(commanded, "commanded")
-        return {
-            "name": name,
-            "shape": shapes.get(name, ()),
-            "provenance": known.get(name, "reconstructed"),
-            **facts,
-        }

@@ -71,8 +71,7 @@ class Stepped:
     rewards: HostArray
     terminated: HostArray
     truncated: HostArray
-    info: Callable[[int], Mapping[str, Any]]
-    """Of one scene, by its place in the batch."""
+    info: Sequence[Mapping[str, Any]]
 
 
 class Worlds(ABC):
@@ -123,7 +122,7 @@ def look(observation: Any, at: Look) -> HostArray:
 
 
 @dataclass
-class _Flown:
+class _Batch:
     """A batch under way."""
 
     worlds: Worlds
@@ -136,12 +135,6 @@ class _Flown:
     metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
-
-    def episode(self, i: int, terminated: bool, info: Mapping[str, Any], dt_s: float) -> Episode:
-        """Return what a scene that has just ended went through."""
-        signals = {name: np.stack([each[i] for each in log]) for name, log in self.log.items()}
-        rewards = np.array([each[i] for each in self.rewards])
-        return Episode(signals, rewards, terminated, info, dt_s)
 
 
 class EpisodePlant(Plant):
@@ -173,7 +166,8 @@ class EpisodePlant(Plant):
         probed = self.worlds(Batch((f"{SCENE}0",), 0, dt_s))
         self.told = tuple(probed.told)
         self.senses = (*self._observes, *self.told)
-        self.shapes = {name: np.shape(v)[1:] for name, v in self._sensed(probed).items()}
+        sensed = self._sensed(probed, probed.observation)
+        self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
         probed.close()
 
     @abstractmethod
@@ -181,15 +175,14 @@ class EpisodePlant(Plant):
         """Return the scenes of a batch at their start."""
 
     def identity(self) -> str:
-        """Return what decides a flight and stands in no file that the system imports."""
+        """Return what decides a trial and stands in no file that the system imports."""
         return ""
 
     def code(self) -> Sequence[str]:
-        """Return classes, as `module:name`, whose code decides a flight and is not imported."""
+        """Return classes, as `module:name`, whose code decides a trial and is not imported."""
         return ()
 
-    def _sensed(self, worlds: Worlds, observation: Any = None) -> dict[str, HostArray]:
-        seen = worlds.observation if observation is None else observation
+    def _sensed(self, worlds: Worlds, seen: Any) -> dict[str, HostArray]:
         try:
             return {n: look(seen, at) for n, at in self._observes.items()} | dict(worlds.told)
         except (LookupError, TypeError) as error:
@@ -200,38 +193,49 @@ class EpisodePlant(Plant):
             ) from error
 
     @override
-    def start(self, batch: Batch) -> _Flown:
+    def start(self, batch: Batch) -> _Batch:
         worlds, n = self.worlds(batch), len(batch.scenes)
-        sensed = self._sensed(worlds)
+        sensed = self._sensed(worlds, worlds.observation)
         no = np.zeros((3, n), bool)
         log = {name: [value] for name, value in sensed.items()}
         metrics = {name: np.full(n, np.nan) for name in self.metrics}
-        return _Flown(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, [])
+        return _Batch(worlds, sensed, ~no[0], no[1], no[2], np.zeros(n, int), metrics, log, [])
 
     @override
-    def sense(self, state: _Flown) -> dict[str, HostArray]:
+    def sense(self, state: _Batch) -> dict[str, HostArray]:
         return state.sensed
 
     @override
-    def advance(self, state: _Flown, inputs: Inputs) -> _Flown:
+    def advance(self, state: _Batch, inputs: Inputs) -> _Batch:
         """Move what runs, freeze what does not, and judge what ends."""
         now, was = state, state.running
         action = to_numpy(inputs[self.action, "actuator"])
         done = now.worlds.step(action, was, inputs.step)
         fresh = self._sensed(now.worlds, done.observation)
-        now.sensed = {name: _where(was, fresh[name], old) for name, old in now.sensed.items()}
-        for name, value in now.sensed.items():
+        held, now.sensed = now.sensed, {}
+        for name, old in held.items():
+            value = fresh[name]
+            if not was.all():
+                value = np.where(was.reshape(-1, *[1] * (value.ndim - 1)), value, old)
             if value.ndim > 2:
                 now.log[name].clear()
             now.log[name].append(value)
+            now.sensed[name] = value
         now.rewards.append(np.where(was, done.rewards, 0.0))
         now.steps = now.steps + was
         terminated = was & np.asarray(done.terminated, bool)
         ended = was & (terminated | np.asarray(done.truncated, bool) | (now.steps == self.steps))
         succeeded, crashed = now.succeeded.copy(), now.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
-            episode = now.episode(i, bool(terminated[i]), done.info(i), self.dt_s)
-            succeeded[i] = self._judged(episode)
+            signals = {name: np.stack([each[i] for each in log]) for name, log in now.log.items()}
+            rewards = np.array([each[i] for each in now.rewards])
+            episode = Episode(signals, rewards, bool(terminated[i]), done.info[i], self.dt_s)
+            said: Any = self._succeeded(episode)
+            if type(said) not in (bool, np.bool_):
+                raise SystemMistake(
+                    f"`succeeded` returned {said!r:.80} of an episode: it must return true or false"
+                )
+            succeeded[i] = said
             for name, measure in self.metrics.items():
                 now.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]
@@ -240,21 +244,13 @@ class EpisodePlant(Plant):
             now.worlds.close()
         return now
 
-    def _judged(self, episode: Episode) -> bool:
-        said: Any = self._succeeded(episode)
-        if type(said) not in (bool, np.bool_):
-            raise SystemMistake(
-                f"`succeeded` returned {said!r:.80} of an episode: it must return true or false"
-            )
-        return bool(said)
-
     @override
-    def progress(self, state: _Flown) -> Progress:
+    def progress(self, state: _Batch) -> Progress:
         time_s = state.steps * self.dt_s
         return Progress(state.running, state.succeeded, state.crashed, time_s, state.metrics)
 
     @override
-    def conditions(self, state: _Flown) -> tuple[Sequence[str], Sequence[str]]:
+    def conditions(self, state: _Batch) -> tuple[Sequence[str], Sequence[str]]:
         return state.worlds.initial, state.worlds.disturbances
 
 
@@ -285,9 +281,3 @@ def _exact(part: Any) -> str:
         array = cast("HostArray", part)
         return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
     return repr(part)
-
-
-def _where(running: HostArray, fresh: HostArray, old: HostArray) -> HostArray:
-    if running.all():
-        return fresh
-    return np.where(running.reshape(-1, *[1] * (fresh.ndim - 1)), fresh, old)

@@ -89,10 +89,7 @@ class _FunctionWorlds(Worlds):
             rng = generator("plant/step", self._batch.scenes[i], self._batch.seed, step)
             self._states[i] = self._step(self._states[i], action[i], rng)
             terminated[i] = self._over is not None and self._over(self._states[i])
-        no = np.zeros(len(running), bool)
-        return Stepped(stacked(self._states), np.zeros(len(running)), terminated, no, _silent)
-
-
-def _silent(scene: int) -> Mapping[str, Any]:
-    del scene
-    return {}
+        rewards, no = np.zeros(len(running)), np.zeros(len(running), bool)
+        return Stepped(
+            stacked(self._states), rewards, terminated, no, [dict[str, Any]()] * len(running)
+        )

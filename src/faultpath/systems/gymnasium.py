@@ -3,8 +3,11 @@
 It is made anew for every scene, by id or by a function, and moved only while its episode lasts.
 """
 
+import re
+import sys
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, cast
+from types import ModuleType
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -14,7 +17,6 @@ from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
 from faultpath.loop import Batch
-from faultpath.systems.environments import code, identity
 from faultpath.systems.episodes import (
     RETURN,
     Episode,
@@ -27,8 +29,13 @@ from faultpath.systems.episodes import (
     seed_of,
     stacked,
 )
+from faultpath.trials.code import release
 
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
+
+_PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
+"""Where a system's file lies, which its module is called after, and where in memory a function is:
+both differ from machine to machine."""
 
 
 class GymnasiumPlant(EpisodePlant):
@@ -64,7 +71,7 @@ class GymnasiumPlant(EpisodePlant):
         self._environment, self._setup = environment, setup
         self._limit = steps
         sample = self._make()
-        self._identity, self._code = identity(sample), code(sample)
+        self._identity, self._code = _identity(sample), _code(sample)
         steps = steps or getattr(sample.spec, "max_episode_steps", None)
         dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
         sample.close()
@@ -107,12 +114,12 @@ class _Environments(Worlds):
         self._envs, self._space = envs, envs[0].action_space
         seeds = [seed_of(name) for name in batch.scenes]
         self._last = [env.reset(seed=seed)[0] for env, seed in zip(envs, seeds, strict=True)]
-        self.observation = observed = stacked(self._last)
+        self.observation = stacked(self._last)
         told: list[Mapping[str, Any]] = []
         self.initial, self.disturbances = [], []
         for i, name in enumerate(batch.scenes):
             stream = envs[i].unwrapped.np_random.bit_generator.state
-            self.initial.append(hashed(name, _row(observed, i), stream))
+            self.initial.append(hashed(name, self._last[i], stream))
             rng = generator("environment/setup", name, 0)
             found = setup(envs[i], rng) if setup else None
             told.append({} if found is None else found)
@@ -122,24 +129,10 @@ class _Environments(Worlds):
 
     @override
     def step(self, action: HostArray, running: HostArray, step: int) -> Stepped:
-        rows = self._action(action)
-        rewards, ends = np.zeros(len(rows)), np.zeros((2, len(rows)), bool)
-        said: list[Mapping[str, Any]] = [{} for _ in rows]
-        for i in map(int, np.flatnonzero(running)):
-            found: Any = self._envs[i].step(rows[i])
-            self._last[i], rewards[i], ends[0, i], ends[1, i], said[i] = found
-        return Stepped(stacked(self._last), rewards, ends[0], ends[1], said.__getitem__)
-
-    @override
-    def close(self) -> None:
-        for env in self._envs:
-            env.close()
-
-    def _action(self, action: HostArray) -> HostArray:
         space = self._space
         if space.shape is None:
             raise SystemMistake(
-                f"the environment takes actions of {space}: only arrays can be told"
+                f"the environment takes actions of {space}: only arrays can be given"
             )
         if np.issubdtype(space.dtype, np.integer) and action.dtype.kind not in "biu":
             raise SystemMistake(
@@ -147,17 +140,47 @@ class _Environments(Worlds):
                 f"{action.dtype}: give integers"
             )
         try:
-            return action.reshape(len(action), *space.shape).astype(space.dtype)
+            rows = action.reshape(len(action), *space.shape).astype(space.dtype)
         except ValueError:
             raise SystemMistake(
                 f"the environment takes actions of shape {list(space.shape)}, and one scene's is "
-                f"of shape {list(action.shape[1:])}: mend what writes it"
+                f"of shape {list(action.shape[1:])}: correct what writes it"
             ) from None
+        rewards, ends = np.zeros(len(rows)), np.zeros((2, len(rows)), bool)
+        said: list[Mapping[str, Any]] = [{} for _ in rows]
+        for i in map(int, np.flatnonzero(running)):
+            found: Any = self._envs[i].step(rows[i])
+            self._last[i], rewards[i], ends[0, i], ends[1, i], said[i] = found
+        return Stepped(stacked(self._last), rewards, ends[0], ends[1], said)
+
+    @override
+    def close(self) -> None:
+        for env in self._envs:
+            env.close()
 
 
-def _row(batch: Any, i: int) -> Any:
-    if isinstance(batch, Mapping):
-        return {key: _row(value, i) for key, value in cast("Mapping[Any, Any]", batch).items()}
-    if isinstance(batch, tuple):
-        return tuple(_row(value, i) for value in cast("tuple[Any, ...]", batch))
-    return batch[i]
+def _identity(env: Any) -> str:
+    """Return how an environment is made, and the packages that its class computes with."""
+    places = [sys.modules.get(kind.__module__) for kind in type(env.unwrapped).__mro__]
+    held = [value for place in places if place for value in vars(place).values()]
+    used = {each.__name__.partition(".")[0] for each in held if isinstance(each, ModuleType)}
+    versions = {name: found for name in sorted(used) if (found := release(name))}
+    return f"{_PLACE.sub('', str(env.spec))} {versions}"
+
+
+def _code(env: Any) -> tuple[str, ...]:
+    """Return the classes of an environment and its wrappers that are not Gymnasium's own.
+
+    What is registered under an id is imported by nobody, and its code counts all the same. The
+    file of a system counts already.
+    """
+    parts: list[Any] = [env]
+    while hasattr(parts[-1], "env"):
+        parts.append(parts[-1].env)
+    names: dict[str, None] = {}
+    for part in parts:
+        place = part.__class__.__module__
+        ours = place.partition(".")[0] == "gymnasium" or place.startswith("faultpath_system_")
+        if not ours and getattr(sys.modules.get(place), "__spec__", None) is not None:
+            names[f"{place}:{part.__class__.__name__}"] = None
+    return tuple(names)

@@ -90,10 +90,9 @@ def trace_system(
     if flown.error:
         findings = (f"The run ended early: {flown.error}.",)
     words = {
-        (single.channel, consumer): single.intervention.words()
+        (each.channel, consumer): each.intervention.words()
         for each in faults
-        for single in (each.faults if each.kind == "coupled" else (each,))
-        for consumer in single.consumers
+        for consumer in each.consumers
     }
     sources = {each.source for each in flown.reads}
     permitted = {

@@ -34,7 +34,7 @@ class Flight:
     velocity_mps: Floats
     """Mean over each interval, `[N, 3]`, world frame."""
     thrust_n: Floats
-    """Commanded collective thrust, mean over each interval, `[N]`, after the motors' lag."""
+    """Commanded collective thrust, mean over each interval, `[N]`."""
     mass_kg: float
     drag_kgps: tuple[float, float, float] | None
     newton_per_unit: float
@@ -53,21 +53,55 @@ def read_flight(path: Path, columns: ColumnMap) -> Flight:
     series = read_series(path, columns)
     edges, gaps = _edges(path, series)
     attitude = _attitude(path, columns, series)
-    parts = [_stretch(columns, series, attitude, number, grid) for number, grid in enumerate(edges)]
-    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    # NED: half turns about x on both sides, so that z is up in world and body.
+    up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
+    speed = [series[name] for name in columns.velocity.columns]
+    parts: list[tuple[Floats, ...]] = []
+    for number, grid in enumerate(edges):
+        velocity = np.stack([np.interp(grid, each.time_s, each.values) for each in speed], axis=1)
+        velocity *= SPEED_UNITS[columns.velocity.unit] * up
+        middle = 0.5 * (grid[1:] + grid[:-1])
+        parts.append(
+            (
+                np.full(len(middle), float(number)),
+                grid[:-1],
+                attitude(middle).as_quat(),
+                np.diff(velocity, axis=0) / INTERVAL_S,
+                0.5 * (velocity[1:] + velocity[:-1]),
+                _means(series[columns.thrust.column], grid),
+            )
+        )
+    stretch, time_s, quaternion, acceleration, speeds, thrust = (
+        np.concatenate(each) for each in zip(*parts, strict=True)
+    )
     flight = Flight(
-        stretch=joined["stretch"],
-        time_s=joined["time"],
-        rotation=Rotation.from_quat(joined["quaternion"]),
-        acceleration_mps2=joined["acceleration"],
-        velocity_mps=joined["velocity"],
-        thrust_n=joined["thrust"],
+        stretch=stretch,
+        time_s=time_s,
+        rotation=Rotation.from_quat(quaternion),
+        acceleration_mps2=acceleration,
+        velocity_mps=speeds,
+        thrust_n=thrust,
         mass_kg=columns.mass_kg,
         drag_kgps=columns.drag_kgps,
         newton_per_unit=1.0,
         gaps=gaps,
     )
-    return _scaled(path, columns, flight)
+    axis = flight.rotation.apply([0.0, 0.0, 1.0])
+    needed = acceleration + np.array([0.0, 0.0, GRAVITY_MPS2])
+    wanted = flight.mass_kg * (needed * axis).sum(1)
+    factor = columns.thrust.newton_per_unit
+    if factor == "fit":
+        power = float((thrust**2).sum())
+        factor = float((thrust * wanted).sum()) / power if power else 0.0
+    carried = float(np.median(factor * thrust)) / (flight.mass_kg * GRAVITY_MPS2)
+    if not 0.5 <= carried <= 2.0:
+        raise UserError(
+            f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
+            "newton_per_unit of the thrust (a factor, or fit)"
+        )
+    flight = replace(flight, thrust_n=factor * thrust, newton_per_unit=factor)
+    _check_order(path, columns, flight)
+    return flight
 
 
 def _edges(path: Path, series: Mapping[str, Series]) -> tuple[list[Floats], int]:
@@ -116,70 +150,18 @@ def _attitude(path: Path, columns: ColumnMap, series: Mapping[str, Series]) -> S
         )
     if columns.attitude.order == "wxyz":
         quaternion = quaternion[:, [1, 2, 3, 0]]
-    if columns.frame == "NED":  # half turns about x on both sides: z up in world and body
+    if columns.frame == "NED":
         x, y, z, w = quaternion.T
         quaternion = np.stack([x, -y, -z, w], axis=1)
     return Slerp(time_s, Rotation.from_quat(quaternion))
 
 
-def _stretch(
-    columns: ColumnMap, series: Mapping[str, Series], attitude: Slerp, number: int, edges: Floats
-) -> dict[str, Floats]:
-    up = np.array([1.0, -1.0, -1.0]) if columns.frame == "NED" else np.ones(3)
-    scale = SPEED_UNITS[columns.velocity.unit] * up
-    velocity = scale * np.stack(
-        [
-            np.interp(edges, series[name].time_s, series[name].values)
-            for name in columns.velocity.columns
-        ],
-        axis=1,
-    )
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    return {
-        "stretch": np.full(len(middle), float(number)),
-        "time": edges[:-1],
-        "quaternion": attitude(middle).as_quat(),
-        "acceleration": np.diff(velocity, axis=0) / INTERVAL_S,
-        "velocity": 0.5 * (velocity[1:] + velocity[:-1]),
-        "thrust": _thrust(series[columns.thrust.column], edges, columns.motor_time_constant_s),
-    }
-
-
-def _thrust(command: Series, edges: Floats, lag_s: float) -> Floats:
+def _means(command: Series, edges: Floats) -> Floats:
     # A command holds until the next one: its integral is known at every time.
     done = np.concatenate([[0.0], np.cumsum(np.diff(command.time_s) * command.values[:-1])])
     last = np.clip(np.searchsorted(command.time_s, edges, side="right") - 1, 0, None)
     integral = done[last] + (edges - command.time_s[last]) * command.values[last]
-    mean = np.diff(integral) / INTERVAL_S
-    if lag_s == 0:
-        return mean
-    keep = np.exp(-INTERVAL_S / lag_s)
-    share = lag_s / INTERVAL_S * (1 - keep)
-    held, lagged = mean[0], np.empty_like(mean)
-    for index, asked in enumerate(mean):
-        lagged[index] = asked + (held - asked) * share
-        held = asked + (held - asked) * keep
-    return lagged
-
-
-def _scaled(path: Path, columns: ColumnMap, flight: Flight) -> Flight:
-    axis = flight.rotation.apply([0.0, 0.0, 1.0])
-    needed = flight.acceleration_mps2 + np.array([0.0, 0.0, GRAVITY_MPS2])
-    wanted = flight.mass_kg * (needed * axis).sum(1)
-    factor = columns.thrust.newton_per_unit
-    if factor == "fit":
-        power = float((flight.thrust_n**2).sum())
-        factor = float((flight.thrust_n * wanted).sum()) / power if power else 0.0
-    thrust = factor * flight.thrust_n
-    carried = float(np.median(thrust)) / (flight.mass_kg * GRAVITY_MPS2)
-    if not 0.5 <= carried <= 2.0:
-        raise UserError(
-            f"{path}: the median thrust is {carried:.3g} times the weight: correct mass_kg, or "
-            "newton_per_unit of the thrust (a factor, or fit)"
-        )
-    flight = replace(flight, thrust_n=thrust, newton_per_unit=factor)
-    _check_order(path, columns, flight)
-    return flight
+    return np.diff(integral) / INTERVAL_S
 
 
 def _check_order(path: Path, columns: ColumnMap, flight: Flight) -> None:

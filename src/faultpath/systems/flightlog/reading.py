@@ -80,7 +80,6 @@ class ColumnMap(_Frozen):
     mass_kg: Mass | None = None
     drag_kgps: tuple[Drag, Drag, Drag] | None = None
     """Linear drag along the body's axes; `None`: what thrust and weight leave is one force."""
-    motor_time_constant_s: float = Field(default=0.0, ge=0, le=60)
 
     @property
     def names(self) -> tuple[str, ...]:
