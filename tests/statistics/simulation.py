@@ -14,11 +14,10 @@ from numpy.typing import NDArray
 from scipy.stats import multinomial
 
 from faultpath.core.streams import generator
-from faultpath.decisions.family import ALPHA, CORRECT, SHARED, Arms, alpha_shares, decide_paths
+from faultpath.decisions.family import CORRECT, SHARED, Arms, alpha_shares, decide_paths
 from faultpath.statistics import IN_FORCE, Resamples, detectable, success_effect
-from faultpath.statistics.betting import log_capitals
 from faultpath.statistics.estimate import RULES
-from faultpath.statistics.power import detected
+from faultpath.statistics.power import detected, rule_power
 from faultpath.statistics.score import quantile, reach, rejects
 
 Floats = NDArray[np.float64]
@@ -239,6 +238,9 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
             continue
         rate = max(truth.rate, least / 100.0)
         true = replace(truth, rate=rate, lean=min(1.0, least / 100.0 / rate))
+        if truth.seeds == 1:
+            shares.append(rule_power(scenes, rate, least / 100.0, alpha, rule=IN_FORCE))
+            continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
         far = reach(true.sizes, counts, 1.0, PRIOR)
         shares.append(float(detected(true.sizes, counts, far, alpha, IN_FORCE).mean()))
@@ -264,18 +266,6 @@ def any_look(scenes: int, truth: Population, together: float, runs: int = 150) -
             for look in looks
         )
     return announced / runs
-
-
-def every_look(scenes: int, truth: Population, runs: int = 300) -> float:
-    """Return how often the confidence sequence holds the truth after every scene."""
-    stream = generator("statistics", f"every look {scenes} {truth}", 0)
-    needed = np.log(2.0 / ALPHA)
-    missed = 0
-    for _ in range(runs):
-        values = truth.outcomes(stream.random((scenes, truth.seeds + 2))).mean(axis=1)
-        capitals = (log_capitals(side * values, side * truth.mean, 1.0) for side in (1, -1))
-        missed += any(bool((capital >= needed).any()) for capital in capitals)
-    return 1.0 - missed / runs
 
 
 def kept(rate: float, runs: int, least: float = 0.0, most: float = 1.0) -> bool:

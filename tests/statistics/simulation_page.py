@@ -14,7 +14,6 @@ from simulation import (
     break_even_coverage,
     detection,
     equal_arms,
-    every_look,
     interval_coverage,
     models_coverage,
     reversals,
@@ -169,24 +168,6 @@ def sections() -> Iterator[tuple[str, str, str]]:
             (
                 (f"100, {s}", *(share([trainings(100, s, m)]) for m in (True, False)))
                 for s in (2, 3, 5)
-            ),
-        ),
-    )
-    yield (
-        "Confidence sequence of an effect",
-        "Share of sequential audits whose 95 % confidence sequence holds the truth after every one "
-        "of 300 scenes. Columns: share of scenes that differ. Promised: at least .95.",
-        markdown(
-            ("seeds, split", *by_rate),
-            (
-                (
-                    f"{s}, {words}",
-                    *(
-                        share([every_look(300, Population(r, lean, s, 0.5 * (s > 1)))])
-                        for r in RATES
-                    ),
-                )
-                for s, (lean, words) in product((1, 3), LEANS.items())
             ),
         ),
     )

@@ -10,7 +10,6 @@ from faultpath.statistics import Resamples, detectable, success_effect, with_tes
 from faultpath.statistics.distributions import (
     binomial_cdf,
     binomial_pmf,
-    clopper_pearson_upper,
     normal_quantile,
 )
 from faultpath.statistics.power import rule_power
@@ -32,13 +31,11 @@ def test_distributions_agree_with_scipy(n, k, p):
     assert float(binomial_cdf(k, n, p)) == pytest.approx(binom.cdf(k, n, p), abs=1e-12)
     if 0 <= k <= n:
         assert float(binomial_pmf(k, n, p)) == pytest.approx(binom.pmf(k, n, p), abs=1e-12)
-        upper = beta.ppf(0.975, k + 1, n - k) if k < n else 1.0
-        assert clopper_pearson_upper(k, n) == pytest.approx(upper, abs=1e-9)
     assert normal_quantile(p) == pytest.approx(norm.ppf(p))
 
 
-@settings(max_examples=15, deadline=None)
-@given(st.integers(1, 14), st.floats(0.05, 1.0), st.floats(-1, 1), st.sampled_from([0.05, 0.3]))
+@settings(max_examples=10, deadline=None)
+@given(st.integers(1, 10), st.floats(0.05, 1.0), st.floats(-1, 1), st.sampled_from([0.05, 0.3]))
 def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
     """Both have to find it: the exact test, and the 95 % interval on the same side."""
     difference = lean * rate
@@ -63,7 +60,7 @@ def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
 def test_power_is_80_percent_at_the_detectable_difference_and_less_below(first, second, alpha):
     least = found((first, second), alpha=alpha)
     difference, observed = least / 100, (first + second) / 100
-    assumed = observed or clopper_pearson_upper(0, 100)
+    assumed = observed or beta.ppf(0.975, 1, 100)
     assert rule_power(
         100, max(assumed, difference), difference, alpha, rule="exact"
     ) == pytest.approx(0.8, abs=2e-3)
@@ -93,7 +90,7 @@ def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losse
 
     def power(difference):
         chances = [noise / 2 + difference, noise / 2, 1 - noise - difference]
-        first, second, _ = stream.multinomial(100, chances, size=300).T
+        first, second, _ = stream.multinomial(100, chances, size=120).T
         resamples = Resamples.draw("planned", 100, n_resamples=1)
         tested = (
             with_test(success_effect(*counted(b, c), resamples), rule)
@@ -101,5 +98,5 @@ def test_the_number_to_plan_by_is_found_in_four_audits_of_five(rule, wins, losse
         )
         return np.mean([each.detected != 0 for each in tested])
 
-    assert power(planned) == pytest.approx(0.8, abs=0.07)
+    assert power(planned) == pytest.approx(0.8, abs=0.11)
     assert power(seen) < power(planned)

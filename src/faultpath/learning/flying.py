@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import Array, HostArray, is_array, namespace, place, to_numpy
+from faultpath.core.arrays import HostArray, is_array, namespace, place, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.faults import ALL, Erase, Fault
 from faultpath.interface import Interface
@@ -64,17 +64,14 @@ class Learned(Module):
         length = self._steps or 1
         past = (*(memory or (now,) * (length - 1)), now)
         kept = past[1 - length :] if length > 1 else ()
-        seen = {port: torch.from_numpy(_laid(past, port, self._steps)) for port in now}
+        laid = {port: np.stack([step[port] for step in past], axis=1) for port in now}
+        if self._steps is None:
+            laid = {port: value[:, 0] for port, value in laid.items()}
+        seen = {port: torch.from_numpy(value) for port, value in laid.items()}
         scenes = range(len(next(iter(now.values()))))
         with torch.no_grad():
             rows = [self._net({p: v[i : i + 1] for p, v in seen.items()})[0] for i in scenes]
         return {self.writes[0]: np.stack([row.numpy() for row in rows]).astype(float)}, kept
-
-
-def _laid(past: Sequence[Mapping[Port, HostArray]], port: Port, steps: int | None) -> HostArray:
-    if steps is None:
-        return past[-1][port].copy()
-    return np.stack([step[port] for step in past], axis=1)
 
 
 def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
@@ -128,13 +125,10 @@ class _Withheld(Module):
         given = {port: inputs[port] for port in inputs}
         truths = {name: inputs.truth(name) for name in self.truths}
         beside = next((value for value in given.values() if is_array(value)), np.zeros(1))
-        rows = {p: np.broadcast_to(v, (scenes, *v.shape)) for p, v in self._values.items()}
-        given |= {port: _beside(np.array(row, dtype=float), beside) for port, row in rows.items()}
+        floating = namespace(beside).isdtype(beside.dtype, "real floating")
+        for port, value in self._values.items():
+            rows = np.array(np.broadcast_to(value, (scenes, *value.shape)), dtype=float)
+            given[port] = place(rows, beside, beside.dtype if floating else None)
         filled = Inputs(inputs.module, inputs.step, given, truths, inputs.running)
         outputs, past = self._inner.step(filled, past)
         return outputs, (scenes, past)
-
-
-def _beside(host: HostArray, array: Array) -> Array:
-    floating = namespace(array).isdtype(array.dtype, "real floating")
-    return place(host, array, array.dtype if floating else None)

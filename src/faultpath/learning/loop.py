@@ -158,10 +158,23 @@ def run(
     Raises `Diverged` for a loss, weights or metrics that are not finite.
     """
     import torch
-    from torch import nn
+    from torch import nn, optim
+
+    def diverged(what: str) -> Diverged:
+        kept = f"; the state after epoch {epoch} is kept in {journal.path}" if journal else ""
+        return Diverged(
+            f"the {what} of {task.name}-{task.seed} left the finite numbers in epoch {epoch + 1} "
+            f"of {schedule.epochs}: lower the learning rate or clip the gradient"
+            f"{kept if epoch else ''}."
+        )
 
     schedule, history = task.schedule, History()
-    optimiser = _optimiser(task, net)
+    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
+    if schedule.optimiser == "adam":
+        optimiser: Optimizer = optim.Adam(fitted, lr=schedule.learning_rate)
+    else:
+        decay = schedule.weight_decay
+        optimiser = optim.AdamW(fitted, lr=schedule.learning_rate, weight_decay=decay)
     if journal is not None and journal.path.exists():
         found = journal.read(net, optimiser)
         if found is None and notice is not None:
@@ -177,7 +190,7 @@ def run(
             loss = task.loss(net, index)
             value = loss.item()
             if not math.isfinite(value):
-                raise _diverged(task, epoch, "loss", journal)
+                raise diverged("loss")
             loss.backward()
             if schedule.clip_norm is not None:
                 nn.utils.clip_grad_norm_(net.parameters(), schedule.clip_norm)
@@ -191,7 +204,7 @@ def run(
             metrics = {key: float(value) for key, value in task.validate(net).items()}
         finite = all(map(math.isfinite, metrics.values()))
         if not finite or not all(v.isfinite().all() for v in net.parameters()):
-            raise _diverged(task, epoch, "weights or validation", journal)
+            raise diverged("weights or validation")
         history = History(
             (*history.training_loss, total / task.count),
             (*history.validation, metrics),
@@ -209,21 +222,3 @@ def minibatches(task: Task, epoch: int) -> tuple[LongTensor, ...]:
     draws = generator(task.order_key, "minibatches", task.seed, epoch)
     order: Any = torch.from_numpy(draws.permutation(task.count))
     return order.split(task.schedule.batch_size)
-
-
-def _optimiser(task: Task, net: nn.Module) -> Optimizer:
-    from torch.optim import Adam, AdamW
-
-    fitted = [parameter for parameter in net.parameters() if parameter.requires_grad]
-    schedule = task.schedule
-    if schedule.optimiser == "adam":
-        return Adam(fitted, lr=schedule.learning_rate)
-    return AdamW(fitted, lr=schedule.learning_rate, weight_decay=schedule.weight_decay)
-
-
-def _diverged(task: Task, epoch: int, what: str, journal: Journal | None) -> Diverged:
-    kept = f"; the state after epoch {epoch} is kept in {journal.path}" if journal and epoch else ""
-    return Diverged(
-        f"the {what} of {task.name}-{task.seed} left the finite numbers in epoch {epoch + 1} of "
-        f"{task.schedule.epochs}: lower the learning rate or clip the gradient{kept}."
-    )

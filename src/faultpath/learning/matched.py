@@ -1,5 +1,6 @@
 """Whether two fits differ in the repair alone: every other difference, in a sentence."""
 
+from collections.abc import Iterator
 from math import isclose
 from pathlib import Path
 from typing import TypeAlias
@@ -8,7 +9,7 @@ from faultpath.core.frozen import Frozen
 from faultpath.core.text import listed
 from faultpath.learning.fitting import Fit
 from faultpath.learning.model_card import read_card
-from faultpath.learning.record import FitRecord
+from faultpath.learning.record import Data, FitRecord
 
 _SAME_LOSS = 1e-4
 """Relative difference of a first loss that machines may cause and another computation does not."""
@@ -46,7 +47,7 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
 
     `UserError` for a record that is missing or damaged.
     """
-    one, other = _record(baseline), _record(repair)
+    one, other = (_record(each) for each in (baseline, repair))
     found: list[str] = []
 
     def compare(what: str, mine: object, theirs: object) -> None:
@@ -59,14 +60,23 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
             compare(f"{what}: {name.replace('_', ' ')}", value, after[name])
 
     compare("Inputs:", listed(one.reads), listed(other.reads))
-    _compare_architecture(one, other, found)
-    _compare_data(one, other, found)
+    seeds = f"seeds {one.seed} and {other.seed}."
+    mine, theirs = one.architecture, other.architecture
+    if mine.tensors != theirs.tensors:
+        names = {**mine.tensors, **theirs.tensors}
+        name = next(n for n in names if mine.tensors.get(n) != theirs.tensors.get(n))
+        before, after = (each.tensors.get(name, "missing") for each in (mine, theirs))
+        compare("Architecture:", f"'{name}' is {before}", after)
+    else:  # only then can initial weights be compared
+        if mine.structure != theirs.structure:
+            lines = zip(mine.structure.splitlines(), theirs.structure.splitlines(), strict=False)
+            pairs = ((a.strip(), b.strip()) for a, b in lines if a != b)
+            compare("Architecture:", *next(pairs, (mine.name, theirs.name)))
+        if one.initial_sha256 != other.initial_sha256:
+            found.append(f"Initialisation: the weights before the first step differ; {seeds}")
+    found += _of_data(one.data, other.data)
     compare("Loss:", one.loss, other.loss)
     compare_fields("Budget", one.schedule, other.schedule)
-    seeds = f"seeds {one.seed} and {other.seed}."
-    same_tensors = one.architecture.tensors == other.architecture.tensors
-    if same_tensors and one.initial_sha256 != other.initial_sha256:
-        found.append(f"Initialisation: the weights before the first step differ; {seeds}")
     if one.data.training_sha256 == other.data.training_sha256:
         epochs = enumerate(zip(one.order_sha256, other.order_sha256, strict=False), start=1)
         first = next((epoch for epoch, (a, b) in epochs if a != b), None)
@@ -93,43 +103,22 @@ def _record(fit: Recorded) -> FitRecord:
     return fit.record if isinstance(fit, Fit) else read_card(Path(fit), FitRecord)
 
 
-def _compare_architecture(one: FitRecord, other: FitRecord, found: list[str]) -> None:
-    mine, theirs = one.architecture, other.architecture
-    if mine.tensors != theirs.tensors:
-        names = {**mine.tensors, **theirs.tensors}
-        name = next(n for n in names if mine.tensors.get(n) != theirs.tensors.get(n))
-        before, after = (each.tensors.get(name, "missing") for each in (mine, theirs))
-        shown = f"'{name}' is {before}", after
-    elif mine.structure != theirs.structure:
-        lines = zip(mine.structure.splitlines(), theirs.structure.splitlines(), strict=False)
-        shown = next(((a.strip(), b.strip()) for a, b in lines if a != b), (mine.name, theirs.name))
-    else:
-        return
-    found.append(f"Architecture: {shown[0]} in the baseline and {shown[1]} in the repair.")
-
-
-def _compare_data(one: FitRecord, other: FitRecord, found: list[str]) -> None:
-    """With other windows readings, split and order follow, and are no differences of their own."""
-    mine, theirs = one.data, other.data
-    if mine.ids_sha256 != theirs.ids_sha256:
-        found.append(
+def _of_data(mine: Data, theirs: Data) -> Iterator[str]:
+    if mine.ids_sha256 != theirs.ids_sha256:  # readings, split and order follow
+        yield (
             f"Data: other windows, {mine.windows} in the baseline and {theirs.windows} in the "
             "repair."
         )
         return
-    for what, before, after in (
-        ("readings", mine.readings_sha256, theirs.readings_sha256),
-        ("targets", mine.targets_sha256, theirs.targets_sha256),
-    ):
+    for what in ("readings", "targets"):
+        before, after = (getattr(each, f"{what}_sha256") for each in (mine, theirs))
         names = sorted(n for n in {*before, *after} if before.get(n) != after.get(n))
         if names:
-            found.append(f"Data: the {what} of {listed(names)} differ.")
+            yield f"Data: the {what} of {listed(names)} differ."
     if mine.dt_s != theirs.dt_s:
-        found.append(
-            f"Data: steps of {mine.dt_s:g} s in the baseline and {theirs.dt_s:g} s in the repair."
-        )
+        yield f"Data: steps of {mine.dt_s:g} s in the baseline and {theirs.dt_s:g} s in the repair."
     if mine.training_sha256 != theirs.training_sha256:
-        found.append(
+        yield (
             f"Split: other windows are trained on, {mine.training} in the baseline and "
             f"{theirs.training} in the repair."
         )

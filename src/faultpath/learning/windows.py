@@ -62,8 +62,25 @@ class Windows:
         ids = tuple(self.ids) or tuple(f"window/{i:06d}" for i in range(n))
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "episodes", tuple(self.episodes) or ids)
-        _check_rows(self, n)
-        _check_steps(self)
+        parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in found.items()}
+        parts |= {f"targets '{name}'": value for name, value in named(self.targets).items()}
+        parts |= {"ids": ids, "episodes": self.episodes}
+        for what, value in parts.items():
+            if len(value) != n:
+                raise UserError(f"windows: {what} has {len(value)} rows for {n} windows: mend it")
+        if len(set(ids)) < n:
+            raise UserError(
+                "windows: two have the same id, and would get the same errors: rename one"
+            )
+        for name, value in found.items():
+            shape = self.shape(name)
+            fits = (shape, shape if self.steps is None else (self.steps, *shape))
+            if value.shape[1:] not in fits:
+                wanted = " or ".join(str([n, *each]) for each in dict.fromkeys(fits))
+                raise UserError(
+                    f"windows: readings of '{name}' have the shape {list(value.shape)}, and the "
+                    f"interface says {wanted}: mend one of the two"
+                )
         missing = {port.channel for port in self.ports} - set(found)
         if missing:
             raise UserError(
@@ -119,27 +136,35 @@ class Windows:
 
         The name of an episode decides alone, whatever else there is.
         """
-        share = {name: _unit(name) for name in dict.fromkeys(self.episodes)}
-        held_out = np.array([share[name] < validation for name in self.episodes])
+
+        def held(name: str) -> bool:
+            digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
+            return int.from_bytes(digest, "little") / 2**64 < validation
+
+        sides = {name: held(name) for name in dict.fromkeys(self.episodes)}
+        held_out = np.array([sides[name] for name in self.episodes])
         return np.flatnonzero(~held_out), np.flatnonzero(held_out)
 
     def learned(self, repairs: Iterable[Repair]) -> Targets:
         """Return what the loss gets; for a reconstruction the correct readings of its channel."""
         made = [each.channel for each in repairs if each.channel is not None]
-        if not made and self.targets is None:
-            raise UserError("fit: the windows have no targets; only a reconstruction needs none")
         if len(made) > 1:
             raise UserError(f"fit: a module reconstructs one channel, not {listed(made)}")
-        for consumer in (c for port, c in self.ports.items() if port.channel in made):
-            raise UserError(
-                f"fit: {consumer} reads '{made[0]}', which it is to reconstruct: leave that place "
-                "out of reader"
-            )
-        if made and made[0] not in self.readings:
+        if not made:
+            if self.targets is None:
+                raise UserError(
+                    "fit: the windows have no targets; only a reconstruction needs none"
+                )
+            return self.targets
+        for port, consumer in self.ports.items():
+            if port.channel in made:
+                raise UserError(
+                    f"fit: {consumer} reads '{made[0]}', which it is to reconstruct: leave that "
+                    "place out of reader"
+                )
+        if made[0] not in self.readings:
             raise UserError(f"fit: there are no readings of '{made[0]}' to learn from: add them")
-        return (
-            self.readings[made[0]] if made else (self.targets if self.targets is not None else {})
-        )
+        return self.readings[made[0]]
 
     def digested(self, targets: Targets, training: HostArray) -> Data:
         """Return digests of what is fitted to, with these windows on the training side."""
@@ -177,15 +202,8 @@ def delivered(
     where a fault missed a consumer that it names.
     """
     steps, interface = windows.steps, windows.interface
-    taps = window_taps(
-        interface,
-        faults,
-        tuple(windows.ids[i] for i in index),
-        windows.dt_s,
-        seed,
-        epoch,
-        windows.consumers,
-    )
+    ids = tuple(windows.ids[i] for i in index)
+    taps = window_taps(interface, faults, ids, windows.dt_s, seed, epoch, windows.consumers)
     ports = windows.ports
     got: dict[Port, list[Array]] = {port: [] for port in ports}
     for step in range(steps or 1):
@@ -235,32 +253,3 @@ def named(targets: Targets | None) -> dict[str, HostArray]:
     if isinstance(targets, Mapping):
         return {name: np.asarray(value) for name, value in targets.items()}
     return {} if targets is None else {"target": np.asarray(targets)}
-
-
-def _check_rows(windows: Windows, n: int) -> None:
-    parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in windows.readings.items()}
-    parts |= {f"targets '{name}'": value for name, value in named(windows.targets).items()}
-    parts |= {"ids": windows.ids, "episodes": windows.episodes}
-    for what, value in parts.items():
-        if len(value) != n:
-            raise UserError(f"windows: {what} has {len(value)} rows for {n} windows: mend it")
-    if len(set(windows.ids)) < n:
-        raise UserError("windows: two have the same id, and would get the same errors: rename one")
-
-
-def _check_steps(windows: Windows) -> None:
-    steps = windows.steps
-    for name, value in windows.readings.items():
-        shape = windows.shape(name)
-        fits = (shape, shape if steps is None else (steps, *shape))
-        if value.shape[1:] not in fits:
-            wanted = " or ".join(str([len(windows), *each]) for each in dict.fromkeys(fits))
-            raise UserError(
-                f"windows: readings of '{name}' have the shape {list(value.shape)}, and the "
-                f"interface says {wanted}: mend one of the two"
-            )
-
-
-def _unit(name: str) -> float:
-    digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
-    return int.from_bytes(digest, "little") / 2**64

@@ -33,11 +33,6 @@ def log_capital(
     return _mixed((counts[..., np.newaxis] * _log_factors(values, null, bound)).sum(axis=-2))
 
 
-def log_capitals(values: Floats, null: float, bound: float) -> Floats:
-    """Return [..., scenes]: the logarithm of the capital after each scene of ``values``."""
-    return _mixed(_log_factors(values, null, bound).cumsum(axis=-2))
-
-
 def p_value(values: Floats, counts: Floats, bound: float) -> tuple[float, int]:
     """Return the two-sided p of "the mean is 0", and the side of 0 that it would find ahead.
 

@@ -68,12 +68,19 @@ class Contrast:
     @property
     def counts(self) -> SeedCounts | None:
         """Return seed by seed in how many scenes only one of the arms succeeded."""
-        return None if self.arms is None else discordant_by_seed(*self.arms)
-
-    @property
-    def resampled(self) -> bool:
-        """Return whether the interval rests on ``draws``."""
-        return self.scenes is None
+        if self.arms is None:
+            return None
+        first, second = self.arms
+        return SeedCounts(
+            per_seed=tuple(
+                Discordant(
+                    first_only=int((column > 0).sum()),
+                    second_only=int((column < 0).sum()),
+                    n_pairs=len(column),
+                )
+                for column in (first - second).T
+            )
+        )
 
     @property
     def rounding(self) -> float:
@@ -105,7 +112,7 @@ class Contrast:
 
     def estimate(self, level: float = 0.95) -> Estimate:
         """Return the value with its interval at ``level``, to be stored."""
-        low, high = (self.interval if level == 0.95 else self.ends(level)) or (None, None)
+        low, high = self.ends(level) or (None, None)
         resamples = self.resamples.n_resamples if self.resamples else 0
         return Estimate(
             value=self.value,
@@ -113,7 +120,7 @@ class Contrast:
             high=high,
             level=level,
             unit=self.unit,
-            method=self.method + (f", {resamples} resamples" if self.resampled else ""),
+            method=self.method + (f", {resamples} resamples" if self.scenes is None else ""),
             estimand=self.estimand,
             n_scenes=self.n_scenes,
             n_seeds=self.n_seeds,
@@ -195,12 +202,18 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
     alike = len({each.n_seeds for each in contrasts}) == 1
     by_seed = zip(*(each.per_seed for each in contrasts), strict=True) if alike else ()
     scenes = combined(weights, parts) if len(parts) == len(contrasts) else None
+    if scenes is None or first.estimand == SCENES_AND_SEEDS:
+        method = f"combined effects, {first.method}"
+    elif scenes.sequential:
+        method = "confidence sequence by betting on scene differences"
+    else:
+        method = "score on scene differences (Tango's, cluster-robust)"
     return replace(
         first,
         value=_dot(weights, [each.value for each in contrasts]),
         draws=np.dot(weights, [each.draws for each in contrasts]).round(_DIGITS),
         per_seed=tuple(_dot(weights, values) for values in by_seed),
-        method=_combined_method(first, scenes),
+        method=method,
         n_seeds=max(each.n_seeds for each in contrasts),
         arms=None,
         scenes=scenes,
@@ -210,14 +223,6 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
     )
 
 
-def _combined_method(first: Contrast, scenes: SceneValues | None) -> str:
-    if scenes is None or first.estimand == SCENES_AND_SEEDS:
-        return f"combined effects, {first.method}"
-    if scenes.sequential:
-        return "confidence sequence by betting on scene differences"
-    return "score on scene differences (Tango's, cluster-robust)"
-
-
 def _dot(weights: Sequence[float], values: Sequence[float]) -> float:
     return round(sum(w * v for w, v in zip(weights, values, strict=True)), _DIGITS) + 0.0
 
@@ -225,29 +230,6 @@ def _dot(weights: Sequence[float], values: Sequence[float]) -> float:
 def change(before: Contrast, after: Contrast) -> Contrast:
     """Return how much a contrast changes, for example from reconstruction-only to shared."""
     return weighted_sum((-1.0, 1.0), (before, after))
-
-
-def discordant_by_seed(first: Floats, second: Floats) -> SeedCounts:
-    """Count per seed the scenes in which only one of two binary arms [scenes, seeds] succeeded."""
-    return SeedCounts(
-        per_seed=tuple(
-            Discordant(
-                first_only=int((column > 0).sum()),
-                second_only=int((column < 0).sum()),
-                n_pairs=len(column),
-            )
-            for column in (first - second).T
-        )
-    )
-
-
-def check_scenes(n_scenes: int, resamples: Resamples) -> None:
-    """Refuse outcomes of another number of scenes than was resampled."""
-    if n_scenes != resamples.n_scenes:
-        raise ValueError(
-            f"the outcomes have {n_scenes} scenes, the resamples {resamples.label!r} have "
-            f"{resamples.n_scenes}"
-        )
 
 
 def check_joint(one: Contrast, two: Contrast) -> None:

@@ -33,33 +33,27 @@ def with_test(contrast: Contrast, rule: RuleName) -> Contrast:
     medians of unbounded outcomes.
     """
     if contrast.estimand == SCENES_AND_SEEDS:
-        return replace(contrast, test=_seed_test(contrast))
-    if contrast.scenes is None or not contrast.against_zero:
-        raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
-    if contrast.scenes.sequential:
-        p_value, leans = betting.p_value(*contrast.scenes.kinds(), contrast.scenes.bound)
-        return replace(contrast, test=PairedTest("bets on the mean", p_value, _sign(leans)))
-    values = contrast.scenes.values
-    first, second = int((values > 0).sum()), int((values < 0).sum())
-    if rule == "unconditional" and contrast.arms is not None and contrast.n_seeds == 1:
-        p_value = unconditional.p_value(first, second, contrast.n_scenes)
-        return replace(contrast, test=PairedTest(EM, p_value, _sign(first - second)))
-    if rule == "unconditional":
-        flipped = signflip.p_value(values, contrast.n_seeds)
-        scored = score.p_value(*contrast.scenes.kinds(), contrast.scenes.far)
-        test = PairedTest(FLIPS, max(flipped, scored), _sign(contrast.value))
+        p = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
+        test = PairedTest("t test of the seeds' effects", p, _sign(contrast.value))
         return replace(contrast, test=test)
-    name = "exact McNemar" if contrast.n_seeds == 1 else "sign test on scene means"
-    if contrast.arms is None:
-        name = "sign test on scene differences"
-    return replace(
-        contrast, test=PairedTest(name, sign_p_value(first, second), _sign(first - second))
-    )
-
-
-def _seed_test(contrast: Contrast) -> PairedTest:
-    p_value = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
-    return PairedTest("t test of the seeds' effects", p_value, _sign(contrast.value))
+    scenes, seeds = contrast.scenes, contrast.n_seeds
+    if scenes is None or not contrast.against_zero:
+        raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
+    first, second = int((scenes.values > 0).sum()), int((scenes.values < 0).sum())
+    if scenes.sequential:
+        p, leans = betting.p_value(*scenes.kinds(), scenes.bound)
+        test = PairedTest("bets on the mean", p, _sign(leans))
+    elif rule == "unconditional" and contrast.arms is not None and seeds == 1:
+        p = unconditional.p_value(first, second, contrast.n_scenes)
+        test = PairedTest(EM, p, _sign(first - second))
+    elif rule == "unconditional":
+        p = max(signflip.p_value(scenes.values, seeds), score.p_value(*scenes.kinds(), scenes.far))
+        test = PairedTest(FLIPS, p, _sign(contrast.value))
+    else:
+        name = "exact McNemar" if seeds == 1 else "sign test on scene means"
+        name = "sign test on scene differences" if contrast.arms is None else name
+        test = PairedTest(name, sign_p_value(first, second), _sign(first - second))
+    return replace(contrast, test=test)
 
 
 def decide_family(

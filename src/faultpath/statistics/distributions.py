@@ -78,16 +78,6 @@ def t_quantile(probability: float, freedom: float) -> float:
     return float(special.stdtrit(freedom, probability))
 
 
-def clopper_pearson_upper(successes: int, trials: int, level: float = 0.95) -> float:
-    """Return the upper end of the two-sided Clopper-Pearson interval."""
-    from scipy import special
-
-    if successes >= trials:
-        return 1.0
-    tail = (1.0 + level) / 2.0
-    return float(special.betaincinv(successes + 1.0, float(trials - successes), tail))
-
-
 def normal_quantile(probability: float) -> float:
     """Return the standard normal quantile."""
     from scipy import special

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.statistics.contrast import Contrast, check_scenes
+from faultpath.statistics.contrast import Contrast
 from faultpath.statistics.estimate import RULES, SCENES, SCENES_AND_SEEDS, RuleName
 from faultpath.statistics.inputs import (
     Floats,
@@ -67,7 +67,7 @@ def _mean(
     models: bool = False,
 ) -> Contrast:
     n_scenes, n_seeds = values.shape
-    check_scenes(n_scenes, resamples)
+    resamples.check(n_scenes)
     if models and n_seeds < 2:
         raise ValueError("one seed says nothing about new seeds")
     if scenes is None:
@@ -111,7 +111,7 @@ def median_effect(
     mask = np.asarray(joint, dtype=np.bool_)
     mask = mask[:, np.newaxis] if mask.ndim == 1 else mask
     difference = _masked(first, mask, "first") - _masked(second, mask, "second")
-    check_scenes(len(difference), resamples)
+    resamples.check(len(difference))
     used = mask.any(axis=1)
     if not used.any():
         raise ValueError("no scene is jointly successful, so there is no median difference")

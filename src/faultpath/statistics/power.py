@@ -4,7 +4,6 @@ That difference stands beside every "not detected", because not detecting one is
 There is none for newly trained models: a few trainings do not know their own spread.
 """
 
-from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
@@ -12,17 +11,18 @@ from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
 from faultpath.statistics import signflip, unconditional
-from faultpath.statistics.distributions import binomial_cdf, binomial_pmf, clopper_pearson_upper
+from faultpath.statistics.distributions import binomial_cdf, binomial_pmf
 from faultpath.statistics.estimate import ALPHA, RULES, RuleName
 from faultpath.statistics.inputs import Floats, Numbers, paired_binary
 from faultpath.statistics.score import quantile, reach, rejects
 
 LEVEL = 0.95
 """Of the interval that has to exclude 0 as well."""
-_ONE_SEED = 3
-"""Values that a scene can have with one seed."""
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
+_PRECISION = 1e-3
+_PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
+"""What is taken to have been seen of seeds that end alike, before anything was."""
 
 
 def fewest_scenes(alpha: float = ALPHA) -> int:
@@ -83,25 +83,14 @@ def _critical(n_scenes: int, alpha: float, rule: RuleName) -> NDArray[np.int64]:
 
 
 def simulated_power(
-    n_scenes: int, values: Floats, chances: Floats, alpha: float, rule: RuleName
+    n_scenes: int, seeds: int, rate: float, lean: float, alike: float, alpha: float, rule: RuleName
 ) -> float:
     """Return the power of several seeds' test and score interval, from `AUDITS` simulated audits.
 
-    A scene has one of ``values`` [kinds], fractions of the largest possible one, with ``chances``
-    [kinds]. The same stream serves every call, so that neighbouring powers can be compared.
-    """
-    stream = generator("detectable", "", n_scenes)
-    counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    far = reach(values, counts, 1.0, RULES[rule].prior)
-    return float(detected(values, counts, far, alpha, rule).mean())
-
-
-def seed_mixture(seeds: int, rate: float, lean: float, alike: float) -> tuple[Floats, Floats]:
-    """Return what scenes differ by, a fraction, and how often: ``values`` and ``chances``.
-
     In each of ``seeds`` a share ``rate`` of the scenes is discordant and favours the first arm
     with chance ``(1 + lean) / 2``. A share ``alike`` of the scenes treats all seeds alike, the
-    others each for itself.
+    others each for itself. The same stream serves every call, so that neighbouring powers can be
+    compared.
     """
     one = np.array([rate * (1.0 - lean), 2.0 * (1.0 - rate), rate * (1.0 + lean)]) / 2.0
     apart = np.ones(1)
@@ -109,31 +98,29 @@ def seed_mixture(seeds: int, rate: float, lean: float, alike: float) -> tuple[Fl
         apart = np.convolve(apart, one)
     chances = (1.0 - alike) * apart
     chances[[0, seeds, 2 * seeds]] += alike * one
-    return np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
+    values, chances = np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
+    stream = generator("detectable", "", n_scenes)
+    counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
+    far = reach(values, counts, 1.0, RULES[rule].prior)
+    return float(detected(values, counts, far, alpha, rule).mean())
 
 
 def detected(
     values: Floats, counts: Floats, far: Floats, alpha: float, rule: RuleName
 ) -> NDArray[np.bool_]:
-    """Return [audits]: whether test and interval agree, for ``counts`` [audits, values]."""
-    first = counts[:, values > 0].sum(axis=1)
-    second = counts[:, values < 0].sum(axis=1)
-    fewer = np.minimum(first, second)
-    if rule == "unconditional" and len(values) > _ONE_SEED:
+    """Return [audits]: whether test and interval of several seeds agree.
+
+    ``counts`` [audits, values] says how many scenes differ by each of ``values``.
+    """
+    if rule == "unconditional":
         found = rejects(values, counts, 0.0, far, quantile(max(LEVEL, 1.0 - alpha)))
         found[found] = signflip.rejects(values, counts[found], alpha)
         return found
-    tested = 2.0 * binomial_cdf(fewer, first + second, 0.5) <= alpha
-    if rule == "unconditional":
-        known = unconditional.critical(int(counts[0].sum()), alpha)
-        tested = fewer <= known[(first + second).astype(np.int64)]
+    first = counts[:, values > 0].sum(axis=1)
+    second = counts[:, values < 0].sum(axis=1)
+    tested = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5) <= alpha
     same = np.sign(counts @ values) == np.sign(first - second)
     return tested & same & rejects(values, counts, 0.0, far, quantile(LEVEL))
-
-
-_PRECISION = 1e-3
-_PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
-"""What is taken to have been seen of seeds that end alike, before anything was."""
 
 
 def detectable(
@@ -160,7 +147,7 @@ def detectable(
     seeds = np.unique(one - two, axis=1)
     rate, alike = float(np.abs(seeds).mean()), 1.0
     if rate == 0.0:
-        rate = clopper_pearson_upper(0, n_scenes)
+        rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
     elif seeds.shape[1] > 1:
         alike = _alike(seeds)
 
@@ -168,11 +155,16 @@ def detectable(
         share = min(1.0, rate + difference if on_top else max(rate, difference))
         if alike == 1.0:
             return rule_power(n_scenes, share, difference, alpha, rule=rule)
-        values, chances = seed_mixture(seeds.shape[1], share, difference / share, alike)
-        return simulated_power(n_scenes, values, chances, alpha, rule)
+        lean = difference / share
+        return simulated_power(n_scenes, seeds.shape[1], share, lean, alike, alpha, rule)
 
-    least = _least(lambda size: reached(size) >= power)
-    return None if least is None else 100.0 * least
+    if reached(1.0) < power:
+        return None
+    low, high = 0.0, 1.0
+    while high - low > _PRECISION * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if reached(middle) >= power else (middle, high)
+    return 100.0 * high
 
 
 def _alike(seeds: Floats) -> float:
@@ -188,13 +180,3 @@ def _alike(seeds: Floats) -> float:
     discordant = n_scenes * float(np.abs(seeds).mean())
     seen = discordant - by_chance + _PRIOR_SCENES
     return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
-
-
-def _least(reaches: Callable[[float], bool]) -> float | None:
-    if not reaches(1.0):
-        return None
-    low, high = 0.0, 1.0
-    while high - low > _PRECISION * high:
-        middle = 0.5 * (low + high)
-        low, high = (low, middle) if reaches(middle) else (middle, high)
-    return high

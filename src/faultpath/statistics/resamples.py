@@ -57,6 +57,14 @@ class Resamples:
         """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
         return (self.counts[rows] for rows in _blocks(self.n_resamples, self.n_scenes))
 
+    def check(self, n_scenes: int) -> None:
+        """Refuse outcomes of another number of scenes than was resampled."""
+        if n_scenes != self.n_scenes:
+            raise ValueError(
+                f"the outcomes have {n_scenes} scenes, the resamples {self.label!r} have "
+                f"{self.n_scenes}"
+            )
+
     def same_as(self, other: "Resamples") -> bool:
         """Return whether both hold the same draws, so that effects on them are joint."""
         return self is other or np.array_equal(self.counts, other.counts)

@@ -124,9 +124,9 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
 def _slots(factory: Factory) -> tuple[dict[str, _Slot], type[BaseModel] | None, bool]:
     """Return where a factory takes its options, their model if any, and if it takes any other."""
     try:
-        parameters = inspect.signature(factory).parameters
+        parameters: Mapping[str, inspect.Parameter] = inspect.signature(factory).parameters
     except (TypeError, ValueError):  # of some built-in functions nothing is known
-        parameters = {}
+        parameters = dict[str, inspect.Parameter]()
     hints = _hints(factory)
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
     if isinstance(only, type) and issubclass(only, BaseModel):
